@@ -39,12 +39,6 @@ def test_a_history_has_few_points_and_its_whole_duration(oscillation: History) -
     assert np.all(np.diff(times) > 0.0)
 
 
-def test_a_curve_without_oscillations_has_no_envelope() -> None:
-    history = reduce_history(TIMES, np.exp(-1e-3 * TIMES), logarithmic=True)
-    assert history.band[0].size == 0
-    np.testing.assert_array_equal(history.line[1], np.exp(-1e-3 * history.line[0]))
-
-
 def test_each_orbit_is_reduced_over_its_own_time() -> None:
     """Of a long orbit the early oscillations are drawn, as those of a short one beside it."""
     potential, bounded, escaping = CASES["I"], (-0.46, 0.0, 0.0, 0.2), (0.1, 0.0, 0.05, 0.6)

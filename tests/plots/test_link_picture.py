@@ -46,9 +46,3 @@ def test_the_text_names_system_plane_energy_and_time(escape_map: EscapeMap) -> N
     assert texts(escape_map, "Case II") == (
         "Case II\n(x, px) at h = 0.3\nColoured: the exit of the orbit. Grey: none up to t = 50."
     )
-
-
-def test_long_titles_are_cut(escape_map: EscapeMap) -> None:
-    title = texts(escape_map, "V = " + "x^2 + " * 80).partition("\n(x, px)")[0].splitlines()
-    assert len(title) == 2
-    assert title[1].endswith(" …")

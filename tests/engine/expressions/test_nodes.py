@@ -49,10 +49,6 @@ def test_equal_formulas_are_equal_and_have_equal_hashes(one: Expression, other: 
     assert hash(one) == hash(other)
 
 
-def test_the_root_of_a_square_is_not_its_base() -> None:
-    assert power(power(X, 2.0), 0.5) != X
-
-
 def test_polynomials_are_terms_and_back() -> None:
     terms = {(2, 0): 0.5, (1, 2): -1.0, (0, 0): 3.0}
     assert as_terms(from_terms(terms)) == terms

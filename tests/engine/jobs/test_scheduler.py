@@ -73,12 +73,6 @@ def test_long_calls_leave_one_thread_free() -> None:
     assert not wait(long_calls, SECONDS).not_done
 
 
-def test_single_thread_runs_long_calls_too() -> None:
-    recorder = Recorder()
-    long_calls = recorder.submit(recorder.executor("a", long_call), "a1", "a2")
-    assert recorder.run(*long_calls) == ["a1", "a2"]
-
-
 def test_exception_is_stored_in_the_future_and_the_pool_continues() -> None:
     recorder = Recorder()
 

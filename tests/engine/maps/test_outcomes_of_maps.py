@@ -23,7 +23,6 @@ from engine import (
     open_result,
     sample_starts,
 )
-from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from tests.disc import DISC, LABELS, disc_map
 
 
@@ -52,12 +51,6 @@ def test_statistics_have_a_count_for_each_outcome(escape_map: EscapeMap) -> None
     assert statistics.channel_counts == tuple(int(np.sum(escape_map.fate == k)) for k in (1, 2, 3))
     assert [outcome.label for outcome in statistics.outcomes] == LABELS
     assert statistics.escaped == int(np.sum(escape_map.fate >= 1))
-
-
-def test_a_table_of_crossings_has_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
-    table = tabulate_crossing_statistics([escape_map])
-    np.testing.assert_allclose(table["share"].sel(fate=3), escape_map.fractions()[3])
-    assert "3: collision with a disc" in table["fate"].attrs["codes"]
 
 
 def test_passages_are_counted_between_all_outcomes(escape_map: EscapeMap) -> None:

@@ -73,24 +73,10 @@ def test_plane_can_be_given_by_name(name: Any) -> None:
     assert spec_with(plane=name) == spec_with(plane=Plane.X_PX)
 
 
-def test_a_default_window_follows_the_energy() -> None:
-    spec = spec_with(energy=0.2, window=None)
-    assert replace(spec, energy=0.4).find_window() == default_window(CASES["I"], spec.plane, 0.4) != spec.find_window()
-
-
 def test_a_request_computes_nothing() -> None:
     potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.2345)))
     MapSpec(potential, Plane.X_PX, 0.15)
     assert set(vars(potential)) == {field.name for field in fields(Potential)}
-
-
-def test_energy_without_exits_raises_for_the_default_window() -> None:
-    with pytest.raises(ValueError, match=r"energy=50\.0"):
-        spec_with(energy=50.0, window=None).find_window()
-
-
-def test_equal_requests_are_equal_dictionary_keys() -> None:
-    assert {spec_with(window=WINDOW): 1}[spec_with(window=Window(*WINDOW))] == 1
 
 
 def test_outer_pixel_centres_are_half_a_pixel_from_the_edges() -> None:

@@ -52,9 +52,3 @@ def test_negative_codes_without_a_mask_are_no_basin(measure: Callable[..., Any])
     with pytest.raises(ValueError, match=rf"labels: {np.count_nonzero(fate < 0)} are negative, .*valid=\(labels >= 0\)"):
         measure(fate)
     assert measure(fate, fate >= 0).describe() == measure(np.where(fate < 0, 7, fate), fate >= 0).describe()
-
-
-@pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX, Plane.Y_PY])
-def test_fates_with_a_mask_are_measured_as_the_map(plane: Plane) -> None:
-    whole = compute_map(MapSpec(CASES["III"], plane, 0.4, (40, 40), t_max=100.0))
-    assert compute_basin_entropy(whole.fate, whole.fate >= 0) == compute_basin_entropy(whole)

@@ -88,12 +88,6 @@ def test_below_the_escape_energy_nothing_is_uncertain() -> None:
     assert "have the same fate" in fit.describe()
 
 
-def test_a_window_without_interior_has_no_pairs() -> None:
-    fit = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.25, window=Window(0.0, 1.0, 3.0, 4.0)))
-    assert not fit.pairs.any()
-    assert "no pair of starts lies inside" in fit.describe()
-
-
 def test_a_cancelled_computation_raises() -> None:
     cancel, shares = threading.Event(), list[float]()
 

@@ -26,7 +26,6 @@ from engine import (
     trace_zero_velocity_curve,
 )
 from engine.exits.interior import find_outside_channels
-from engine.potentials.well_units import WellUnits
 from tests.peers.exit_lines import exit_lines
 from tests.peers.random_systems import random_well
 
@@ -218,17 +217,6 @@ def test_mirror_images_of_any_slice_are_reflected_states(shape: tuple[int, int],
 def test_a_slice_that_is_none_is_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         Slice(**{"abscissa": Coordinate.X, "ordinate": Coordinate.Y} | change)
-
-
-@given(slices())
-def test_a_slice_in_units_of_a_well_holds_the_same_starts(plane: Slice) -> None:
-    potential, units = CASES["III"], WellUnits(length=4.0, time=0.5)
-    scaled = Potential("scaled", tuple((i, j, c * units.energy / units.length ** (i + j)) for i, j, c in potential.terms))
-    x_unit, ordinate_unit = (axis.unit(units) for axis in plane.axes)
-    x, ordinate = np.random.default_rng(5).uniform(-0.6, 0.6, (2, 50)) * [[x_unit], [ordinate_unit]]
-    given = plane.states(scaled, 0.4 * units.energy, x, ordinate)
-    expected = plane.in_well_units(units).states(potential, 0.4, x / x_unit, ordinate / ordinate_unit)
-    np.testing.assert_allclose(given / units.state, expected, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize(

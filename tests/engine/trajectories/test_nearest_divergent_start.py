@@ -68,12 +68,6 @@ def test_no_start_at_half_the_distance_diverges(start: tuple[Any, ...], divergen
     assert set(classify_orbits(CASES[name], energy, around, T_MAX).fate) <= {divergent.reference_fate, Fate.BOUNDED}
 
 
-def test_it_is_far_away_deep_in_a_basin() -> None:
-    start = ("I", Plane.X_PX, 0.2, 0.1, 0.2)
-    assert find(*start, furthest=0.1) is None
-    assert find_existing(*start).distance > 0.1
-
-
 def test_mirror_images_have_equal_distances() -> None:
     one = find_existing("III", Plane.X_PX, 0.35, 0.1, 0.3)
     other = find_existing("III", Plane.X_PX, 0.35, -0.1, -0.3)
