@@ -81,6 +81,11 @@ def test_curves_of_points_are_refused(value: sympy.Expr) -> None:
         find_critical_points(terms_of(value))
 
 
+def test_a_circle_with_rounding_errors_is_refused() -> None:
+    rounded = parse_formula("r²/2 − a r⁴ + b r⁶", parameters={"a": 1.0183, "b": 0.3}).with_parameters(epsilon=0.83)
+    assert "degenerate" in str(review_potential(rounded).refusal)
+
+
 @pytest.mark.parametrize(("seed", "distance", "count", "exits"), [(702, 858.47, 5, 3), (681, 7506.9, 6, 3)])
 def test_a_point_far_from_the_others_is_found_in_any_units(seed: int, distance: float, count: int, exits: int) -> None:
     unit = 0.018
