@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy
 
-from engine import Potential, channel_family, review_potential
+from engine import Potential, channel_family, parse_formula, review_potential
 from engine.polynomials import Terms
 from engine.potentials.forms.critical_points import NotIsolatedError, find_critical_points
 from tests.peers.random_systems import random_well
