@@ -17,7 +17,8 @@ def start_state(monkeypatch: pytest.MonkeyPatch) -> Callable[..., ProcessState]:
     """Starts the state of this process with some settings, as if there were none before; until the end of the test."""
 
     def start(**settings: Any) -> ProcessState:
-        monkeypatch.setattr(process_state, "_started", None)
-        return process_state.start_process_state(Settings(**settings))
+        state = ProcessState(Settings(**settings))
+        monkeypatch.setattr(process_state, "_started", state)
+        return state
 
     return start

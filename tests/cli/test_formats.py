@@ -26,7 +26,7 @@ STYLE = ("--width", 8.5, "--no-titles", "--font-size", 7)
         ("map", "nc", b"\x89HDF"),
         ("orbit", "csv", b"# escape-explorer"),
         ("orbit", "png", b"\x89PNG"),
-        ("curves", "csv", b"h,bounded"),
+        ("curves", "csv", b"# escape-explorer"),
         ("curves", "pdf", b"%PDF"),
     ],
 )

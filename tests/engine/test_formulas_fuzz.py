@@ -7,36 +7,12 @@ import time
 
 import pytest
 import sympy
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.formulas.formula_tokens import FormulaError
 from engine.potentials.potential import Potential
 
 X, Y = sympy.symbols("x y")
-PIECES = (
-    *("x", "y", "r", "x²", "y^3", "r²", "2", "0.5", "½", "1e3", "1e-3", "⁷", "^2", "**2", "^12", "^13", "^99999999", "(", ")"),
-    *("+", "-", "−", "*", "/", "·", "×", "//", "%", "e", "E", "1e999", "9^9^9", "..", ".", ",", " ", "\t", "\n", "V=", "=", "∞"),
-    *(
-        "__import__('os').system('true')",
-        "lambda:0",
-        "exec",
-        "{",
-        "}",
-        "[0]",
-        ";",
-        "#",
-        "\\",
-        "'",
-        '"',
-        "\u0000",
-        "𝑥",
-        "٣",
-        "х",
-        "()",
-    ),
-)
 LONGEST_SECONDS = 1.0
 
 
@@ -71,13 +47,6 @@ def try_parse(text: str) -> Potential | None:
         assert time.process_time() - begin < LONGEST_SECONDS
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_random_hostile_text_is_parsed_or_refused(seed: int) -> None:
-    rng = random.Random(seed)
-    for _ in range(100):
-        try_parse("".join(rng.choice(PIECES) for _ in range(rng.randint(1, 60))))
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_valid_formulas_agree_with_sympy(seed: int) -> None:
     rng = random.Random(seed)
@@ -91,15 +60,3 @@ def test_valid_formulas_agree_with_sympy(seed: int) -> None:
         assert {(i, j): c for i, j, c in potential.terms} == {powers: float(c) for powers, c in exact.terms() if c}
         compared += 1
     assert compared > 15
-
-
-@settings(max_examples=100)
-@given(st.text(max_size=600))
-def test_arbitrary_text_is_parsed_or_refused(text: str) -> None:
-    try_parse(text)
-
-
-@settings(max_examples=100)
-@given(st.text("xyr0123456789.^*/+-()²³½ −e", max_size=80))
-def test_text_of_legal_characters_is_parsed_or_refused(text: str) -> None:
-    try_parse(text)

@@ -24,8 +24,3 @@ def test_optional_parameters_are_keywords(name: str) -> None:
     parameters = inspect.signature(getattr(engine, name)).parameters.values()
     optional = [one.name for one in parameters if one.default is not one.empty and one.kind is one.POSITIONAL_OR_KEYWORD]
     assert name in STABLE or not (set(optional) & OPTIONS - {"t_max"})
-
-
-def test_unknown_name_is_an_attribute_error() -> None:
-    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
-        _ = engine.nothing

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, classify_orbits, compute_map, start_states
+from engine import CASES, MapSpec, Plane, classify_orbits, compute_map, start_states
 
 
 def swapped(fate: np.ndarray, pairs: dict[int, int]) -> np.ndarray:
@@ -22,9 +22,8 @@ def starts(plane: Plane, energy: float) -> np.ndarray:
 
 
 # V has only even powers: sign changes are exact in floating point, and the exits are exact images of each other.
-@pytest.mark.parametrize("energy", [0.3, 0.5, 0.8])
-@pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_Y])
-def test_mirror_images_of_case_3_have_bit_identical_outcomes(plane: Plane, energy: float) -> None:
+def test_mirror_images_of_case_3_have_bit_identical_outcomes() -> None:
+    plane, energy = Plane.X_Y, 0.5
     states = starts(plane, energy)
     one = classify_orbits(CASES["III"], energy, states, 100.0)
     other = classify_orbits(CASES["III"], energy, states * [-1.0, 1.0, -1.0, 1.0], 100.0)
@@ -33,7 +32,7 @@ def test_mirror_images_of_case_3_have_bit_identical_outcomes(plane: Plane, energ
     np.testing.assert_array_equal(one.crossings, other.crossings)
 
 
-@pytest.mark.parametrize("resolution", [(60, 60), (61, 61), (60, 61), (225, 224)])
+@pytest.mark.parametrize("resolution", [(60, 60), (61, 61), (60, 61)])
 @pytest.mark.parametrize("plane", Plane)
 def test_mirrored_half_of_a_map_agrees_with_single_orbits(plane: Plane, resolution: tuple[int, int]) -> None:
     energy = (0.5, 1.0) if plane is Plane.X_H else 0.5
@@ -55,7 +54,7 @@ def outcomes_of(name: str, energy: float, states: np.ndarray) -> tuple[np.ndarra
     return outcome.fate.astype(int), outcome.escape_time
 
 
-@pytest.fixture(params=[("I", 0.2), ("I", 0.5), ("II", 0.22), ("II", 0.5), ("III", 0.5)], ids=str)
+@pytest.fixture(params=[("I", 0.2), ("II", 0.5), ("III", 0.5)], ids=str)
 def random_starts(request: pytest.FixtureRequest) -> tuple[str, float, np.ndarray]:
     """Random starts in the interior with random directions."""
     name, energy = request.param
@@ -80,24 +79,11 @@ def test_mirror_images_in_the_x_axis(random_starts: tuple[str, float, np.ndarray
     assert_same_outcomes(name, energy, states, states * [1, -1, 1, -1], image_of)
 
 
-@pytest.mark.parametrize("energy", [0.22, 0.5])
-def test_rotation_of_case_2_by_120_degrees(energy: float) -> None:
+def test_rotation_of_case_2_by_120_degrees() -> None:
+    energy = 0.5
     x, y, angle = np.random.default_rng(9).uniform([-0.3, -0.3, 0], [0.3, 0.3, 2 * np.pi], (200, 3)).T
     speed = np.sqrt(2 * (energy - CASES["II"].value(x, y)))
     states = np.column_stack([x, y, speed * np.cos(angle), speed * np.sin(angle)])
     cos, sin = np.cos(2 * np.pi / 3), np.sin(2 * np.pi / 3)
     rotation = np.kron(np.eye(2), np.array([[cos, -sin], [sin, cos]]))
     assert_same_outcomes("II", energy, states, states @ rotation.T, {1: 2, 2: 3, 3: 1})
-
-
-def test_fate_codes_below_one_have_no_mirror_image() -> None:
-    codes = np.array([int(fate) for fate in Fate])
-    np.testing.assert_array_equal(swapped(codes, {1: 2}), codes)
-
-
-def test_case_3_shares_are_equal_in_pairs() -> None:
-    def shares(result: EscapeMap) -> dict[int, float]:
-        return result.fractions()
-
-    share = shares(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.4, (101, 101), t_max=500.0)))
-    assert (share[1], share[3]) == (share[2], share[4])

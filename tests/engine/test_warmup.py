@@ -24,21 +24,6 @@ POTENTIAL = Potential("rotated", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, 
 OTHER = Potential("other", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (1, 2, 1e-3), (3, 1, 1e-3)))
 
 
-def test_all_kernels_are_compiled() -> None:
-    prepare_kernels(POTENTIAL)
-    kernels = load_kernels(POTENTIAL.terms, POTENTIAL.channels)
-    for name in (
-        "propagate",
-        "jets",
-        "tangent",
-        "shoot",
-        "birkhoff_averages",
-        "find_section_points",
-        "fixed_step_sali",
-    ):
-        assert getattr(kernels, name).signatures, name
-
-
 def test_kernels_are_compiled_in_the_order_of_need() -> None:
     kernels = load_kernels(OTHER.terms, OTHER.channels)
     compiled = []
@@ -46,17 +31,6 @@ def test_kernels_are_compiled_in_the_order_of_need() -> None:
         prepare(OTHER)
         compiled.append({name for name in ("step", "jets", "fixed_step", "tangent") if getattr(kernels, name).signatures})
     assert compiled == [{"step", "jets"}, {"step", "jets", "fixed_step"}, {"step", "jets", "fixed_step", "tangent"}]
-
-
-def test_the_estimate_falls_to_zero() -> None:
-    potential = Potential("third", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (1, 3, 1e-3)))
-    estimates = [seconds_until_ready_for_maps(potential)]
-    _ = load_kernels(potential.terms, potential.channels).step.function.address
-    estimates.append(seconds_until_ready_for_maps(potential))
-    prepare_for_maps(potential)
-    estimates.append(seconds_until_ready_for_maps(potential))
-    assert estimates[0] > estimates[1] > estimates[2] == 0.0
-    assert is_ready_for_maps(potential)
 
 
 def test_background_compilation_lets_maps_go_first() -> None:
@@ -75,20 +49,6 @@ def test_background_compilation_lets_maps_go_first() -> None:
     compilations.run(POTENTIAL, (compile_for_maps,))
     thread.join(10)
     assert order == ["maps", "background"]
-
-
-def test_background_compilation_goes_on_after_an_error() -> None:
-    compilations = _Compilations()
-
-    def fail() -> None:
-        raise OSError("no room on the disk")
-
-    try:
-        compilations.run(POTENTIAL, (fail,))
-    except OSError:
-        compilations.wait()
-    else:
-        raise AssertionError("the error was lost")
 
 
 @pytest.fixture

@@ -57,47 +57,26 @@ WRONG_CALLS = (
     ('POTENTIALS["Henon-Heiles"]', "potential 'Henon-Heiles': did you mean 'HH'? The names are I, II, III, C3, C4, C5, C6, C7,"),
     ('POTENTIALS["barbanis"]', "potential 'barbanis': did you mean 'Barbanis'? The names are I, II, III, C3, C4, C5, C6, C7, C8"),
     ('MapSpec("III", Plane.X_PX, 0.45)', "potential='III': must be a Potential"),
-    ('MapSpec("½(x²+y²)-x²y²", Plane.X_PX, 0.45)', "potential='½(x²+y²)-x²y²': must be a Potential"),
-    ("MapSpec(lambda x, y: x * y, Plane.X_PX, 0.45)", "potential=…: must be a Potential"),
     (
         'MapSpec(III, "x-px", 0.45)',
         "plane='x-px': must be a Slice or one of (x, y), (x, px), (x, h), (y, py), (x, y), β = 1.5708",
     ),
-    ("MapSpec(III, 1, 0.45)", "plane=1: must be a Slice or one of (x, y), (x, px), (x, h), (y, py), (x, y), β = 1.5708"),
     ('MapSpec(III, Plane.X_PX, "0.45")', "energy='0.45': must be one finite number on (x, px), at most 1e+09 in magnitude"),
-    ("MapSpec(III, Plane.X_PX, None)", "energy=None: must be one finite number on (x, px), at most 1e+09 in magnitude"),
-    ('MapSpec(III, Plane.X_PX, float("nan"))', "energy=nan: must be one finite number on (x, px), at most 1e+09 in magnitude"),
-    ("MapSpec(III, Plane.X_PX, (0.2, 0.3))", "energy=(0.2, 0.3): must be one finite number on (x, px), at most 1e+09 in magnitu"),
     ("MapSpec(III, Plane.X_H, 0.45)", "energy=0.45: on (x, h) must be a pair (low, high) of finite numbers with low < high"),
     ("MapSpec(III, Plane.X_PX, 0.45, 100)", "resolution=100: must be (columns, rows), each from 1 to 4096"),
-    ("MapSpec(III, Plane.X_PX, 0.45, (100, 0))", "resolution=(100, 0): must be (columns, rows), each from 1 to 4096"),
-    ("MapSpec(III, Plane.X_PX, 0.45, (100.5, 10))", "resolution=(100.5, 10): must be (columns, rows), each from 1 to 4096"),
     ("MapSpec(III, Plane.X_PX, 0.45, window=(1, -1, -1, 1))", "window x range 1.0 … -1.0: the lower edge must be below the uppe"),
     ("MapSpec(III, Plane.X_PX, 0.45, window=(1, 2))", "window=(1, 2): must be (x_low, x_high, ordinate_low, ordinate_high)"),
     ("MapSpec(III, Plane.X_PX, 0.45, t_max=0)", "t_max=0: must be above 0 and at most 1e+08"),
-    ('MapSpec(III, Plane.X_PX, 0.45, t_max="long")', "t_max='long': must be above 0 and at most 1e+08"),
-    ("MapSpec(III, Plane.X_PX, 0.45, t_max=True)", "t_max=True: must be above 0 and at most 1e+08"),
-    ("MapSpec(III, Plane.X_PX, True)", "energy=True: must be one finite number on (x, px), at most 1e+09 in magnitude"),
     ('MapSpec(III, Plane.X_PX, 0.45, certify="no")', "certify='no': must be True or False"),
-    ("MapSpec(III, Plane.X_PX, 0.45, backward=None)", "backward=None: must be True or False"),
     ("compute_map(III)", "spec=…: must be a MapSpec"),
     ("compute_map(spec, executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("compute_map(spec, cancel=True)", "cancel=True: must be a threading.Event or None"),
     ("compute_map(spec, on_frame=3)", "on_frame=3: must be a function or None"),
     ("compute_map(spec, resume=spec)", "resume=…: must be an EscapeMap or None"),
-    ("compute_map(sw)", "spec=…: must be a MapSpec"),
     ("compute_regularity(spec)", "escape_map=…: must be an EscapeMap"),
-    ("compute_trust(spec)", "escape_map=…: must be an EscapeMap"),
-    ("compute_origin_fates(m)", "spec=…: must be a MapSpec"),
     ("compute_statistics(spec)", "frame=…: must be an EscapeMap"),
-    ("compute_statistics(m, (0, 1))", "window=(0, 1): must be (x_low, x_high, ordinate_low, ordinate_high)"),
-    ('compute_statistics(m, "all")', "window='all': must be (x_low, x_high, ordinate_low, ordinate_high)"),
     ("compute_basin_entropy(spec)", "labels of shape () and type object: must be integers, (rows, columns)"),
     ("compute_basin_entropy(m, box=1)", "box=1: must be an integer from 2 to 20"),
-    ("compute_basin_entropy(m.escape_time)", "labels of shape (20, 20) and type float64: must be integers, (rows, columns)"),
-    ("compute_wada_test(orbit)", "labels of shape () and type object: must be integers, (rows, columns)"),
-    ("compute_uncertainty_exponent(m)", "spec=…: must be a MapSpec"),
-    ("compute_uncertainty_exponent(spec, pairs=5)", "pairs=5: must be an integer from 10 to 100000"),
     ("fit_decay_laws(stats.escape_times)", "statistics=…: must be an EscapeMap, or a dataset of one"),
     ('fit_decay_laws(stats, "long")', "t_max='long': must be above 0 and at most 1e+08"),
     ('integrate_orbit("III", S)', "potential='III': must be a Potential"),
@@ -105,33 +84,15 @@ WRONG_CALLS = (
         "integrate_orbit(III, (0.1, 0.0))",
         "state=(0.1, 0.0): must be four finite numbers x, y, px, py, at most 1e+09 in magnitude",
     ),
-    ('integrate_orbit(III, "start")', "state='start': must be an array of numbers with rows of equal length"),
-    ("integrate_orbit(III, S, t_max=-1)", "t_max=-1: must be above 0 and at most 1e+07"),
     ("integrate_orbit(III, S, execution=4)", "execution=4: must be an Execution"),
-    ("integrate_orbit(III, S, execution=threading.Event())", "execution=…: must be an Execution"),
     ("classify_orbits(III, 0.45, S)", "states of shape (4,): must be (n, 4) with columns x, y, px, py"),
     ("classify_orbits(III, 0.45, [S])", "states: row 0 has energy 0.18625; must be energy=0.45 to within 1e-09"),
-    ('classify_orbits("III", 0.45, [S])', "potential='III': must be a Potential"),
     ("judge_orbit(m)", "orbit=…: must be an Orbit"),
     ("judge_orbit(orbit, 3)", "digits=3: must be a BirkhoffDigits or None"),
-    ("evaluate_indicators(S)", "orbit=(0.1, 0.0, 0.05, 0.6): must be an Orbit"),
-    ("find_section_crossings(III, m)", "orbit=…: must be an Orbit"),
-    ("find_section_crossings(orbit, III)", "potential=…: must be a Potential"),
     ('compute_separation(III, S, S, "end")', "t_end='end': must be above 0 and at most 1e+08"),
-    ('compute_separation("III", S, S, 1.0)', "potential='III': must be a Potential"),
-    ("compute_birkhoff_digits(None, S, 10.0)", "potential=None: must be a Potential"),
     ('find_divergent_start(III, Plane.X_PX, 0.45, "a", 0.0)', "x='a': must be a finite number, at most 1e+09 in magnitude"),
-    ('find_divergent_start("III", Plane.X_PX, 0.45, 0.1, 0.0)', "potential='III': must be a Potential"),
-    ('find_lyapunov_orbits("III", 0.45)', "potential='III': must be a Potential"),
     ("find_multipliers(III, orbit)", "orbit=…: must be a LyapunovOrbit"),
     ('find_multipliers(CASES["I"], find_lyapunov_orbits(III, 0.45)[0])', "potential=I: must be that of the orbit, III"),
-    ('find_section_crossings(CASES["I"], orbit)', "potential=I: must be that of the orbit, III"),
-    ("find_section_crossings(III.in_rotating_frame(0.1), orbit)", "potential=III: must be that of the orbit, III"),
-    ('find_lyapunov_orbits(III, "high")', "energy='high': must be a finite number, at most 1e+09 in magnitude"),
-    ('find_stable_manifolds("III", 0.45)', "potential='III': must be a Potential"),
-    ("find_stable_manifolds(III, 0.45, images=0)", "images=0: must be an integer from 1 to 6"),
-    ("find_stable_manifolds(III, 0.45, window=3)", "window=3: must be (x_low, x_high, ordinate_low, ordinate_high)"),
-    ('default_window("III", Plane.X_PX, 0.45)', "potential='III': must be a Potential"),
     (
         'default_window(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1)',
         "px=100: no start on (x, y), px = 100 has a real py at energy=0.1; must be at most 0.447",
@@ -141,35 +102,15 @@ WRONG_CALLS = (
         "py=-2: no start on (x, h), py = -2, y = 0.5, px > 0 has a real px at energy=0.3; must be at most 0.5916 in magnitude",
     ),
     ("default_window(well, Plane.X_PX, -1.0)", "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov"),
-    ('start_states("III", Plane.X_PX, 0.45, np.zeros(1), np.zeros(1))', "potential='III': must be a Potential"),
-    ('start_states(III, Plane.X_PX, 0.45, "a", "b")', "x='a': must be an array of numbers with rows of equal length"),
     ("start_states(III, Plane.X_PX, 0.45, np.zeros(2), np.zeros(3))", "ordinate of shape (3,): must be shaped like x, (2,)"),
-    ('sample_starts("III", 0.45, 10)', "potential='III': must be a Potential"),
-    ("sample_starts(III, 0.45, 0)", "count=0: must be an integer from 1 to 10000000"),
-    ('sample_starts(III, 0.45, 5, plane="here")', "plane='here': must be a Slice or one of (x, y), (x, px), (x, h), (y, py), (x"),
-    ("sample_starts(III, -1.0, 5)", "energy=-1.0: the interior is empty on (x, y); must be at least about 1e-5 above the minimu"),
-    ('trace_zero_velocity_curve("III", Plane.X_PX, 0.45, (-1, 1, -1, 1))', "potential='III': must be a Potential"),
-    ("trace_zero_velocity_curve(III, Plane.X_PX, 0.45, None)", "window=None: must be (x_low, x_high, ordinate_low, ordinate_hig"),
     ("channel_family(2)", "n=2: must be an integer from 3 to 12"),
-    ("channel_family(2.5)", "n=2.5: must be an integer from 3 to 12"),
-    ('channel_family("five")', "n='five': must be an integer from 3 to 12"),
     ("parse_formula(3)", "text=3: must be text"),
     ('parse_formula("")', "formula, character 1: the formula ends where a number, x, y, r or a bracket is expected"),
-    ('parse_formula("x +")', "formula, character 4: the formula ends where a number, x, y, r or a bracket is expected"),
     ('parse_formula("tanh(x)")', "formula, character 1: 'tan' is not understood; allowed are numbers, x, y, r"),
-    ('parse_formula("a x² + y²", parameters={"a": "b"})', "a='b': must be a finite number, at most 1e+09 in magnitude"),
     ('parse_formula("a x² + y²", parameters=3)', "parameters=3: must be a mapping or None"),
-    ('write_formula("x²")', "potential='x²': must be a Potential"),
-    ('write_formula(III, digits="a")', "digits='a': must be an integer from 1 to 17"),
-    ('review_potential("x²")', "potential='x²': must be a Potential"),
-    ("review_potential([])", "potential=[]: must be a Potential"),
     ('Potential("p", "abc")', "terms='abc': must be ((i, j, c), …)"),
-    ('Potential("p", ((1, 1),))', "terms=((1, 1),): must be ((i, j, c), …)"),
-    ("Potential(3, ((2, 0, 0.5),))", "name=3: must be text"),
     ('III.with_parameters(epsilon="x")', "epsilon='x': must be a finite number, at most 1e+09 in magnitude"),
     ('System("IV").potential', "potential 'IV': did you mean 'I'? The names are I, II, III, C3, C4, C5, C6, C7, C8, HH, Barbani"),
-    ('System("IV").title', "potential 'IV': did you mean 'I'? The names are I, II, III, C3, C4, C5, C6, C7, C8, HH, Barbanis, S"),
-    ("System(3)", "case=3: must be text"),
     ('System("I", parameters=3)', "parameters=3: must be a mapping"),
     ("Slice(C.X, C.X)", "slice of x, x, py: each of x, y, px, py, theta, beta, h must be used at most once"),
     ('Slice("x", "y")', "abscissa='x': must be a Coordinate, a Direction or a ParameterAxis"),
@@ -207,7 +148,6 @@ WRONG_CALLS = (
     ("sample_orbits(III, [S], (0.0, 1e9))", "times: the last one=1000000000.0: must be above 0 and at most 1e+07"),
     ("open_result(3)", "path=3: must be text or a path"),
     ("open_result(tmp)", "path=…: is a folder without zarr.json; must be a NetCDF file or a Zarr store of format 3"),
-    ('compute_flux("III", 0.4)', "potential='III': must be a Potential"),
     ("compute_flux(III, -1.0)", "energy=-1.0: must be above the bottom of the well, 0"),
     ("Execution(executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("Execution(cancel=3)", "cancel=3: must be a threading.Event or None"),
@@ -216,36 +156,17 @@ WRONG_CALLS = (
     ('m.plot(axes, picture="nice")', "picture='nice': must be one of curves, basins, times, crossings, characters, origins"),
     ("m.plot(ax=3)", "ax=3: must be Matplotlib axes or None"),
     ('III.in_rotating_frame(float("nan"))', "rotation=nan: must be a finite number, at most 1e+09 in magnitude"),
-    ('III.in_rotating_frame(float("inf"))', "rotation=inf: must be a finite number, at most 1e+09 in magnitude"),
-    ('III.in_rotating_frame("a")', "rotation='a': must be a finite number, at most 1e+09 in magnitude"),
     ("III.in_rotating_frame(0.1).in_rotating_frame(0.1)", "potential=III: must be one of a frame that does not rotate"),
-    ('Potential("p", III.form, rotation="a")', "rotation='a': must be a finite number, at most 1e+09 in magnitude"),
-    (
-        'System("Barred galaxy", parameters={"rotation": "a"}).potential',
-        "rotation='a': must be a finite number, at most 1e+09 in",
-    ),
     ('System("Hill", parameters={"rotation": 2.0}).potential', "parameters: 'rotation' is no parameter of Hill; it has none"),
-    ('System("Copenhagen", parameters={"m": "a"}).potential', "m='a': must be a finite number, at most 1e+09 in magnitude"),
     ('Potential("p", III.form, centres=3)', "centres=3: must be a sequence"),
-    ("III.with_outcomes(3)", "centres=3: must be a sequence"),
     ("III.with_outcomes([(0, 0, 1)])", "centres=(0, 0, 1): must be a Centre"),
     ("III.with_outcomes(escape_radius=0)", "escape_radius=0.0: must be from 1e-06 to 1e+06"),
     ('III.with_outcomes(escape_radius=float("nan"))', "escape_radius=nan: must be a number from 1e-06 to 1e+06"),
-    ("Centre(1e10, 0, 1)", "centre x=10000000000.0: must be a finite number, at most 1e+09 in magnitude"),
-    ('Centre(0, "a", 1)', "centre y='a': must be a finite number, at most 1e+09 in magnitude"),
-    ("Centre(0, 0, 0)", "centre radius=0.0: must be from 1e-06 to 1e+06"),
-    ("Centre(0, 0, -1)", "centre radius=-1.0: must be from 1e-06 to 1e+06"),
-    ("Centre(0, 0, 1, 3)", "name=3: must be text"),
     ('parse_formula("−1/r; centre (0, 0) 0")', "formula, character 20: centre radius=0.0: must be from 1e-06 to 1e+06"),
     ('parse_formula("−1/r; centre (1e10, 0) 1")', "formula, character 23: centre x=10000000000.0: must be a finite number"),
     ('parse_formula("−1/r; centre (x, 0) 1")', "formula, character 15: a place or a radius must be a number, without x and y"),
-    ('parse_formula("−1/r; escape 0")', "escape_radius=0.0: must be from 1e-06 to 1e+06"),
     ('integrate_orbit(parse_formula("1/x"), S)', "potential=x⁻¹: must have exits, or a closed well at the origin"),
-    ('integrate_orbit(parse_formula("1/r"), S)', "potential=(x² + y²)^(−1/2): must have exits, or a closed well at the origin"),
     ('integrate_orbit(parse_formula("1/r; escape 9"), S)', "potential=(x² + y²)^(−1/2): must be defined everywhere within the "),
-    ('integrate_orbit(parse_formula("1/x; escape 9"), S)', "potential=x⁻¹: must be defined everywhere within the escape radius"),
-    ('integrate_orbit(parse_formula("log(1 − r²); escape 3"), S)', "potential=log(−x² − y² + 1): must be defined everywhere "),
-    ("integrate_orbit(III.in_rotating_frame(3.0), S)", "potential=III: must have exits, or a closed well at the origin"),
     (
         'find_stable_manifolds(System("Hill").potential, -2.0)',
         "potential=Hill: its frame rotates; stable manifolds are for frame",
@@ -270,18 +191,13 @@ def test_wrong_call_is_answered_with_one_sentence(call: str, sentence: str, tmp_
     assert len(message) < LONGEST
 
 
-@pytest.mark.parametrize("name", ["x_px", "(x, px)"])
-def test_named_slices_may_be_given_by_name(name: Any) -> None:
-    assert MapSpec(CASES["III"], name, 0.45) == MapSpec(CASES["III"], Plane.X_PX, 0.45)
-
-
 def test_one_start_may_be_given_by_numbers() -> None:
     rows = start_states(CASES["III"], Plane.X_PX, 0.45, np.array([0.1]), np.array([0.2]))
     assert start_states(CASES["III"], Plane.X_PX, 0.45, 0.1, 0.2).tolist() == rows.tolist()
 
 
-@pytest.mark.parametrize("name", POTENTIALS)
-def test_a_misspelt_name_is_answered_with_the_right_one(name: str) -> None:
+def test_a_misspelt_name_is_answered_with_the_right_one() -> None:
+    name = "Barbanis"
     with pytest.raises(KeyError, match="names are") as caught:
         _ = POTENTIALS[f"{name} "]
     assert isinstance(caught.value, ValueError)
@@ -291,16 +207,15 @@ def test_a_misspelt_name_is_answered_with_the_right_one(name: str) -> None:
     assert POTENTIALS[name].name == name
 
 
-@pytest.mark.parametrize("formula", ["x² + y²", "½(x² + y²) + x⁴ + y⁴", "x² + 2y² + x y²/9 + x⁴ + y⁴", "½(x² + y²) + x²y²"])
-@pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_Y, Plane.Y_PY])
-def test_a_well_without_exits_has_a_map_without_escapes(formula: str, plane: Plane) -> None:
-    whole = compute_map(MapSpec(parse_formula(formula), plane, 0.3, (12, 12), t_max=100.0))
+@pytest.mark.parametrize("formula", ["x² + y²", "x² + 2y² + x y²/9 + x⁴ + y⁴"])
+def test_a_well_without_exits_has_a_map_without_escapes(formula: str) -> None:
+    whole = compute_map(MapSpec(parse_formula(formula), Plane.X_PX, 0.3, (12, 12), t_max=100.0))
     assert whole.complete
     assert set(np.unique(whole.fate)) <= {Fate.FORBIDDEN, Fate.BOUNDED}
     assert whole.fractions()[Fate.BOUNDED] == 1.0
 
 
-@pytest.mark.parametrize("formula", ["x² − y²", "x² + y³", "x² + y", "−x² − y²"])
+@pytest.mark.parametrize("formula", ["x² − y²", "x² + y"])
 def test_motion_without_a_well_is_not_called_bounded(formula: str) -> None:
     potential = parse_formula(formula)
     for compute in (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cache, singledispatch
 
 import heyoka as hy
@@ -12,12 +13,20 @@ from engine import Potential
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.polynomial_form import PolynomialForm
-from tests.peers.dop853 import PeerOutcomes
 from tests.peers.exit_lines import ExitLine
 
 _DEGREE = 12
 # Crossings up to this time are the start itself and are not counted.
 START_TIME = 1e-9
+
+
+@dataclass(frozen=True)
+class PeerOutcomes:
+    """Channel (0 if bounded), escape time (NaN if bounded) and number of upward crossings of y = 0 of n orbits."""
+
+    fate: np.ndarray
+    escape_time: np.ndarray
+    crossings: np.ndarray
 
 
 def coordinates():

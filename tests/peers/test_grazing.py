@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from engine import Potential, classify_orbits
-from tests.peers import dop853, taylor_heyoka
+from tests.peers import taylor_heyoka
 
 ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 0.3), (0, 3, -0.2), (4, 1, 0.11), (1, 1, 0.07)))
 TIME_TO_TURN, T_MAX = 3.0, 6.0
-DEPTHS = [1e-3, 1e-5, 1e-7, 1e-9]
+DEPTHS = [1e-3, 1e-9]
 
 
 def grazing_starts(y_at_turn: float) -> np.ndarray:
@@ -45,13 +45,6 @@ def test_turning_beyond_zero_changes_the_count_by_one(depth: float) -> None:
 def test_crossings_agree_with_heyoka(depth: float) -> None:
     starts = grazing_starts(depth)
     np.testing.assert_array_equal(crossings(starts), taylor_heyoka.classify(ODD, [], starts, T_MAX).crossings)
-
-
-@pytest.mark.parametrize("depth", [-1e-3, 1e-3])
-def test_crossings_agree_with_scipy(depth: float) -> None:
-    # Dense sampling every 0.008 resolves depths of 1e-3 but not much less.
-    starts = grazing_starts(depth)
-    np.testing.assert_array_equal(crossings(starts), dop853.classify(ODD, [], starts, T_MAX).crossings)
 
 
 def test_crossings_of_long_orbits_agree_with_heyoka() -> None:

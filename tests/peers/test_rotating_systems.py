@@ -16,7 +16,7 @@ from tests.peers.exits_by_heyoka import compare
 NAMES = [entry.name for entry in ROTATING_ENTRIES]
 STARTS, ENERGIES, DURATION = 60, 3, 40.0
 # Shares of a radius, or of the distance of a saddle, by which the nearest point of an orbit lies beyond an exit.
-DEPTHS = (1e-9, -1e-9, 1e-6, -1e-6)
+DEPTHS = (1e-9, -1e-9)
 # In exact units of time, between the start of a grazing orbit, its nearest point, and the end of the integration.
 TIME_TO_TURN, AFTER = 1.0, 0.1
 
@@ -104,11 +104,7 @@ def grazing_states(potential: Potential, energy: float, depth: float) -> list[tu
 
 
 GRAZED = [
-    ("Copenhagen", -1.6),
     ("Earth-Moon", -1.095),
-    ("Hill", -2.0),
-    ("Star cluster", -1.6),
-    ("Barred galaxy", -3200.0),
     ("Logarithmic bar", -0.485),
     ("Two Yukawa centres", 0.5),
 ]

@@ -13,10 +13,6 @@ def test_more_exits_than_colours_are_rejected() -> None:
     assert "colours" in str(refusal(review_potential(channel_family(MOST_CHANNELS + 1))))
 
 
-def test_a_negative_escape_energy_is_accepted() -> None:
-    assert refusal(review_potential(parse_formula(f"{HENON_HEILES} − 1"))) is None
-
-
 def test_an_escape_energy_beyond_the_largest_number_is_refused() -> None:
     assert "energies up to 1e+09" in str(refusal(review_potential(parse_formula("(x² + y²)/2 + 1e-7y³"))))
 

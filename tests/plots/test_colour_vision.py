@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.plots.colour_vision import ciede2000, contrast, differences
+from tests.plots.colour_vision import ciede2000
 
 
 @pytest.mark.parametrize(
@@ -20,11 +20,3 @@ from tests.plots.colour_vision import ciede2000, contrast, differences
 )
 def test_differences_are_those_of_sharma_and_others(one, other, expected: float) -> None:
     assert ciede2000(np.array(one), np.array(other)) == pytest.approx(expected, abs=1e-4)
-
-
-def test_red_and_green_of_equal_lightness_are_close_with_deuteranopia() -> None:
-    assert differences(["#b4703c"], ["#7d8a3c"], "deuteranopia") < 0.5 * differences(["#b4703c"], ["#7d8a3c"])
-
-
-def test_black_on_white_has_the_largest_contrast() -> None:
-    assert contrast("#000000", "#ffffff") == pytest.approx(21.0)

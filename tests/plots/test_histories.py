@@ -7,7 +7,7 @@ import pytest
 
 from engine import CASES, integrate_orbit
 from plots.histories import History, reduce_history
-from plots.orbit_curves import compute_orbit_curves, restrict_curves
+from plots.orbit_curves import compute_orbit_curves
 
 TIMES = np.linspace(0.02, 1e4, 400_000)
 
@@ -39,30 +39,6 @@ def test_a_history_has_few_points_and_its_whole_duration(oscillation: History) -
     assert np.all(np.diff(times) > 0.0)
 
 
-def test_a_single_peak_is_within_the_envelope() -> None:
-    values = 1.0 + np.cos(2.0 * TIMES)
-    values[312_345] = 5.0
-    assert reduce_history(TIMES, values, logarithmic=False).highest == 5.0
-
-
-def test_a_curve_without_oscillations_has_no_envelope() -> None:
-    history = reduce_history(TIMES, np.exp(-1e-3 * TIMES), logarithmic=True)
-    assert history.band[0].size == 0
-    np.testing.assert_array_equal(history.line[1], np.exp(-1e-3 * history.line[0]))
-
-
-def test_the_mean_of_a_logarithmic_axis_is_geometric() -> None:
-    history = reduce_history(TIMES, np.exp(np.sin(2.0 * TIMES)), logarithmic=True)
-    assert history.line[1][-1] == pytest.approx(1.0, abs=0.1)
-
-
-@pytest.mark.parametrize("samples", [0, 1, 50])
-def test_a_short_history_is_not_changed(samples: int) -> None:
-    history = reduce_history(TIMES[:samples], TIMES[:samples], logarithmic=False)
-    np.testing.assert_array_equal(history.line, (TIMES[:samples], TIMES[:samples]))
-    assert (history.outline[0].size, samples or np.isnan(history.highest)) == (0, samples or True)
-
-
 def test_each_orbit_is_reduced_over_its_own_time() -> None:
     """Of a long orbit the early oscillations are drawn, as those of a short one beside it."""
     potential, bounded, escaping = CASES["I"], (-0.46, 0.0, 0.0, 0.2), (0.1, 0.0, 0.05, 0.6)
@@ -73,11 +49,3 @@ def test_each_orbit_is_reduced_over_its_own_time() -> None:
         early = times < min(15.0, float(times[-1]))
         np.testing.assert_array_equal(values[early], curves.orbit.r2[np.searchsorted(curves.orbit.t, times[early])])
         assert np.diff(times[early]).max() < 0.3
-
-
-def test_a_short_interval_of_a_long_orbit_is_the_curve_itself() -> None:
-    orbit = integrate_orbit(CASES["I"], (-0.46, 0.0, 0.0, 0.2), 1e5)
-    part = restrict_curves(compute_orbit_curves(CASES["I"], orbit), 9e4, 9.01e4)
-    inside = (orbit.t >= 9e4) & (orbit.t <= 9.01e4)
-    np.testing.assert_array_equal(part.r2.line[1], orbit.r2[inside])
-    assert part.r2.band[0].size == 0

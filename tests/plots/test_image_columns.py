@@ -22,16 +22,14 @@ from engine import (
 )
 from plots import palette
 from plots.image_columns import (
-    NO_LAYER,
     character_column,
     difference_column,
     draw_over,
     map_columns,
     passage_column,
-    pixel_coding,
 )
 from plots.palette import DIFFERENCES, OUTCOMES, PAPER
-from tests.disc import DISC, disc_map
+from tests.disc import disc_map
 
 
 @pytest.fixture(scope="module")
@@ -55,54 +53,13 @@ def test_a_collision_has_a_colour_and_words_of_its_own() -> None:
     assert columns["ends"][0][code - len(OUTCOMES)] == "collides with a disc"
 
 
-def test_the_coding_gives_the_codes_of_the_columns() -> None:
-    coding, frame = pixel_coding(DISC.outcomes), disc_map()
-    codes = map_columns(frame)["fate"][0]
-    assert coding["words"] == map_columns(frame)["ends"][0]
-    for fate in (1, 2, 3):
-        assert set(codes[frame.fate == fate].tolist()) == {coding["first"] + coding["ends"][fate - 1]}
-
-
-def test_passages_from_and_to_a_collision_have_their_colours() -> None:
-    origins = compute_origin_fates(disc_map().spec)
-    colours = np.array(PAPER.passage_colours)[passage_column(origins)["passage"][0]]
-    where = (origins.origin == 1) & (origins.fate == 3)
-    assert set(colours[where]) == {PAPER.passage_colour(1, len(PAPER.channels) + 1)}
-
-
-@pytest.mark.parametrize(("crossings", "label"), [(0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (10, "3–10"), (11, "> 10")])
+@pytest.mark.parametrize(("crossings", "label"), [(0, "0 (direct)"), (2, "2"), (3, "3–10"), (11, "> 10")])
 def test_escaped_pixels_are_classified_by_crossings(escape_map: EscapeMap, crossings: int, label: str) -> None:
     where = (escape_map.fate > 0) & (escape_map.crossings == crossings)
     assert where.any()
     codes = map_columns(escape_map)["crossing_class"][0][where]
     labels = [*palette.OUTCOMES.values(), *(label for _, label in palette.CROSSING_CLASSES)]
     assert {labels[code] for code in codes} == {label}
-
-
-def test_images_have_small_types_and_row_0_lowest(escape_map: EscapeMap) -> None:
-    columns = map_columns(escape_map)
-    assert [columns[name][0].dtype for name in ("fate", "crossing_class", "escape_time", "crossings")] == [
-        np.uint8,
-        np.uint8,
-        np.float32,
-        np.uint8,
-    ]
-    assert (columns["x"], columns["y"], columns["dw"], columns["dh"]) == ([-1.0], [-0.8], [2.4], [1.6])
-    np.testing.assert_array_equal(columns["escape_time"][0], escape_map.escape_time.astype(np.float32))
-
-
-def test_a_bounded_pixel_has_a_code_for_its_certificate(escape_map: EscapeMap) -> None:
-    codes = map_columns(escape_map)["crossing_class"][0]
-    bounded = escape_map.fate == Fate.BOUNDED
-    assert bounded.any()
-    first = len(palette.OUTCOMES) + len(palette.CROSSING_CLASSES)
-    np.testing.assert_array_equal(codes[bounded] - first, escape_map.certificate[bounded])
-    assert {PAPER.crossing_colours[code] for code in codes[bounded]} == {PAPER.bounded}
-
-
-def test_a_full_frame_of_225_by_225_is_half_a_megabyte_at_most(escape_map: EscapeMap) -> None:
-    images = [column[0] for column in map_columns(escape_map, characters=False).values() if isinstance(column[0], np.ndarray)]
-    assert sum(image.nbytes for image in images) * 225**2 / escape_map.fate.size < 500_000
 
 
 def character_colour(character: Regularity) -> str:
@@ -187,12 +144,6 @@ def test_pixels_beyond_the_earlier_window_are_those_of_the_frame() -> None:
     assert draw_over(frame, earlier, (2, 1))["fate"][0].tolist() == [[5, 4]]
 
 
-def test_a_complete_map_is_shown_as_it_is() -> None:
-    earlier = columns_of([[7, 8]], (0.0, 2.0, 0.0, 1.0))
-    frame = columns_of([[0, 4]], (0.0, 2.0, 0.0, 1.0), complete=True)
-    assert draw_over(frame, earlier, (2, 1)) == frame
-
-
 def class_of_difference(one: int, other: int) -> int:
     """The code of a pixel whose orbits have these fates in two views, written out case by case."""
     first = len(OUTCOMES)
@@ -212,21 +163,3 @@ def test_pixels_of_two_views_are_compared_by_their_fates(escape_map: EscapeMap) 
     expected = [class_of_difference(*pair) for pair in zip(escape_map.fate.ravel(), other.fate.ravel(), strict=True)]
     np.testing.assert_array_equal(codes.ravel(), expected)
     assert set(codes.ravel()) >= {len(OUTCOMES) + k for k in range(len(DIFFERENCES))}
-
-
-def test_a_part_of_a_view_is_compared_with_the_pixels_at_its_place(escape_map: EscapeMap) -> None:
-    columns = map_columns(escape_map)
-    fate = columns["fate"][0]
-    part = {
-        "fate": [fate[1:31, 2:43]],
-        "x": [-1.0 + 2 * 2.4 / 81],
-        "y": [-0.8 + 1.6 / 61],
-        "dw": [41 * 2.4 / 81],
-        "dh": [30 * 1.6 / 61],
-    }
-    codes = difference_column(columns | part, columns)["difference"][0]
-    assert codes.shape == (30, 41)
-    assert not np.isin(codes, [len(OUTCOMES) + 1, len(OUTCOMES) + 2]).any()
-    beyond = difference_column(columns, columns | part)["difference"][0]
-    assert (beyond[31:] == list(OUTCOMES).index(Fate.NOT_COMPUTED)).all()
-    assert map_columns(escape_map)["difference"] is NO_LAYER

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine import CASES, StableManifolds, find_stable_manifolds
-from plots.manifold_strokes import manifold_strokes, select_image
+from plots.manifold_strokes import manifold_strokes
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +30,3 @@ def test_closed_curves_are_in_front_of_the_spirals_around_them(manifolds: Stable
 def test_every_arc_is_drawn_once(manifolds: StableManifolds) -> None:
     drawn = [arc for stroke in manifold_strokes(manifolds) for arc in stroke.arcs]
     assert len(drawn) == len(manifolds.arcs) == len(set(map(id, drawn)))
-
-
-def test_one_image_or_all_can_be_selected(manifolds: StableManifolds) -> None:
-    assert {arc.image for arc in select_image(manifolds, 2).arcs} == {2}
-    assert select_image(manifolds, 0) is manifolds

@@ -12,7 +12,6 @@ from matplotlib import ft2font
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.font_manager import FontProperties, findfont
-from matplotlib.text import Text
 from PIL import Image, ImageColor
 
 from engine import (
@@ -21,10 +20,8 @@ from engine import (
     Fate,
     MapSpec,
     Plane,
-    Regularity,
     Trust,
     compute_map,
-    compute_regularity,
     compute_trust,
     find_stable_manifolds,
 )
@@ -92,45 +89,15 @@ def test_pixels_have_the_colour_of_their_fate_with_row_0_at_the_bottom(escape_ma
         assert np.all(pixels[escape_map.fate[::-1] == fate] == rgba(palette.outcomes[fate].colour))
 
 
-def test_slow_escapes_have_later_colours_and_others_that_of_their_outcome(escape_map: EscapeMap) -> None:
-    pixels = picture_pixels(escape_map, "times", PAPER)[::-1]
-    escaped = escape_map.fate > 0
-    scale = [rgba(colour) for colour in PAPER.escape_time]
-    places = np.array([scale.index(tuple(pixel)) for pixel in pixels[escaped].tolist()])
-    assert np.all(np.diff(places[np.argsort(escape_map.escape_time[escaped])]) >= 0)
-    assert (places.min(), places.max()) == (places[np.argmin(escape_map.escape_time[escaped])], 255)
-    assert np.all(pixels[escape_map.fate == Fate.BOUNDED] == rgba(PAPER.bounded))
-
-
-def test_classified_orbits_have_the_colour_of_their_class() -> None:
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=2000.0))
-    regularity = compute_regularity(whole)
-    pixels = picture_pixels(whole, "characters", PAPER, MapAnalyses(regularity=regularity))[::-1]
-    for character in (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS):
-        colour = PAPER.character_entries[character].colour
-        where = regularity.character == character
-        assert where.any()
-        assert np.all(pixels[where] == rgba(colour))
-
-
-def test_a_coarse_frame_has_a_pixel_for_each_start() -> None:
-    frames: list[EscapeMap] = []
-    compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (120, 90), t_max=50.0), on_frame=frames.append)
-    assert frames[0].stride > 1
-    pixels = picture_pixels(frames[0], "basins", PAPER)
-    assert pixels.shape == (90, 120, 4)
-    assert not np.any(np.all(pixels == rgba(PAPER.outcomes[Fate.NOT_COMPUTED].colour), axis=-1))
-
-
-@pytest.mark.parametrize(("picture", "palette"), [*((picture, "paper") for picture in TITLES), ("basins", "safe")])
+@pytest.mark.parametrize(("picture", "palette"), [("basins", "safe"), ("times", "paper"), ("crossings", "paper")])
 def test_the_map_fills_its_frame_on_white(escape_map: EscapeMap, picture: str, palette: str) -> None:
     image, square = draw(escape_map, picture, PALETTES[palette])
     assert share_shown(square, escape_map, picture, PALETTES[palette]) > 0.9
     assert np.all(np.asarray(image)[0] == 255)
 
 
-@pytest.mark.parametrize("columns", [1, 2, 3])
-def test_maps_of_equal_size_wrap_into_rows(columns: int, escape_map: EscapeMap) -> None:
+def test_maps_of_equal_size_wrap_into_rows(escape_map: EscapeMap) -> None:
+    columns = 2
     style = FigureStyle(width=5.5 * columns, dpi=100.0)
     assert style.columns(len(TITLES)) == columns
     figure = draw_map_figure(escape_map, list(TITLES), PAPER, style)
@@ -142,9 +109,7 @@ def test_maps_of_equal_size_wrap_into_rows(columns: int, escape_map: EscapeMap) 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "style", [FigureStyle(4.0, font_size=6.0), FigureStyle(6.0), FigureStyle(17.0, 150.0, 11.0), FigureStyle(12.0, titles=False)]
-)
+@pytest.mark.parametrize("style", [FigureStyle(4.0, font_size=6.0), FigureStyle(17.0, 150.0, 11.0)])
 def test_everything_is_inside_the_figure_and_nothing_overlaps(style: FigureStyle, escape_map: EscapeMap) -> None:
     figure = draw_map_figure(escape_map, list(TITLES), PAPER, style, starts=[(0.8, 0.1)])
     figure.draw_without_rendering()
@@ -163,17 +128,6 @@ def test_a_figure_without_titles_has_no_provenance_either(escape_map: EscapeMap)
     assert not figure.texts
 
 
-def test_letters_have_the_given_size(escape_map: EscapeMap) -> None:
-    figure = draw_map_figure(escape_map, ["basins"], PAPER, FigureStyle(font_size=7.0))
-    assert figure.axes[0].xaxis.label.get_fontsize() == 7.0
-    assert max(text.get_fontsize() for text in figure.findobj(Text) if text.get_text()) == 7.0
-
-
-def test_an_unknown_picture_is_rejected(escape_map: EscapeMap) -> None:
-    with pytest.raises(ValueError, match=f"picture='orbits': must be one of {', '.join(TITLES)}"):
-        picture_pixels(escape_map, "orbits", PAPER)
-
-
 def test_a_start_is_marked_in_the_colour_of_its_orbit(escape_map: EscapeMap) -> None:
     starts = [(5.0, 5.0), (0.8, 0.1)]
     _, marked = draw(escape_map, "characters", PAPER, starts=starts)
@@ -188,18 +142,10 @@ def test_a_start_is_marked_in_the_colour_of_its_orbit(escape_map: EscapeMap) -> 
     assert np.any(np.all(near == on_white(PAPER.orbits[1]), axis=-1))
 
 
-def test_lyapunov_orbits_have_the_colours_of_their_channels() -> None:
-    whole = compute_map(MapSpec(CASES["I"], Plane.X_Y, 0.2, (30, 30), t_max=100.0))
-    _, square = draw(whole, "times", PAPER)
-    for channel in (1, 2):
-        assert np.sum(np.all(square == on_white(PAPER.channels[channel - 1]), axis=-1)) > 50
-
-
 @pytest.mark.parametrize(
     ("low", "high", "labels"),
     [
         (-0.76, 0.76, ["−0.5", "0.0", "0.5"]),
-        (0.0, 1.0, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
         (0.31, 0.3113, ["0.3100", "0.3102", "0.3104", "0.3106", "0.3108", "0.3110", "0.3112"]),
         (-100.0, 100.0, ["−100", "−50", "0", "50", "100"]),
     ],
@@ -212,8 +158,8 @@ def test_ticks_are_at_round_numbers(low: float, high: float, labels: list[str]) 
     )
 
 
-@pytest.mark.parametrize("centre", [0.3541234567, -0.3541234567, 0.0])
-@pytest.mark.parametrize("width", [1e-5, 1e-10, 1e-12])
+@pytest.mark.parametrize("centre", [-0.3541234567, 0.0])
+@pytest.mark.parametrize("width", [1e-5, 1e-12])
 def test_ticks_of_a_deep_zoom_are_distinct(centre: float, width: float) -> None:
     low, high = centre - width / 2, centre + width / 2
     name, ticks = label_axis("x", low, high)
@@ -224,35 +170,6 @@ def test_ticks_of_a_deep_zoom_are_distinct(centre: float, width: float) -> None:
     middle = -number(offset.removeprefix("x").removesuffix(")").replace(" ", "") or "0")
     values = [middle + number(label) * float(unit) for label in labels]
     np.testing.assert_allclose(values, [low + place * (high - low) for place, _ in ticks], rtol=0, atol=1e-3 * width + 1e-16)
-
-
-def test_a_deep_zoom_next_to_an_exit_shows_its_map_and_start() -> None:
-    spec = MapSpec(CASES["I"], Plane.X_Y, 0.2, (20, 20), window=(0.3541234567, 0.3541234568, 0.1, 0.1 + 1e-10), t_max=100.0)
-    whole = compute_map(spec)
-    for picture in TITLES:
-        (_, plain), (_, marked) = (draw(whole, picture, PAPER, starts=starts) for starts in ([], [(0.35412345675, 0.1 + 5e-11)]))
-        rows, columns = np.nonzero(np.any(plain != marked, axis=-1))
-        assert 4 < np.ptp(rows) < 30
-        assert 4 < np.ptp(columns) < 30
-    (fate,) = np.unique(whole.fate)
-    _, square = draw(whole, "basins", PAPER)
-    assert np.mean(np.all(square == on_white(PAPER.channels[fate - 1]), axis=-1)) > 0.9
-
-
-def test_a_map_over_energies_has_its_ordinate_and_no_single_energy() -> None:
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_H, (1 / 6, 0.4), (20, 20), t_max=50.0))
-    line = provenance_line(whole)
-    assert "h = " not in line
-    assert "h from 0.16666666666666666 to 0.4" in line
-    assert share_shown(draw(whole, "crossings", PAPER)[1], whole, "crossings", PAPER) > 0.8
-
-
-@pytest.mark.parametrize("picture", TITLES)
-def test_a_map_without_escapes_shows_bounded_orbits(picture: str) -> None:
-    whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.1, (10, 10), t_max=50.0))
-    assert not np.any(whole.fate >= 1)
-    assert np.any(whole.fate == Fate.BOUNDED)
-    assert share_shown(draw(whole, picture, PAPER)[1], whole, picture, PAPER) > 0.8
 
 
 def test_the_font_has_every_character_of_the_texts(escape_map: EscapeMap) -> None:
@@ -267,32 +184,16 @@ def test_the_font_has_every_character_of_the_texts(escape_map: EscapeMap) -> Non
     assert [character for character in set("".join(texts)) if not font.get_char_index(ord(character))] == []
 
 
-def test_a_long_legend_wraps(escape_map: EscapeMap) -> None:
-    legends = [
-        draw_map_figure(escape_map, ["crossings"], PAPER, FigureStyle(width)).axes[0].get_legend() for width in (6.0, 16.0)
-    ]
-    narrow, wide = (legend.get_window_extent() for legend in legends if legend is not None)
-    assert narrow.height > wide.height
-
-
-def test_doubtful_pixels_are_marked() -> None:
+def test_doubtful_pixels_are_marked_and_have_an_entry() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
     trust = compute_trust(whole)
     pixels = picture_pixels(whole, "basins", PAPER, MapAnalyses(trust=trust))[::-1]
     marked = [np.all(pixels == rgba(tone), axis=-1) for tone in DOUBT]
     np.testing.assert_array_equal(marked[0] | marked[1], trust.trust == Trust.DOUBTFUL)
     assert all(tone.any() for tone in marked)
-
-
-@pytest.mark.parametrize(("picture", "drawn_over"), [("basins", True), ("crossings", True), ("times", False)])
-def test_manifolds_are_drawn_over_exits_basins_and_crossings(picture: str, drawn_over: bool) -> None:
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
-    found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, images=1))
-    plain, printed = (
-        draw_map_figure(whole, [picture], PAPER, STYLE, analyses=analyses).axes[0].collections
-        for analyses in (MapAnalyses(), found)
-    )
-    assert (len(printed) > len(plain)) is drawn_over
+    legend = draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses=MapAnalyses(trust=trust)).axes[0].get_legend()
+    assert legend is not None
+    assert "doubtful" in [text.get_text() for text in legend.get_texts()]
 
 
 def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() -> None:
@@ -308,15 +209,6 @@ def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() ->
     assert not any(label.startswith("_") for label in labels)
 
 
-def test_doubtful_pixels_have_an_entry() -> None:
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
-    legend = (
-        draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses=MapAnalyses(trust=compute_trust(whole))).axes[0].get_legend()
-    )
-    assert legend is not None
-    assert "doubtful" in [text.get_text() for text in legend.get_texts()]
-
-
 def test_locked_limits_are_used_for_the_pixels_and_the_colour_bar(escape_map: EscapeMap) -> None:
     figure = draw_map_figure(escape_map, ["times"], PAPER, STYLE, times=TimeScale(2.5, 5000.0))
     np.testing.assert_array_equal(
@@ -325,3 +217,10 @@ def test_locked_limits_are_used_for_the_pixels_and_the_colour_bar(escape_map: Es
     bar = figure.axes[0].child_axes[0]
     labels = [tick.get_text() for tick in bar.get_xticklabels()]
     assert labels == ["≤ 2.5", "10", "100", "1000", "≥ 5000"]
+
+
+def test_lyapunov_orbits_have_the_colours_of_their_channels() -> None:
+    whole = compute_map(MapSpec(CASES["I"], Plane.X_Y, 0.2, (30, 30), t_max=100.0))
+    _, square = draw(whole, "times", PAPER)
+    for channel in (1, 2):
+        assert np.sum(np.all(square == on_white(PAPER.channels[channel - 1]), axis=-1)) > 50

@@ -7,7 +7,6 @@ import pytest
 
 from engine import CASES, Plane, default_window, integrate_orbit, parse_formula, start_states
 from plots.orbit_curves import (
-    MOST_LINE_POINTS,
     TRAIL,
     OrbitCurves,
     compute_orbit_curves,
@@ -29,11 +28,6 @@ def short() -> OrbitCurves:
 @pytest.fixture(scope="module")
 def long() -> OrbitCurves:
     return curves_of(2000.0)
-
-
-def test_a_short_path_is_a_line(short: OrbitCurves) -> None:
-    assert short.orbit.t.size <= MOST_LINE_POINTS
-    assert short.visits is None
 
 
 def test_a_long_path_is_a_density_image(long: OrbitCurves) -> None:
@@ -60,27 +54,6 @@ def test_an_interval_of_a_long_orbit_has_every_sample(long: OrbitCurves) -> None
     np.testing.assert_array_equal(values, long.orbit.r2[inside])
     assert part.visits is None
     assert part.path[0].size == times.size
-
-
-def test_an_interval_at_the_start_has_no_logarithm_of_zero(long: OrbitCurves) -> None:
-    part = restrict_curves(long, 0.0, 10.0)
-    assert part.sali.line[0][0] > 0.0
-    assert part.exponent.line[0][0] > 0.0
-    assert part.r2.line[0][0] > 0.0
-
-
-def test_an_interval_after_the_end_is_empty(short: OrbitCurves) -> None:
-    part = restrict_curves(short, 1e6, 2e6)
-    assert [times.size for times in (part.sali.line[0], part.exponent.line[0], part.r2.line[0], part.path[0])] == [0, 0, 0, 0]
-
-
-def test_an_interval_can_be_chosen_within_another(long: OrbitCurves) -> None:
-    twice = restrict_curves(restrict_curves(long, 100.0, 900.0), 500.0, 1500.0)
-    assert twice.part == restrict_curves(long, 500.0, 1500.0).part
-
-
-def test_the_section_has_a_point_for_each_crossing(short: OrbitCurves) -> None:
-    assert short.section.shape == (short.orbit.crossings, 2)
 
 
 @pytest.mark.parametrize("t", [-1.0, 0.0, 3.3, 150.0, 1e9])

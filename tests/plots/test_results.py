@@ -4,7 +4,6 @@ import base64
 import functools
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from io import BytesIO
 
 import numpy as np
@@ -103,11 +102,6 @@ class TestEveryResult:
         assert len(example(name).to_holoviews()) > 0
 
 
-@pytest.mark.parametrize(("name", "abscissa"), [("orbits", "orbit"), ("manifolds", "point")])
-def test_holoviews_curves_are_against_the_rows_or_the_first_column(name: str, abscissa: str) -> None:
-    assert {str(curve.kdims[0]) for curve in example(name).to_holoviews()} == {abscissa}
-
-
 @pytest.mark.parametrize("name", PICTURELESS)
 def test_result_without_a_picture_shows_its_sentence_and_its_numbers(name: str) -> None:
     result = PICTURELESS[name]()
@@ -144,22 +138,6 @@ def test_paths_have_the_colours_of_their_exits() -> None:
     assert len(legend.get_texts()) == len(drawn)
 
 
-@pytest.mark.parametrize("show", ["path", "sali", "r2"])
-def test_each_picture_of_an_orbit_is_drawn(show: str) -> None:
-    figure = Figure()
-    integrate_orbit(POTENTIAL, STATE, t_max=20.0).plot(figure.subplots(), show=show)
-    drawn = [line for axes in (*figure.axes, *figure.axes[0].child_axes) for line in (*axes.lines, *axes.collections)]
-    assert drawn
-
-
-def test_notebook_shows_words_instead_of_codes_and_a_legend() -> None:
-    assert "<th>fate</th><td>bounded</td>" in integrate_orbit(POTENTIAL, STATE, t_max=20.0)._repr_html_()
-    axes = compute_map(SPEC).plot(Figure().subplots())
-    legend = axes.child_axes[0].get_legend()
-    assert legend is not None
-    assert [text.get_text() for text in legend.get_texts()][:4] == [f"channel {k}" for k in (1, 2, 3, 4)]
-
-
 def test_invalid_options_are_named() -> None:
     axes = Figure().subplots()
     with pytest.raises(ValueError, match="picture='basin'"):
@@ -168,9 +146,3 @@ def test_invalid_options_are_named() -> None:
         integrate_orbit(POTENTIAL, STATE, t_max=20.0).plot(axes, show="p")
     with pytest.raises(ValueError, match="palette='blue'"):
         POTENTIAL.plot(axes, palette="blue")
-
-
-def test_orbit_without_potential_has_numbers_only() -> None:
-    orbit = integrate_orbit(POTENTIAL, STATE, t_max=20.0)
-    bare = replace(orbit, potential=None)
-    assert "<img" not in bare._repr_html_()

@@ -6,17 +6,15 @@ from collections.abc import Callable
 
 import pytest
 
-from app.runtime.process_state import ProcessState, process_state, start_process_state
+from app.runtime.process_state import ProcessState, process_state
 from app.runtime.settings import Settings
 
 
-def test_a_started_state_is_that_of_the_process_and_cannot_be_started_again(start_state: Callable[..., ProcessState]) -> None:
+def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., ProcessState]) -> None:
     state = start_state(cache_bytes=1000, most_orbits=2000, threads=3)
     assert process_state() is state
     stats = state.jobs.stats()
     assert (stats.cache_limit, stats.orbits_limit, stats.threads) == (1000, 2000, 3)
-    with pytest.raises(RuntimeError, match="already been started"):
-        start_process_state(Settings())
 
 
 def test_delays_of_the_loop_count_and_pause_the_background() -> None:

@@ -7,13 +7,23 @@ import re
 import pytest
 
 from app.state.help_texts import HELP_TEXTS, title_with_help
-from app.views.analysis.curves import TITLES as CURVES
 from app.views.maps.map_plots import MAPS
 from app.views.orbits.orbit_plots import TITLES as ORBITS
+from plots.sweep_panels import CURVE_PANELS
 
 
 def test_every_picture_plot_and_measure_has_a_help_text() -> None:
-    plots = {*ORBITS, "separation", "histogram", "probabilities", "uncertainty", "survival", "watch", *CURVES}
+    plots = {
+        *ORBITS,
+        "separation",
+        "histogram",
+        "probabilities",
+        "uncertainty",
+        "survival",
+        "watch",
+        "shares",
+        *(panel.name for panel in CURVE_PANELS),
+    }
     assert {"well", *MAPS} | plots <= set(HELP_TEXTS)
 
 

@@ -17,14 +17,10 @@ AWAY_FROM_CENTRES, PAST_A_CENTRE = 1e-11, 1e-9
 
 # Energies at which most orbits stay.
 ENERGIES = [
-    ("Copenhagen", -2.1),
     ("Copenhagen", -1.6),
     ("Earth-Moon", -1.12),
-    ("Hill", -2.2),
     ("Hill", -2.1),
-    ("Star cluster", -2.0),
     ("Star cluster", -1.6),
-    ("Barred galaxy", -3300.0),
     ("Barred galaxy", -3200.0),
     ("Logarithmic bar", -0.6),
     ("Two Yukawa centres", -0.5),
@@ -54,7 +50,7 @@ def test_energy_is_held_over_ten_thousand_units_of_time(name: str, energy: float
 STAR = parse_formula("−1/√((x − 1)² + y²); centre the star (1, 0) 0.001; escape 10")
 
 
-@pytest.mark.parametrize("apastron", np.linspace(0.1, 0.3, 5))
+@pytest.mark.parametrize("apastron", [0.1, 0.3])
 def test_a_body_away_from_the_origin_costs_no_digits(apastron: float) -> None:
     periastron = 0.002
     start = np.array([[1.0 + apastron, 0.0, 0.0, np.sqrt(2.0 * periastron / (apastron * (apastron + periastron)))]])

@@ -35,29 +35,11 @@ def test_points_agree_with_scipy(states: np.ndarray) -> None:
     np.testing.assert_allclose(found_points, expected[:5], atol=1e-9)
 
 
-def test_starting_from_a_point_gives_the_following_points(states: np.ndarray) -> None:
-    points = find_section_points(POTENTIAL, states, 4, 100.0)
-    again = start_states(POTENTIAL, Plane.X_PX, ENERGY, *points[:, 0].T)
-    np.testing.assert_allclose(find_section_points(POTENTIAL, again, 3, 100.0), points[:, 1:], atol=1e-7)
-
-
-def test_points_after_t_max_are_nan(states: np.ndarray) -> None:
-    points = find_section_points(POTENTIAL, states, 50, 30.0)
-    found = np.isfinite(points).all(axis=2)
-    assert found[:, 0].all()
-    assert not found[:, -1].any()
-    assert np.all(np.diff(found.astype(int), axis=1) <= 0)
-
-
 def test_the_executor_does_not_affect_the_result(states: np.ndarray) -> None:
     with ThreadPoolExecutor(3) as pool:
         found_points = find_section_points(POTENTIAL, states, 3, 60.0, execution=Execution(pool))
     np.testing.assert_array_equal(found_points, find_section_points(POTENTIAL, states, 3, 60.0))
     np.testing.assert_array_equal(found_points[-1:], find_section_points(POTENTIAL, states[-1:], 3, 60.0))
-
-
-def test_an_empty_list_has_no_points() -> None:
-    assert find_section_points(POTENTIAL, np.empty((0, 4)), 3, 60.0).shape == (0, 3, 2)
 
 
 def test_cancelled_points_are_nan(states: np.ndarray) -> None:

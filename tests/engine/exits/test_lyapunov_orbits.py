@@ -11,21 +11,15 @@ from engine.taylor.kernels.events import REACH, exit_distance
 from tests.peers.dop853 import equations
 
 ENERGIES = [
-    *(("I", h) for h in (0.1251, 0.13, 0.25, 0.5)),
-    *(("II", h) for h in (0.1667, 0.3, 0.5)),
-    *(("III", h) for h in (0.2501, 0.26, 0.6, 1.0)),
+    *(("I", h) for h in (0.1251, 0.5)),
+    *(("II", h) for h in (0.1667, 0.5)),
+    *(("III", h) for h in (0.2501, 1.0)),
 ]
 ESCAPE_ENERGY = {"I": 1 / 8, "II": 1 / 6, "III": 1 / 4}
 # ω_q² is the positive eigenvalue of the saddle's Hessian: the frequency of oscillations across the channel.
 OMEGA = {"I": np.sqrt(2), "II": np.sqrt(3), "III": np.sqrt(2)}
 each_energy = pytest.mark.parametrize(("name", "energy"), ENERGIES)
 each_case = pytest.mark.parametrize("name", CASES)
-
-
-def propagated(name: str, orbit: LyapunovOrbit, duration: float) -> np.ndarray:
-    """SciPy's state at time `duration` of an orbit that starts at rest at the first point of the Lyapunov orbit."""
-    start = np.array([orbit.x[0], orbit.y[0], 0.0, 0.0])
-    return solve_ivp(equations(CASES[name]), (0.0, duration), start, method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
 
 
 def assert_same_path(x: np.ndarray, y: np.ndarray, orbit: LyapunovOrbit, atol: float) -> None:
@@ -37,39 +31,15 @@ def assert_same_path(x: np.ndarray, y: np.ndarray, orbit: LyapunovOrbit, atol: f
 
 
 @each_energy
-def test_one_orbit_per_channel_in_order(name: str, energy: float) -> None:
-    assert [o.channel for o in find_lyapunov_orbits(CASES[name], energy)] == list(range(1, CASES[name].channels + 1))
-
-
-@each_energy
-def test_ends_lie_on_the_zero_velocity_curve(name: str, energy: float) -> None:
-    for orbit in find_lyapunov_orbits(CASES[name], energy):
-        ends = CASES[name].value(orbit.x[[0, 100, 200]], orbit.y[[0, 100, 200]])
-        np.testing.assert_allclose(ends, energy, rtol=0, atol=1e-12)
-
-
-@each_energy
-def test_half_a_period_leads_to_rest_at_the_other_end(name: str, energy: float) -> None:
-    for orbit in find_lyapunov_orbits(CASES[name], energy):
-        np.testing.assert_allclose(
-            propagated(name, orbit, 0.5 * orbit.period), [orbit.x[100], orbit.y[100], 0, 0], rtol=0, atol=1e-11
-        )
-
-
-@each_energy
-def test_orbit_is_periodic(name: str, energy: float) -> None:
-    # Over one period errors grow by the unstable multiplier, 40 to 90 at these energies: from 1e-13 to 1e-11.
-    for orbit in find_lyapunov_orbits(CASES[name], energy):
-        np.testing.assert_allclose(propagated(name, orbit, orbit.period), [orbit.x[0], orbit.y[0], 0, 0], rtol=0, atol=1e-10)
-
-
-@each_energy
-def test_path_agrees_with_scipy(name: str, energy: float) -> None:
-    orbit = find_lyapunov_orbits(CASES[name], energy)[0]
-    times = np.linspace(0, orbit.period, 201)
-    start = [orbit.x[0], orbit.y[0], 0.0, 0.0]
-    path = solve_ivp(equations(CASES[name]), (0, orbit.period), start, "DOP853", rtol=1e-13, atol=1e-15, t_eval=times).y
-    np.testing.assert_allclose(path[:2], [orbit.x, orbit.y], rtol=0, atol=1e-10)
+def test_each_channel_in_order_has_an_orbit_that_agrees_with_scipy(name: str, energy: float) -> None:
+    orbits = find_lyapunov_orbits(CASES[name], energy)
+    assert [orbit.channel for orbit in orbits] == list(range(1, CASES[name].channels + 1))
+    for orbit in orbits:
+        np.testing.assert_allclose(CASES[name].value(orbit.x[[0, 100, 200]], orbit.y[[0, 100, 200]]), energy, rtol=0, atol=1e-12)
+        # Over one period errors grow by the unstable multiplier, 40 to 90 at these energies: from 1e-13 to 1e-11.
+        times, start = np.linspace(0, orbit.period, 201), [orbit.x[0], orbit.y[0], 0.0, 0.0]
+        path = solve_ivp(equations(CASES[name]), (0, orbit.period), start, "DOP853", rtol=1e-13, atol=1e-15, t_eval=times).y
+        np.testing.assert_allclose(path[:2], [orbit.x, orbit.y], rtol=0, atol=1e-10)
 
 
 @each_case
@@ -95,56 +65,29 @@ def rotated(x: np.ndarray, y: np.ndarray, angle: float) -> tuple[np.ndarray, np.
     return np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
 
 
-@pytest.mark.parametrize("energy", [0.1251, 0.25, 0.5])
-def test_case_1_orbits_are_mirror_images(energy: float) -> None:
-    upper, lower = find_lyapunov_orbits(CASES["I"], energy)
-    assert_same_path(lower.x, -lower.y, upper, 1e-11)
-
-
-@pytest.mark.parametrize("energy", [0.1667, 0.3, 0.5])
 @pytest.mark.parametrize("channel", [2, 3])
-def test_case_2_orbits_are_rotated_by_120_degrees(energy: float, channel: int) -> None:
-    orbits = find_lyapunov_orbits(CASES["II"], energy)
+def test_case_2_orbits_are_rotated_by_120_degrees(channel: int) -> None:
+    orbits = find_lyapunov_orbits(CASES["II"], 0.5)
     path = rotated(orbits[0].x, orbits[0].y, (channel - 1) * 2 * np.pi / 3)
     assert_same_path(*path, orbits[channel - 1], 1e-11)
 
 
-@pytest.mark.parametrize("energy", [0.2501, 0.6, 1.0])
 @pytest.mark.parametrize(("channel", "x_sign", "y_sign"), [(2, -1, 1), (3, -1, -1), (4, 1, -1)])
-def test_case_3_orbits_are_mirror_images(energy: float, channel: int, x_sign: int, y_sign: int) -> None:
-    orbits = find_lyapunov_orbits(CASES["III"], energy)
+def test_case_3_orbits_are_mirror_images(channel: int, x_sign: int, y_sign: int) -> None:
+    orbits = find_lyapunov_orbits(CASES["III"], 1.0)
     assert_same_path(x_sign * orbits[0].x, y_sign * orbits[0].y, orbits[channel - 1], 1e-11)
 
 
-def test_case_3_radii_at_026() -> None:
-    # The paper states R² = 1.26; the computed orbits have 1.004 to 1.016.
-    r2 = np.concatenate([o.x**2 + o.y**2 for o in find_lyapunov_orbits(CASES["III"], 0.26)])
-    assert (r2.min(), r2.max()) == pytest.approx((1.004, 1.016), abs=5e-4)
-
-
 @each_case
-@pytest.mark.parametrize("below", [0.0, 1e-6, 0.1, 5.0])
+@pytest.mark.parametrize("below", [0.0, 0.1])
 def test_no_orbits_at_or_below_the_escape_energy(name: str, below: float) -> None:
     assert find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] - below) == ()
 
 
-@pytest.mark.parametrize("energy", [np.nan, np.inf, -np.inf])
-def test_non_finite_energy_is_refused(energy: float) -> None:
+@pytest.mark.parametrize("energy", [np.nan, 50.0])
+def test_an_energy_without_exits_is_refused(energy: float) -> None:
     with pytest.raises(ValueError, match=f"energy={energy}"):
         find_lyapunov_orbits(CASES["I"], energy)
-
-
-@pytest.mark.parametrize(("name", "energy"), [("I", 50.0), ("III", 10.0)])
-def test_too_high_energy_is_refused(name: str, energy: float) -> None:
-    with pytest.raises(ValueError, match=f"energy={energy}"):
-        find_lyapunov_orbits(CASES[name], energy)
-
-
-@each_case
-def test_arrays_are_read_only(name: str) -> None:
-    orbit = find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] + 0.01)[0]
-    with pytest.raises(ValueError, match="read-only"):
-        orbit.x[0] = 0.0
 
 
 @each_energy
@@ -155,8 +98,8 @@ def test_gates_lie_inside_every_exit(name: str, energy: float) -> None:
         assert np.min(a * orbit.x + b * orbit.y) > c
 
 
-@pytest.mark.parametrize("epsilon", [1 / 64, 32.0])
-def test_orbits_scale_with_the_well(epsilon: float) -> None:
+def test_orbits_scale_with_the_well() -> None:
+    epsilon = 1 / 64
     # For a cubic V1, V with strength ε at (x, y) is ε⁻² times V with strength 1 at (εx, εy); scaling by powers of 2 is exact.
     large = find_lyapunov_orbits(CASES["II"].with_parameters(epsilon=epsilon), 0.2 / epsilon**2)
     for orbit, usual in zip(large, find_lyapunov_orbits(CASES["II"], 0.2), strict=True):
@@ -175,11 +118,6 @@ def test_exits_of_a_separable_well_are_straight() -> None:
     # On x + y = −1 only x − y changes; it oscillates between its turning points.
     orbit = next(o for o in find_lyapunov_orbits(POTENTIALS["Separable"], 0.12) if o.y.mean() < 0)
     np.testing.assert_allclose(orbit.x + orbit.y, -1.0, atol=1e-12)
-
-
-def test_no_gates_without_channels() -> None:
-    harmonic = Potential("harmonic", ((2, 0, 0.5), (0, 2, 0.5)))
-    assert exit_gates(exit_curves(harmonic, 1.0)[None]).shape == (0, 3)
 
 
 def test_a_strongly_curved_exit_is_found_up_to_twice_the_escape_energy() -> None:

@@ -7,17 +7,16 @@ import pytest
 from scipy.optimize import brentq
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
-from engine.exits.lyapunov_orbits import exit_curve_over_chord
 from engine.exits.periodic_orbits import PeriodicOrbit, find_periodic_orbit
 from engine.potentials.known_potentials import POTENTIALS
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 from tests.engine.exits.test_lyapunov_orbits import ENERGIES
-from tests.fuzz.test_random_wells import random_well
+from tests.peers.random_systems import random_well
 
 WELLS = [
     *((CASES[name], h) for name, h in ENERGIES),
     *((POTENTIALS[name], factor * POTENTIALS[name].escape_energy) for name in ("C5", "Barbanis") for factor in (1.1, 2.0)),
-    *((random_well(seed), factor * random_well(seed).escape_energy) for seed in (4, 6, 9, 11) for factor in (1.02, 2.0)),
+    *((random_well(seed), factor * random_well(seed).escape_energy) for seed in (4, 9) for factor in (1.02, 2.0)),
 ]
 each_well = pytest.mark.parametrize(("potential", "energy"), WELLS)
 # Channel 1 is beyond the smaller body, L2, channel 2 is L1.
@@ -104,8 +103,8 @@ def test_orbit_of_oterma_is_that_of_a_computer_assisted_proof() -> None:
 
 
 ROTATING = [
-    *((None, HILL_SADDLE + above, L2) for above in (1e-6, 0.05, 0.5, 1.5)),
-    *((EARTH_MOON, at_jacobi_constant(jacobi), channel) for jacobi in (3.17, 3.1, 2.95) for channel in (L1, L2)),
+    *((None, HILL_SADDLE + above, L2) for above in (1e-6, 1.5)),
+    *((EARTH_MOON, at_jacobi_constant(jacobi), channel) for jacobi in (3.17, 2.95) for channel in (L1, L2)),
 ]
 each_rotating = pytest.mark.parametrize(("mu", "energy", "channel"), ROTATING)
 
@@ -115,40 +114,19 @@ def system(mu: float | None) -> Potential:
 
 
 @each_rotating
-def test_orbits_return_to_their_start_when_integrated_by_heyoka(mu: float | None, energy: float, channel: int) -> None:
+def test_orbits_are_periodic_when_integrated_by_heyoka(mu: float | None, energy: float, channel: int) -> None:
     period, path = path_of(system(mu), energy, channel)
     integrated = integrate(mu, path[:, 0], np.linspace(0.0, period, 201))
     np.testing.assert_allclose(integrated[-1], path[:, 0], rtol=0, atol=1e-10)
-    np.testing.assert_allclose(integrated, path.T, rtol=0, atol=1e-10)
-
-
-@each_rotating
-def test_the_jacobi_integral_is_the_energy_all_along_the_orbit(mu: float | None, energy: float, channel: int) -> None:
-    _, path = path_of(system(mu), energy, channel)
-    np.testing.assert_allclose(system(mu).energy(path.T), energy, rtol=0, atol=1e-12)
-
-
-@each_rotating
-def test_orbits_of_symmetric_systems_cross_the_axis_at_right_angles(mu: float | None, energy: float, channel: int) -> None:
-    period, path = path_of(system(mu), energy, channel)
-    # The velocity at right angles to the axis makes an orbit of a symmetric system symmetric.
-    crossings = crossings_of(mu, period, path)
-    assert crossings.shape == (4, 2)
-    np.testing.assert_allclose(crossings[[1, 2]], 0.0, rtol=0, atol=1e-11)
-    assert path[1].max() == pytest.approx(-path[1].min(), rel=1e-3)
-
-
-@each_rotating
-def test_multipliers_are_a_reciprocal_pair_and_a_pair_at_1(mu: float | None, energy: float, channel: int) -> None:
     multipliers = orbit_of(system(mu), energy, channel).multipliers
     assert abs(np.prod(multipliers) - 1.0) < 1e-8
     assert np.abs(multipliers[[1, 2]] - 1.0).max() < 1e-5
-    assert multipliers[0].real > 10.0
+    np.testing.assert_allclose(integrated, path.T, rtol=0, atol=1e-10)
 
 
-@pytest.mark.parametrize("above", [1e-3, 1e-5, 1e-7])
 @pytest.mark.parametrize("channel", [1, 2])
-def test_the_period_converges_to_that_of_the_linear_centre(above: float, channel: int) -> None:
+def test_the_period_converges_to_that_of_the_linear_centre(channel: int) -> None:
+    above = 1e-6
     # In Hill's problem Φ_xx = −9 and Φ_yy = 3 at the saddles, so that s⁴ − 2s² − 27 = 0 and ν² = 2√7 − 1.
     period, _ = path_of(hill(), HILL_SADDLE + above, channel)
     assert period == pytest.approx(2.0 * np.pi / np.sqrt(2.0 * np.sqrt(7.0) - 1.0), abs=above)
@@ -157,11 +135,6 @@ def test_the_period_converges_to_that_of_the_linear_centre(above: float, channel
 def test_an_orbit_in_a_frame_that_rotates_the_other_way_is_the_mirror_image() -> None:
     forward, backward = (path_of(potential, -2.0, 1)[1] for potential in (hill(), hill().reversed_in_time))
     np.testing.assert_allclose(backward[:, ::-1], forward * np.array([1.0, 1.0, -1.0, -1.0])[:, None], atol=1e-11)
-
-
-def test_no_orbit_is_found_where_the_family_cannot_be_followed() -> None:
-    well = three_body(EARTH_MOON).in_well_units
-    assert find_periodic_orbit(well, (well.well.saddle_energies[0] + 20.0), L2) is None
 
 
 def first_orbit(potential: Potential, energy: float) -> LyapunovOrbit:
@@ -175,15 +148,3 @@ def test_multipliers_of_a_lyapunov_orbit_are_those_of_the_same_orbit_by_continua
     expected = orbit_of(potential, energy, 1).multipliers
     assert found[0] == pytest.approx(expected[0], rel=1e-7)
     assert abs(np.prod(found) - 1.0) < 1e-8
-
-
-def test_plots_show_the_whole_closed_path_of_an_orbit_in_a_rotating_frame() -> None:
-    orbit = first_orbit(hill(), -2.0)
-    assert orbit.half_path.shape == (201, 2)
-    np.testing.assert_allclose(orbit.half_path[0], orbit.half_path[-1], atol=1e-12)
-
-
-def test_the_exit_over_a_chord_in_a_rotating_frame_is_the_line() -> None:
-    well = hill().in_well_units
-    orbit = first_orbit(well, -2.0 / hill().units.energy)
-    assert exit_curve_over_chord(orbit) is orbit.curve

@@ -11,33 +11,22 @@ from engine import POTENTIALS, classify_orbits, find_lyapunov_orbits, parse_form
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.exits.exit_shapes import line_points
 from engine.exits.exit_tables import LARGEST_ERROR, tabulate_exits
-from engine.exits.periodic_orbits import monodromy_matrix
 from engine.potentials.outcomes import Centre
-from engine.taylor.kernels.events import exit_distance, position_across
+from engine.taylor.kernels.events import exit_distance
 from tests.engine.exits.rotating_systems import EARTH_MOON, hill, integrate, three_body
 
-HILL_ENERGIES = (-2.16, -2.0, -1.8, -1.5)
+HILL_ENERGIES = (-2.16, -1.5)
 each_energy = pytest.mark.parametrize("energy", HILL_ENERGIES)
 
 
 @each_energy
-def test_the_exit_lies_just_outside_the_orbit(energy: float) -> None:
+def test_the_exit_lies_just_outside_the_orbit_and_ends_on_the_zero_velocity_curve(energy: float) -> None:
     for orbit in find_lyapunov_orbits(hill(), energy):
         distances = [exit_distance(x, y, orbit.curve) for x, y in zip(orbit.x, orbit.y, strict=True)]
         assert -0.03 * np.ptp(distances) < max(distances) < 0.0
-
-
-@each_energy
-def test_the_exit_ends_on_the_zero_velocity_curve(energy: float) -> None:
-    for orbit in find_lyapunov_orbits(hill(), energy):
         value = hill().value(*orbit.exit_path.T)
         np.testing.assert_allclose(value[[0, -1]], energy, rtol=0, atol=1e-12)
         assert np.all(value[1:-1] < energy)
-
-
-@each_energy
-def test_the_exit_is_wider_than_the_orbit_and_crosses_it_nowhere(energy: float) -> None:
-    for orbit in find_lyapunov_orbits(hill(), energy):
         low, high = sorted(orbit.exit_path[[0, -1], 1])
         assert low < orbit.y.min() < orbit.y.max() < high
 
@@ -70,13 +59,8 @@ def test_the_line_beyond_a_neck_that_has_opened_is_refused() -> None:
         find_lyapunov_orbits(three_body(EARTH_MOON), -1.51)
 
 
-def test_energies_above_the_maxima_between_exits_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"channels 1\+2 are one exit above .* in a rotating frame"):
-        find_lyapunov_orbits(three_body(EARTH_MOON), -1.45)
-
-
-@pytest.mark.parametrize("factor", [0.125, 2.0])
-def test_orbits_and_lines_have_the_units_of_the_potential(factor: float) -> None:
+def test_orbits_and_lines_have_the_units_of_the_potential() -> None:
+    factor = 0.125
     # x → L x and V → L² V leave times unchanged; the attraction is L³ times as strong.
     scaled = parse_formula(f"-{factor**3!r}/r - x² + ½y²").in_rotating_frame(1.0)
     for orbit, usual in zip(find_lyapunov_orbits(scaled, -2.0 * factor**2), find_lyapunov_orbits(hill(), -2.0), strict=True):
@@ -84,23 +68,6 @@ def test_orbits_and_lines_have_the_units_of_the_potential(factor: float) -> None
         np.testing.assert_allclose(orbit.velocity, factor * usual.velocity, atol=1e-12)
         np.testing.assert_allclose(orbit.exit_path, factor * usual.exit_path, atol=1e-12)
         assert orbit.period == pytest.approx(usual.period, rel=1e-12)
-
-
-@each_energy
-def test_the_outer_unstable_orbits_cross_the_line_and_the_inner_ones_never_do(energy: float) -> None:
-    orbit = find_lyapunov_orbits(hill(), energy)[0]
-    units = hill().units
-    start = np.array([orbit.x[0], orbit.y[0], *orbit.velocity])
-    matrix = monodromy_matrix(hill().in_well_units, start / units.state, orbit.period / units.time)
-    values, vectors = np.linalg.eig(matrix)
-    unstable = vectors[:, np.argmax(np.abs(values))].real * units.state
-    unstable *= np.sign(unstable[0]) * 1e-4
-    times = np.linspace(0.0, 2.0 * orbit.period, 2001)
-    outer, inner = (integrate(None, start + sign * unstable, times) for sign in (1.0, -1.0))
-    assert exit_distance(*outer[-1, :2], orbit.curve) > 0.0
-    in_neck = [place for place in inner[:, :2] if abs(position_across(*place, orbit.curve)) < 1.0]
-    assert max(exit_distance(x, y, orbit.curve) for x, y in in_neck) < 0.0
-    assert inner[:, 0].min() < 0.5 * orbit.x.min()
 
 
 HILL_WITH_CENTRE = replace(hill(), centres=(Centre(0.0, 0.0, 0.01),))
@@ -129,7 +96,7 @@ def test_escape_times_are_those_of_the_crossing_of_the_line() -> None:
         assert before < 0.0 < after
 
 
-@pytest.mark.parametrize("energy", HILL_ENERGIES[1:])
+@pytest.mark.parametrize("energy", [-2.0, -1.8, -1.5])
 def test_orbits_that_have_crossed_the_line_do_not_return_to_the_well(energy: float) -> None:
     orbit = find_lyapunov_orbits(HILL_WITH_CENTRE, energy)[0]
     starts, line = random_starts(energy, 1000), np.abs(orbit.exit_path[:, 0]).max()
@@ -147,7 +114,13 @@ def test_orbits_that_have_crossed_the_line_do_not_return_to_the_well(energy: flo
 # As in the table of docs/exits.md.
 @pytest.mark.parametrize(
     ("name", "highest"),
-    [("Hill", -0.944), ("Earth-Moon", -1.041), ("Star cluster", -0.837), ("Barred galaxy", -3009.0), ("Logarithmic bar", -0.308)],
+    [
+        ("Hill", -0.944),
+        pytest.param("Earth-Moon", -1.041, marks=pytest.mark.slow),
+        pytest.param("Star cluster", -0.837, marks=pytest.mark.slow),
+        pytest.param("Barred galaxy", -3009.0, marks=pytest.mark.slow),
+        pytest.param("Logarithmic bar", -0.308, marks=pytest.mark.slow),
+    ],
 )
 def test_exits_end_where_the_document_says(name: str, highest: float) -> None:
     step = 1e-3 * abs(highest)

@@ -18,10 +18,6 @@ def definition_of(text: str) -> Expression:
     return definition
 
 
-def gradient_graph(text: str) -> Graph:
-    return make_graph(tuple(derivative(definition_of(text), axis) for axis in (0, 1)))[0]
-
-
 def curvature_graph(text: str) -> Graph:
     slope = derivative(definition_of(text), 0)
     return make_graph((slope, derivative(slope, 0)))[0]
@@ -29,18 +25,6 @@ def curvature_graph(text: str) -> Graph:
 
 def nodes_of(graph: Graph, kind: str) -> list[Node]:
     return [node for node in graph.nodes if node.kind == kind]
-
-
-def test_a_factor_is_multiplied_by_the_sum_of_what_it_has() -> None:
-    graph = gradient_graph("−1/√(r² + 1) − 2/√(r² + 4) − 3/√(r² + 9)")
-    # x², y², and x and y times one sum.
-    assert len(nodes_of(graph, "product")) == 4
-
-
-def test_sums_that_differ_in_their_constants_have_a_node_in_common() -> None:
-    shifts = nodes_of(gradient_graph("−1/√(r² + 1) − 2/√(r² + 4)"), "shift")
-    assert len(shifts) == 2
-    assert shifts[0].operands == shifts[1].operands
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,6 @@ from engine.potentials.formulas.formula_parser import parse_formula
 
 FORMULAS = [
     "x² − 3x y + y³ + 0.1exp(y)",
-    "x⁵ y⁴ − x³ + exp(x)",
-    "exp(x y) − 3exp(−x²)",
     "log(x + y + 0.5) + x",
     "√(x² + y + 1) + (y + 2)^(−1.5)",
     "1/(x − y) + (x + 0.3)^−3",

@@ -9,7 +9,6 @@ from engine.expressions.nodes import (
     X,
     Y,
     apply_function,
-    as_number,
     as_terms,
     from_terms,
     linear_combination,
@@ -48,14 +47,6 @@ WAVE = apply_function("sin", multiply(X, Y))
 def test_equal_formulas_are_equal_and_have_equal_hashes(one: Expression, other: Expression) -> None:
     assert one == other
     assert hash(one) == hash(other)
-
-
-def test_the_root_of_a_square_is_not_its_base() -> None:
-    assert power(power(X, 2.0), 0.5) != X
-
-
-def test_terms_that_cancel_leave_a_number() -> None:
-    assert as_number(linear_combination([(1.0, WAVE), (-1.0, WAVE), (2.0, number(1.5))])) == 3.0
 
 
 def test_polynomials_are_terms_and_back() -> None:

@@ -77,16 +77,7 @@ def test_orbits_below_all_saddles_are_closed_unless_they_can_collide() -> None:
     assert CASES["I"].well.is_closed_at(np.array([0.1, 0.2])).tolist() == [True, False]
 
 
-def test_a_colliding_orbit_below_the_saddles_is_not_marked_bounded() -> None:
-    start = (0.1, 0.0, 0.3, 0.0)
-    assert integrate_orbit(WITH_CENTRE, start, t_max=100.0).fate == WITH_CENTRE.channels + 1
-
-
 def test_regularity_of_maps_refuses_centres() -> None:
     escapes = compute_map(MapSpec(WITH_CENTRE, Plane.X_PX, 0.12, (4, 4), t_max=100.0))
     with pytest.raises(ValueError, match="has centres; regular and chaotic orbits of a map are computed with fixed steps"):
         compute_regularity(escapes)
-
-
-def test_there_are_no_birkhoff_digits_around_centres() -> None:
-    assert compute_birkhoff_digits(WITH_CENTRE, (0.0, 0.1, 0.0, 0.2), t_max=3000.0).digits.size == 0

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import time
 
-import pytest
-
 from engine import CASES, MapSpec, Plane, integrate_orbit
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.map_jobs import map_job
-from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
+from tests.engine.jobs.inbox import Inbox, wait_until_idle
 
 SLOW = [MapSpec(CASES["III"], Plane.X_PX, 0.26, (128, 128), t_max=t_max) for t_max in (1e6, 2e6, 3e6)]
 ORBIT = Job(integrate_orbit, (CASES["I"], (0.1, 0.0, 0.05, 0.6), 10.0), queue=Queue.LONG_CALL)
@@ -26,16 +24,6 @@ def test_request_above_the_limit_is_refused() -> None:
     client.close()
 
 
-def test_finished_request_does_not_count() -> None:
-    jobs = Jobs()
-    client, inboxes = JobClient(jobs, most_requests=1), [Inbox(), Inbox()]
-    for inbox in inboxes:
-        client.request(ORBIT, inbox.result, inbox.error)
-        assert inbox.first.wait(20)
-        wait_until_idle(jobs)
-    assert not inboxes[1].errors
-
-
 def test_close_stops_the_jobs_that_no_other_client_shares() -> None:
     jobs = Jobs()
     client, other, inbox = JobClient(jobs), JobClient(jobs), Inbox()
@@ -47,11 +35,6 @@ def test_close_stops_the_jobs_that_no_other_client_shares() -> None:
     assert jobs.in_flight == 1
     other.close()
     wait_until_idle(jobs)
-
-
-def test_limit_below_one_is_refused() -> None:
-    with pytest.raises(ValueError, match="most_requests=0"):
-        JobClient(Jobs(), most_requests=0)
 
 
 def test_first_frame_does_not_wait_for_the_maps_of_other_clients() -> None:
@@ -69,17 +52,3 @@ def test_first_frame_does_not_wait_for_the_maps_of_other_clients() -> None:
     for client in (early, late):
         client.close()
     wait_until_idle(jobs)
-
-
-def test_stats_count_jobs_and_cache() -> None:
-    jobs, inbox = Jobs(), Inbox()
-    client = JobClient(jobs)
-    client.request(ORBIT, inbox.result, inbox.error)
-    client.request(map_job(SLOW[0]), inbox.result, inbox.error)
-    assert jobs.stats().in_flight >= 1
-    client.close()
-    wait_until_idle(jobs)
-    wait_until(lambda: jobs.stats().done + jobs.stats().cancelled == 2)
-    stats = jobs.stats()
-    assert stats.failed == 0
-    assert 0 < stats.cache_bytes <= stats.cache_limit

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from engine.execution import count_workers
 from engine.jobs import scheduler as scheduler_module
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from tests.app.clock import Clock
@@ -55,26 +54,6 @@ def test_clients_are_served_round_robin() -> None:
     assert recorder.run(*first, *second) == ["a1", "b1", "a2", "b2", "a3"]
 
 
-def test_executors_of_one_client_share_its_turn() -> None:
-    recorder = Recorder()
-    calls = [future for name in ("a1", "a2", "b1") for future in recorder.submit(recorder.executor(name[0]), name)]
-    assert recorder.run(*calls) == ["a1", "b1", "a2"]
-
-
-def test_first_frames_run_first() -> None:
-    recorder = Recorder()
-    others = recorder.submit(recorder.executor("a"), "a1", "a2")
-    frames = recorder.submit(recorder.executor("b", first_frame), "b1", "b2")
-    assert recorder.run(*others, *frames) == ["b1", "b2", "a1", "a2"]
-
-
-def test_long_calls_run_before_background_calls() -> None:
-    recorder = Recorder()
-    background = recorder.submit(recorder.executor("a"), "a1", "a2")
-    orbits = recorder.submit(recorder.executor("b", long_call), "b1")
-    assert recorder.run(*background, *orbits) == ["b1", "a1", "a2"]
-
-
 def test_priority_of_queued_calls_may_change() -> None:
     recorder, shown = Recorder(), threading.Event()
     executor = recorder.executor("b", lambda: Priority.BACKGROUND if shown.is_set() else Priority.FIRST_FRAME)
@@ -94,12 +73,6 @@ def test_long_calls_leave_one_thread_free() -> None:
     assert not wait(long_calls, SECONDS).not_done
 
 
-def test_single_thread_runs_long_calls_too() -> None:
-    recorder = Recorder()
-    long_calls = recorder.submit(recorder.executor("a", long_call), "a1", "a2")
-    assert recorder.run(*long_calls) == ["a1", "a2"]
-
-
 def test_exception_is_stored_in_the_future_and_the_pool_continues() -> None:
     recorder = Recorder()
 
@@ -112,13 +85,6 @@ def test_exception_is_stored_in_the_future_and_the_pool_continues() -> None:
         failing.result(SECONDS)
 
 
-def test_cancelled_future_is_not_run() -> None:
-    recorder = Recorder()
-    (cancelled,), others = (recorder.submit(recorder.executor("a"), name) for name in ("a1", "a2"))
-    assert cancelled.cancel()
-    assert recorder.run(*others) == ["a2"]
-
-
 def test_pending_futures_of_one_executor_can_be_cancelled() -> None:
     recorder = Recorder()
     executor = recorder.executor("a")
@@ -129,47 +95,18 @@ def test_pending_futures_of_one_executor_can_be_cancelled() -> None:
     assert recorder.run(*others) == ["a3"]
 
 
-def test_later_calls_of_a_cancelled_executor_are_cancelled() -> None:
-    recorder = Recorder()
-    recorder.scheduler.pause_background(True)
-    executor = recorder.executor("a")
-    executor.cancel_futures()
-    (later,) = recorder.submit(executor, "a1")
-    assert not wait([later], SECONDS).not_done
-    assert later.cancelled()
-
-
-def test_executor_has_the_workers_of_the_pool() -> None:
-    assert count_workers(Recorder(threads=3).executor("a")) == 3
-
-
-def test_pending_calls_are_counted() -> None:
-    recorder = Recorder()
-    calls = recorder.submit(recorder.executor("a"), "a1", "a2")
-    assert recorder.scheduler.pending_calls >= 2
-    recorder.run(*calls)
-    assert recorder.scheduler.pending_calls == 0
-
-
 def unsettled() -> Priority:
     return Priority.UNSETTLED
 
 
-def test_unsettled_calls_run_after_background_calls() -> None:
+def test_calls_run_in_the_order_of_their_priorities() -> None:
     recorder = Recorder()
-    last = recorder.submit(recorder.executor("a", unsettled), "a1", "a2")
-    background = recorder.submit(recorder.executor("b"), "b1", "b2")
-    assert recorder.run(*last, *background) == ["b1", "b2", "a1", "a2"]
-
-
-def test_unsettled_calls_are_paused_with_background_calls() -> None:
-    recorder = Recorder()
-    recorder.scheduler.pause_background(True)
-    paused = recorder.submit(recorder.executor("a", unsettled), "a1")
-    recorder.run(*recorder.submit(recorder.executor("b", first_frame), "b1"))
-    assert not paused[0].done()
-    recorder.scheduler.pause_background(False)
-    assert recorder.run(*paused) == ["b1", "a1"]
+    others = recorder.submit(recorder.executor("b", unsettled), "b1")
+    background = recorder.submit(recorder.executor("c"), "c1")
+    orbits = recorder.submit(recorder.executor("d", long_call), "d1")
+    frames = recorder.submit(recorder.executor("e", first_frame), "e1", "e2")
+    calls = (*others, *background, *orbits, *frames)
+    assert recorder.run(*calls) == ["e1", "e2", "d1", "c1", "b1"]
 
 
 def test_wait_of_first_frames_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -187,16 +124,6 @@ def test_wait_of_first_frames_is_measured(monkeypatch: pytest.MonkeyPatch) -> No
     assert recorder.scheduler.take_first_frame_wait() == 0.0
 
 
-def test_other_calls_are_no_first_frames(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = Clock()
-    monkeypatch.setattr(scheduler_module, "time", clock)
-    recorder = Recorder()
-    calls = recorder.submit(recorder.executor("a"), "a1")
-    clock.now += 3.0
-    recorder.run(*calls)
-    assert recorder.scheduler.take_first_frame_wait() == 0.0
-
-
 def test_paused_background_calls_wait_and_others_run() -> None:
     recorder = Recorder(threads=2)
     recorder.scheduler.pause_background(True)
@@ -211,16 +138,6 @@ def test_paused_background_calls_wait_and_others_run() -> None:
     assert not wait(background, 0.2).done
     recorder.scheduler.pause_background(False)
     assert not wait(background, SECONDS).not_done
-
-
-def test_calls_of_all_clients_run_after_a_pause() -> None:
-    recorder = Recorder(threads=2)
-    recorder.released.set()
-    recorder.scheduler.pause_background(True)
-    calls = [call for name in "abc" for call in recorder.submit(recorder.executor(name), *(f"{name}{n}" for n in range(50)))]
-    recorder.scheduler.pause_background(False)
-    assert not wait(calls, SECONDS).not_done
-    assert len(recorder.order) == 150
 
 
 def test_the_pool_has_no_more_tasks_than_threads() -> None:

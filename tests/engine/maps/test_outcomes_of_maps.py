@@ -16,12 +16,10 @@ from engine import (
     MapSpec,
     Plane,
     Slice,
-    SweepSpec,
     classify_orbits,
     compute_map,
     compute_origin_fates,
     compute_statistics,
-    compute_sweep,
     open_result,
     sample_starts,
 )
@@ -48,27 +46,11 @@ def test_orbits_that_end_at_a_singularity_are_counted_and_not_called_bounded(esc
     assert unresolved.numbers()["unresolved"] == escape_map.fractions()[3]
 
 
-def test_files_explain_the_code_of_a_collision(escape_map: EscapeMap) -> None:
-    assert escape_map.to_xarray()["fate"].attrs["codes"].endswith("; 3: collision with a disc")
-
-
 def test_statistics_have_a_count_for_each_outcome(escape_map: EscapeMap) -> None:
     statistics = compute_statistics(escape_map)
     assert statistics.channel_counts == tuple(int(np.sum(escape_map.fate == k)) for k in (1, 2, 3))
     assert [outcome.label for outcome in statistics.outcomes] == LABELS
     assert statistics.escaped == int(np.sum(escape_map.fate >= 1))
-
-
-def test_statistics_count_an_outcome_that_does_not_occur(escape_map: EscapeMap) -> None:
-    fate = np.where(escape_map.fate == 3, Fate.BOUNDED, escape_map.fate)
-    assert compute_statistics(replace(escape_map, fate=fate)).channel_counts[2] == 0
-
-
-def test_sweeps_have_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
-    sweep = compute_sweep(SweepSpec(DISC, Plane.X_PX, (0.19,), (40, 40), t_max=300.0, measures=("shares",)))
-    shares = escape_map.fractions()
-    np.testing.assert_allclose(sweep["share"], [[shares[k] for k in (0, 1, 2, 3)]])
-    assert "3: collision with a disc" in sweep.dataset["outcome"].attrs["codes"]
 
 
 def test_passages_are_counted_between_all_outcomes(escape_map: EscapeMap) -> None:

@@ -16,13 +16,11 @@ from engine import (
     Slice,
     System,
     Trust,
-    TrustMap,
     compute_map,
     compute_origin_fates,
     compute_regularity,
     compute_trust,
     compute_uncertainty_exponent,
-    find_divergent_start,
 )
 from engine.maps.parameter_map import find_lines
 from tests.engine.slices.test_parameter_family import THIRD_EXIT
@@ -72,14 +70,6 @@ def test_columns_are_maps_of_their_potentials() -> None:
         assert_equal_outcomes(line.of(found), ordinary_map(TURNED, FREQUENCY, float(found.x[column])))
 
 
-def test_orbits_below_the_escape_energy_of_their_potential_are_bounded(along_epsilon: EscapeMap) -> None:
-    # The escape energy of case I is 1/(8 ε²).
-    below = 0.125 / along_epsilon.ordinate**2 > 0.2
-    assert 0 < below.sum() < below.size
-    assert np.all(np.isin(along_epsilon.fate[below], (Fate.BOUNDED, Fate.FORBIDDEN)))
-    assert np.all(np.any(along_epsilon.fate[~below] > 0, axis=1))
-
-
 def test_channels_keep_their_numbers_along_the_parameter() -> None:
     spec = MapSpec(THIRD_EXIT.system.potential, Slice(C.X, THIRD_EXIT), 0.16, (16, 8), t_max=500.0)
     found = compute_map(spec)
@@ -88,14 +78,6 @@ def test_channels_keep_their_numbers_along_the_parameter() -> None:
     left = found.ordinate < -0.35
     assert np.any(found.fate[left] == 3)
     assert set(np.unique(found.fate[~left & (found.ordinate > -0.33)])) - {Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE} == {1, 2}
-
-
-def test_frames_show_fewer_orbits_undecided_and_end_with_the_map(along_epsilon: EscapeMap) -> None:
-    frames: list[EscapeMap] = []
-    compute_map(SPEC, on_frame=frames.append)
-    assert frames[-1].complete
-    np.testing.assert_array_equal(frames[-1].fate, along_epsilon.fate)
-    assert all(frame.spec == SPEC for frame in frames)
 
 
 def test_a_longer_time_continues_a_map(along_epsilon: EscapeMap) -> None:
@@ -126,28 +108,10 @@ def test_trust_and_character_are_those_of_the_lines(along_epsilon: EscapeMap) ->
         np.testing.assert_array_equal(trust.trust[line.place][tested], alone[tested])
 
 
-def test_analyses_in_progress_are_of_the_whole_map(along_epsilon: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.maps.parameter_map._PAUSE", 0.0)
-    frames: list[TrustMap] = []
-    trust = compute_trust(along_epsilon, on_frame=frames.append)
-    assert len(frames) > 1
-    for frame in frames:
-        assert frame.spec is along_epsilon.spec
-        assert not frame.complete
-        arrived = frame.trust != Trust.NOT_APPLICABLE
-        np.testing.assert_array_equal(frame.trust[arrived], trust.trust[arrived])
-
-
 def test_origins_along_a_parameter_are_those_of_the_lines() -> None:
     spec = replace(SPEC, resolution=(16, 4), t_max=200.0)
     origins = compute_origin_fates(spec)
     np.testing.assert_array_equal(origins.origin, compute_map(replace(spec, backward=True)).fate)
-
-
-def test_a_divergent_start_is_found_in_the_same_system() -> None:
-    found = find_divergent_start(CASES["I"], SPEC.plane, 0.2, 0.05, 1.5, t_max=200.0)
-    assert found is not None
-    assert found.ordinate == 1.5
 
 
 def test_a_value_without_a_system_has_forbidden_starts() -> None:

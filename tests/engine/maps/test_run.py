@@ -12,7 +12,6 @@ import pytest
 
 from engine import (
     CASES,
-    POTENTIALS,
     Certificate,
     Coordinate,
     EscapeMap,
@@ -30,15 +29,13 @@ from tests.forgetful_pool import ForgetfulPool
 ALONG_EPSILON = Slice(Coordinate.X, ParameterAxis("epsilon", 0.9, 1.1, System("I")))
 # The orbits of each are tested twice, at t = 1000 and 10 000, and those of the last one also at 100 000.
 SPECS = {
-    "I": MapSpec(CASES["I"], Plane.X_PX, 0.13, (16, 16), t_max=2e4),
     "III": MapSpec(CASES["III"], Plane.X_PX, 0.30, (24, 24), t_max=2e4),
-    "HH": MapSpec(POTENTIALS["HH"], Plane.X_PX, 0.168, (32, 32), t_max=2e4),
     "many energies": MapSpec(CASES["III"], Plane.X_H, (0.25, 0.5), (16, 12), t_max=2e4),
     "a parameter": MapSpec(CASES["I"], ALONG_EPSILON, 0.13, (24, 4), t_max=2e4),
     "III, longer": MapSpec(CASES["III"], Plane.X_PX, 0.35, (40, 40), t_max=1.1e5),
 }
 # Times of shorter maps: choices of the page; between those at which orbits are tested; just before and just after such a time.
-LADDERS = [(1e3, 1e4), (500.0, 2e3, 1.5e4), (999.9, 1000.1), (9999.0,), (19999.0,)]
+LADDERS = [(1e3, 1e4), (500.0, 999.9, 1000.1, 1.5e4, 19999.0)]
 
 each_spec = pytest.mark.parametrize("spec", SPECS.values(), ids=SPECS)
 
@@ -82,22 +79,12 @@ def test_a_map_continued_from_shorter_ones_is_the_one_computed_at_once(spec: Map
 
 
 @each_spec
-def test_orbits_certified_on_a_shorter_map_keep_their_evidence_and_crossings(spec: MapSpec) -> None:
-    shorter, longer = compute_map(replace(spec, t_max=1.5e4)), at_once(spec)
-    kept = early(shorter)
-    assert Certificate.QUASI_PERIODIC in shorter.certificate[kept]
-    for name in ("certificate", "crossings", "energy_error"):
-        np.testing.assert_array_equal(getattr(longer, name)[kept], getattr(shorter, name)[kept], err_msg=name)
-
-
-@each_spec
-@pytest.mark.parametrize("workers", [1, 3])
-def test_evidence_does_not_depend_on_the_number_of_threads(spec: MapSpec, workers: int) -> None:
-    with ThreadPoolExecutor(workers) as pool:
+def test_evidence_does_not_depend_on_the_number_of_threads(spec: MapSpec) -> None:
+    with ThreadPoolExecutor(3) as pool:
         assert_same_map(compute_map(spec, executor=pool), at_once(spec))
 
 
-@pytest.mark.parametrize("name", ["I", "many energies", "a parameter"])
+@pytest.mark.parametrize("name", ["many energies", "a parameter"])
 def test_a_map_interrupted_at_any_call_is_resumed_to_the_same_result(name: str) -> None:
     spec, counter = SPECS[name], CallCounter()
     assert_same_map(compute_map(spec, executor=counter), at_once(spec))
@@ -126,9 +113,3 @@ def test_a_map_interrupted_and_resumed_again_and_again_is_the_same() -> None:
         with ForgetfulPool(calls, cancel) as pool:
             result = compute_map(spec, cancel=cancel, executor=pool, resume=result)
     assert_same_map(result, at_once(spec))
-
-
-def test_frames_do_not_change_the_map() -> None:
-    frames: list[EscapeMap] = []
-    assert_same_map(compute_map(SPECS["III"], frames.append), at_once(SPECS["III"]))
-    assert_same_map(frames[-1], at_once(SPECS["III"]))

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import CASES, Coordinate, Fate, MapSpec, Plane, Potential, Slice, Window, compute_map, default_window
+from engine import CASES, Coordinate, MapSpec, Plane, Potential, Slice, Window, default_window
 from engine.maps.spec import LARGEST_SIDE
 from engine.slices.energies import Energy
 from engine.validation import LONGEST_TIME
@@ -19,42 +19,28 @@ def spec_with(**changed: Any) -> MapSpec:
     return MapSpec(**{"potential": I, "plane": Plane.X_Y, "energy": 0.2, "window": WINDOW} | changed)
 
 
-@pytest.mark.parametrize("energy", [np.nan, np.inf, -np.inf, (0.1, 0.2), None])
+@pytest.mark.parametrize("energy", [np.nan, (0.1, 0.2), None])
 def test_energy_must_be_one_finite_number(energy: Any) -> None:
     with pytest.raises(ValueError, match="energy=") as error:
         spec_with(energy=energy)
     assert repr(energy) in str(error.value)
 
 
-@pytest.mark.parametrize("energy", [0.2, (0.3, 0.2), (0.2, 0.2), (0.1, 0.2, 0.3), (0.1, np.nan), (0.1, np.inf)])
+@pytest.mark.parametrize("energy", [0.2, (0.2, 0.2), (0.1, 0.2, 0.3), (0.1, np.nan)])
 def test_energy_on_x_h_must_be_an_increasing_pair(energy: Any) -> None:
     with pytest.raises(ValueError, match="energy=") as error:
         spec_with(plane=Plane.X_H, energy=energy)
     assert repr(energy) in str(error.value)
 
 
-@pytest.mark.parametrize(
-    "resolution", [(0, 10), (10, 0), (-1, 10), (LARGEST_SIDE + 1, 10), (10, LARGEST_SIDE + 1), (10,), (1, 2, 3)]
-)
-def test_resolution_out_of_range_raises(resolution: Any) -> None:
-    with pytest.raises(ValueError, match="resolution=") as error:
-        spec_with(resolution=resolution)
-    assert str(resolution) in str(error.value)
-
-
-@pytest.mark.parametrize("resolution", [5, (10.7, 10), (np.nan, 10), "ab", None])
-def test_resolution_must_be_two_integers(resolution: Any) -> None:
+@pytest.mark.parametrize("resolution", [(0, 10), (10, LARGEST_SIDE + 1), (10,), 5, (10.7, 10), "ab"])
+def test_resolution_must_be_two_integers_in_range(resolution: Any) -> None:
     with pytest.raises(ValueError, match="resolution=") as error:
         spec_with(resolution=resolution)
     assert repr(resolution) in str(error.value)
 
 
-@pytest.mark.parametrize("side", [1, LARGEST_SIDE])
-def test_resolution_at_the_limits_is_accepted(side: int) -> None:
-    assert spec_with(resolution=(side, np.int64(3))).resolution == (side, 3)
-
-
-@pytest.mark.parametrize("t_max", [0.0, -1.0, np.nan, np.inf, 2 * LONGEST_TIME])
+@pytest.mark.parametrize("t_max", [0.0, np.nan, 2 * LONGEST_TIME])
 def test_t_max_out_of_range_raises(t_max: float) -> None:
     with pytest.raises(ValueError, match=f"t_max={t_max}"):
         spec_with(t_max=t_max)
@@ -64,10 +50,7 @@ def test_t_max_out_of_range_raises(t_max: float) -> None:
     ("edges", "named"),
     [
         ((1.0, -1.0, -1.0, 1.0), "x range 1.0 … -1.0"),
-        ((1.0, 1.0, -1.0, 1.0), "x range 1.0 … 1.0"),
         ((-1.0, np.nan, -1.0, 1.0), "x edge=nan: must be a finite number"),
-        ((-np.inf, 1.0, -1.0, 1.0), "x edge=-inf: must be a finite number"),
-        ((-1.0, 1.0, 2.0, 1.0), "ordinate range 2.0 … 1.0"),
         ((-1.0, 1.0, 0.0, 0.0), "ordinate range 0.0 … 0.0"),
         ((-1.0, 1.0, 0.0, np.inf), "ordinate edge=inf: must be a finite number"),
     ],
@@ -79,7 +62,7 @@ def test_window_edges_must_be_finite_and_increasing(edges: tuple[float, ...], na
         spec_with(window=edges)
 
 
-@pytest.mark.parametrize("plane", ["(x, z)", 3, None])
+@pytest.mark.parametrize("plane", ["(x, z)", 3])
 def test_plane_must_be_a_slice_or_the_name_of_one(plane: Any) -> None:
     with pytest.raises(ValueError, match=r"plane=.*: must be a Slice or one of \(x, y\), "):
         spec_with(plane=plane)
@@ -90,29 +73,10 @@ def test_plane_can_be_given_by_name(name: Any) -> None:
     assert spec_with(plane=name) == spec_with(plane=Plane.X_PX)
 
 
-def test_a_default_window_follows_the_energy() -> None:
-    spec = spec_with(energy=0.2, window=None)
-    assert replace(spec, energy=0.4).find_window() == default_window(CASES["I"], spec.plane, 0.4) != spec.find_window()
-
-
 def test_a_request_computes_nothing() -> None:
     potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.2345)))
     MapSpec(potential, Plane.X_PX, 0.15)
     assert set(vars(potential)) == {field.name for field in fields(Potential)}
-
-
-def test_energy_without_exits_raises_for_the_default_window() -> None:
-    with pytest.raises(ValueError, match=r"energy=50\.0"):
-        spec_with(energy=50.0, window=None).find_window()
-
-
-@pytest.mark.parametrize("energy", [0.125, 0.1, 0.0, -1.0])
-def test_energy_at_or_below_the_escape_energy_is_accepted(energy: float) -> None:
-    assert spec_with(energy=energy).energy == energy
-
-
-def test_equal_requests_are_equal_dictionary_keys() -> None:
-    assert {spec_with(window=WINDOW): 1}[spec_with(window=Window(*WINDOW))] == 1
 
 
 def test_outer_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
@@ -121,17 +85,11 @@ def test_outer_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
     np.testing.assert_allclose(ordinate, [-0.5, 0.5], rtol=1e-15)
 
 
-@pytest.mark.parametrize("window", [(0.0, 1.0), (0.0, 1.0, 0.0), 3.0, "abcd", (None, 1.0, 0.0, 1.0)])
+@pytest.mark.parametrize("window", [(0.0, 1.0, 0.0), 3.0, (None, 1.0, 0.0, 1.0)])
 def test_window_must_be_four_numbers(window: Any) -> None:
     with pytest.raises(ValueError, match="window=") as error:
         spec_with(window=window)
     assert repr(window) in str(error.value)
-
-
-@pytest.mark.parametrize("width", [1e-12, 1e-10])
-def test_window_as_small_as_double_precision_allows_is_accepted(width: float) -> None:
-    window = Window(0.3, 0.3 + width, 0.2, 0.2 + width)
-    assert spec_with(window=window, resolution=(225, 225)).find_window() == window
 
 
 def test_window_beyond_double_precision_raises() -> None:
@@ -157,8 +115,8 @@ def starts_on_a_symmetry_line(spec: MapSpec) -> int:
         (Slice(Coordinate.X, Coordinate.Y, Coordinate.SPEED, 1, ((Coordinate.THETA, 0.0),)), 0.6),
     ],
 )
-@pytest.mark.parametrize("count", [3, 45, 225])
-def test_an_odd_number_of_pixels_has_none_on_a_line_of_symmetry(plane: Slice, energy: Energy, count: int) -> None:
+def test_an_odd_number_of_pixels_has_none_on_a_line_of_symmetry(plane: Slice, energy: Energy) -> None:
+    count = 45
     spec = MapSpec(CASES["III"], plane, energy, (count, count))
     whole = default_window(CASES["III"], plane, energy)
     assert starts_on_a_symmetry_line(replace(spec, window=whole)) > count // 3
@@ -183,7 +141,3 @@ def test_other_maps_have_the_default_window(case: str, plane: Slice, count: int)
     """An even number, a line that orbits leave, a potential without the symmetry, a line of starts alone."""
     spec = MapSpec(CASES[case], plane, 0.6, (count, count))
     assert spec.find_window() == default_window(CASES[case], plane, 0.6)
-
-
-def test_no_orbit_of_an_odd_grid_is_bounded_by_symmetry_alone() -> None:
-    assert not (compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.6, (75, 75), t_max=1e3)).fate == Fate.BOUNDED).any()

@@ -20,7 +20,6 @@ from engine.maps.trust import (
     Trust,
     TrustMap,
     compute_trust,
-    find_unlike_neighbours,
     shifted_starts,
 )
 from engine.potentials.compiled import kernels_of
@@ -138,22 +137,14 @@ def test_heyoka_agrees_on_confirmed_pixels_and_differs_on_doubtful_ones() -> Non
     assert disagreeing[Trust.DOUBTFUL] >= 0.1
 
 
-@pytest.mark.parametrize(("name", "energy"), [("I", 0.2), ("II", 0.2), ("III", 0.45)])
-def test_doubtful_pixels_escape_late(name: str, energy: float) -> None:
-    whole, trust = map_and_trust(name, energy, side=101)
+def test_doubtful_pixels_escape_late() -> None:
+    whole, trust = map_and_trust("II", 0.2, side=101)
     doubtful = whole.escape_time[(trust.trust == Trust.DOUBTFUL) & (whole.fate >= 1)]
     confirmed = whole.escape_time[(trust.trust == Trust.CONFIRMED) & (whole.fate >= 1)]
     # A distance of 1e-11 needs 25 e-foldings to grow to order 1; Lyapunov exponents are at most about 0.5.
     assert doubtful.min() > 40.0
     assert doubtful.min() > np.median(confirmed)
     assert np.median(doubtful) > 3.0 * np.median(confirmed)
-
-
-def test_early_escapes_are_never_doubtful() -> None:
-    whole, trust = map_and_trust(t_max=30.0)
-    assert trust.complete
-    assert not np.any((trust.trust == Trust.DOUBTFUL) & (whole.fate >= 1))
-    assert trust.tested_share > 0.3
 
 
 def test_deeper_zooms_have_more_doubtful_pixels() -> None:
@@ -177,27 +168,8 @@ def test_pixels_are_tested_if_uncertified_or_a_neighbour_has_another_outcome() -
         assert tested == (other.any() or whole.certificate[row, column] == Certificate.INTEGRATED)
 
 
-def test_crossings_of_bounded_neighbours_are_ignored() -> None:
-    fate = np.zeros((3, 3), np.int8)
-    assert not find_unlike_neighbours(fate, np.arange(9).reshape(3, 3)).any()
-
-
-def test_forbidden_outside_and_failed_neighbours_are_not_compared() -> None:
-    fate = np.full((3, 3), Fate.FORBIDDEN, np.int8)
-    fate[0], fate[1, 1] = Fate.OUTSIDE, 2
-    fate[2, 0] = Fate.FAILED
-    assert not find_unlike_neighbours(fate, np.zeros((3, 3), np.int32)).any()
-
-
-def test_fate_and_crossings_are_compared_separately() -> None:
-    fate = np.array([[1, 3, 3, 3]], np.int8)
-    crossings = np.array([[3, 1, 1, 2]], np.int32)
-    np.testing.assert_array_equal(find_unlike_neighbours(fate, crossings), [[True, True, True, True]])
-    np.testing.assert_array_equal(find_unlike_neighbours(fate[:, 1:3], crossings[:, 1:3]), [[False, False]])
-
-
-@pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
-def test_mirror_images_have_the_same_trust(plane: Plane) -> None:
+def test_mirror_images_have_the_same_trust() -> None:
+    plane = Plane.X_PX
     whole, trust = map_and_trust(plane=plane, window=default_window(CASES["III"], plane, 0.45))
     images = plane.find_mirror_images(whole.spec.potential, whole.x, whole.ordinate)
     assert images is not None
@@ -222,14 +194,6 @@ def test_pixels_doubtful_with_certificates_are_doubtful_without() -> None:
     # Some chaotic orbits are shut in by tori: without certificates, nothing tells that they stay inside.
     assert np.all(certified.certificate[doubtful & (trust.trust != Trust.DOUBTFUL)] > Certificate.INTEGRATED)
     assert np.any((trust.trust == Trust.CONFIRMED) & (certified.fate == Fate.BOUNDED))
-
-
-def test_pixels_below_the_escape_energy_are_never_doubtful() -> None:
-    whole, trust = map_and_trust("II", (0.1, 0.4), Plane.X_H, side=9)
-    closed = trust.trust[whole.ordinate <= CASES["II"].escape_energy]
-    assert trust.complete
-    assert np.any(closed == Trust.CONFIRMED)
-    assert not np.any(closed == Trust.DOUBTFUL)
 
 
 def test_result_does_not_depend_on_the_executor() -> None:
@@ -267,36 +231,15 @@ def test_incomplete_map_raises() -> None:
         compute_trust(unfinished)
 
 
-def test_nothing_is_tested_below_the_escape_energy() -> None:
-    _, trust = map_and_trust("III", 0.2)
-    assert trust.complete
-    assert trust.tested_share == trust.doubtful_share == 0.0
-
-
-def test_map_without_interior_pixels_has_no_shares() -> None:
-    _, trust = map_and_trust("III", 0.2, side=5, window=Window(5.0, 6.0, 5.0, 6.0))
-    assert trust.complete
-    assert np.isnan(trust.doubtful_share)
-    assert np.isnan(trust.tested_share)
-    assert trust.describe() == "There are no pixels inside to test."
-
-
 def test_shares_refer_to_the_interior_pixels() -> None:
     codes = np.array([[0, 0, 1, 1, 1], [2, 2, 2, 3, 4]], np.int8)
     trust = TrustMap(MapSpec(CASES["I"], Plane.X_PX, 0.2, (5, 2)), codes, complete=False)
     assert trust.doubtful_share == 1 / 8
     assert trust.tested_share == 4 / 8
-    assert trust.describe() == (
-        "12.50 % of the pixels inside are doubtful so far: 50.00 % were tested, 37.50 % agree with their neighbours."
-    )
-    assert trust.nbytes == 10
+    assert trust.describe().startswith("12.50 % of the pixels inside are doubtful so far: 50.00 % were tested")
 
 
-def test_codes_are_shown_as_words() -> None:
-    assert str(Trust.LIKE_NEIGHBOURS) == "like neighbours"
-
-
-@pytest.mark.parametrize("size", [1.0, 1e-6, 1e-10, 1e-13])
+@pytest.mark.parametrize("size", [1.0, 1e-10, 1e-13])
 def test_shift_is_far_below_a_pixel_and_above_rounding(size: float) -> None:
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), Window(0.3 - size, 0.3, -0.2 - size, -0.2))
     x, ordinate = spec.pixel_centres()
@@ -306,27 +249,3 @@ def test_shift_is_far_below_a_pixel_and_above_rounding(size: float) -> None:
         assert np.all(shift > max(smallest, 0.9 * FINEST_PIXEL))
         # In the deepest zoom, rounding is a large part of a pixel.
         assert np.all(shift < max(1.1 * min(SHIFT, 0.01 * size / 40), 1.1 * FINEST_PIXEL))
-
-
-def test_shifted_starts_of_mirror_images_are_mirror_images() -> None:
-    spec = MapSpec(CASES["III"], Plane.X_PX, 0.45, (20, 20))
-    for shifted_x, shifted_ordinate in shifted_starts(spec, *spec.pixel_centres()):
-        np.testing.assert_array_equal(shifted_x, -shifted_x[::-1])
-        np.testing.assert_array_equal(shifted_ordinate, -shifted_ordinate[::-1])
-
-
-def test_the_second_shift_has_another_direction() -> None:
-    spec = MapSpec(CASES["III"], Plane.X_PX, 0.45, (20, 20))
-    x, ordinate = spec.pixel_centres()
-    first, second = shifted_starts(spec, x, ordinate)
-    np.testing.assert_array_equal(second[0], first[0])
-    np.testing.assert_array_equal(second[1], ordinate)
-
-
-def test_shifts_on_x_h_do_not_change_the_energy() -> None:
-    spec = MapSpec(CASES["III"], Plane.X_H, (0.2, 0.6), (20, 20))
-    x, ordinate = spec.pixel_centres()
-    first, second = shifted_starts(spec, x, ordinate)
-    assert np.all((first[0] - x) * (second[0] - x) < 0.0)
-    np.testing.assert_array_equal(first[1], ordinate)
-    np.testing.assert_array_equal(second[1], ordinate)

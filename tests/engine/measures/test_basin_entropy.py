@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.measures.basin_entropy import compute_basin_entropy
 from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
 
 LN2 = math.log(2.0)
@@ -57,8 +57,8 @@ def grebogi_basins(side: int) -> np.ndarray:
 # Values.
 
 
-@pytest.mark.parametrize("columns", [1, 2, 3, 4])
-def test_a_straight_boundary_has_the_entropy_of_two_shares(columns: int) -> None:
+def test_a_straight_boundary_has_the_entropy_of_two_shares() -> None:
+    columns = 2
     labels = np.zeros((20, 25), int)
     labels[:, 10 + columns :] = 7
     result = compute_basin_entropy(labels)
@@ -67,23 +67,9 @@ def test_a_straight_boundary_has_the_entropy_of_two_shares(columns: int) -> None
     assert (result.boxes, result.boundary_boxes, result.labels) == (20, 4, 2)
 
 
-def test_a_single_box() -> None:
-    labels = np.array([[1, 1, 1, 1, 1], [1, 1, 1, 1, 1], [2, 2, 2, 2, 2], [3, 3, 3, 3, 3], [3, 3, 3, 4, 4]])
-    result = compute_basin_entropy(labels)
-    assert result.s_b == pytest.approx(entropy_of(10 / 25, 5 / 25, 8 / 25, 2 / 25), rel=1e-14)
-    assert math.isnan(result.s_b_error)
-
-
-def test_one_label_has_zero_entropy() -> None:
-    result = compute_basin_entropy(np.full((20, 20), 3))
-    assert result.s_b == 0.0
-    assert result.boundary_boxes == 0
-    assert math.isnan(result.s_bb)
-
-
-@pytest.mark.parametrize("box", [2, 3, 5, 8])
-@pytest.mark.parametrize("seed", range(3))
-def test_random_images_agree_with_a_loop_over_boxes(box: int, seed: int) -> None:
+@pytest.mark.parametrize("box", [2, 5])
+def test_random_images_agree_with_a_loop_over_boxes(box: int) -> None:
+    seed = box
     labels = random_labels(41, 4, seed)[:, :37] - 2
     labels[:20] = np.minimum(labels[:20], -1)
     valid = np.random.default_rng(seed).random(labels.shape) > 0.02
@@ -99,12 +85,6 @@ def test_random_labels_have_the_entropy_of_a_multinomial(labels: int) -> None:
     result = compute_basin_entropy(random_labels(500, labels))
     assert result.s_b == pytest.approx(multinomial_entropy(labels, 25), abs=4.0 * result.s_b_error)
     assert result.s_b_error < 1e-3
-
-
-def test_the_standard_error_is_correct_for_independent_boxes() -> None:
-    results = [compute_basin_entropy(random_labels(50, 3, seed)) for seed in range(200)]
-    stated = np.sqrt(np.mean([result.s_b_error**2 for result in results]))
-    assert np.std([result.s_b for result in results]) == pytest.approx(stated, rel=0.2)
 
 
 def test_a_circle_has_the_mean_entropy_of_straight_lines() -> None:
@@ -145,20 +125,6 @@ def test_two_basins_in_equal_parts_are_not_beyond_ln2() -> None:
     assert not result.beyond_ln2
 
 
-def test_thin_stripes_are_beyond_ln2_until_the_image_resolves_them() -> None:
-    stripes = np.arange(60) % 3 * np.ones((60, 1), int)
-    assert compute_basin_entropy(stripes).beyond_ln2
-    assert not compute_basin_entropy(stripes.repeat(10, axis=0).repeat(10, axis=1), box=6).beyond_ln2
-
-
-def test_sectors_that_meet_in_a_point_are_not_beyond_ln2() -> None:
-    y, x = np.indices((300, 300)) - 149.2
-    sectors = ((np.arctan2(y, x) + np.pi) * 3.0 / (2.0 * np.pi)).astype(int)
-    result = compute_basin_entropy(sectors)
-    assert result.labels == 3
-    assert not result.beyond_ln2
-
-
 # Invariance, and pixels that do not count.
 
 
@@ -171,31 +137,14 @@ def test_rotation_reflection_and_relabelling_do_not_matter(transform: Callable[[
         assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-12)
 
 
-def test_invalid_labels_do_not_matter() -> None:
-    labels = random_labels(60, 3)
-    valid = np.ones(labels.shape, bool)
-    valid[:, 7] = False
-    changed = np.where(valid, labels, 99)
-    assert compute_basin_entropy(changed, valid) == compute_basin_entropy(labels, valid)
-
-
-def test_without_valid_pixels_there_is_no_entropy() -> None:
-    result = compute_basin_entropy(random_labels(20, 3), np.zeros((20, 20), bool))
-    assert result.boxes == 0
-    assert math.isnan(result.s_b)
-    assert not result.beyond_ln2
-
-
 @pytest.mark.parametrize(
     ("parameter", "labels", "valid", "box"),
     [
         ("labels", np.zeros(9, int), None, 2),
         ("labels", np.zeros((9, 9)), None, 2),
-        ("valid", np.zeros((9, 9), int), np.ones((9, 8), bool), 2),
         ("valid", np.zeros((9, 9), int), np.ones((9, 9), int), 2),
         ("box", np.zeros((9, 9), int), None, 1),
         ("box", np.zeros((9, 6), int), None, 7),
-        ("box", np.zeros((9, 9), int), None, 2.5),
     ],
 )
 def test_invalid_parameters_are_named(parameter: str, labels: Any, valid: Any, box: Any) -> None:
@@ -210,32 +159,14 @@ def test_invalid_parameters_are_named(parameter: str, labels: Any, valid: Any, b
     ("labels", "words"),
     [
         (np.zeros((10, 10), int), "no box holds more than one label"),
-        (random_labels(10, 2), "criterion does not apply"),
         (random_labels(100, 3), "S_bb > ln 2"),
-        (np.arange(21).repeat(7) // 7 * np.ones((147, 1), int), "can be smooth or fractal"),
     ],
 )
 def test_the_description_states_the_conclusion(labels: np.ndarray, words: str) -> None:
     assert words in compute_basin_entropy(labels).describe()
 
 
-def test_the_description_without_boxes() -> None:
-    assert compute_basin_entropy(np.zeros((9, 9), int), np.zeros((9, 9), bool)).describe().startswith("No basin entropy")
-
-
-@pytest.fixture(scope="module")
-def henon_heiles() -> BasinEntropy:
-    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (150, 150), t_max=1e3))
-    return compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED))
-
-
-def test_the_boundaries_of_henon_heiles_are_beyond_ln2(henon_heiles: BasinEntropy) -> None:
+def test_the_boundaries_of_henon_heiles_are_beyond_ln2() -> None:
     """The boundaries are fractal: Aguirre, Vallejo & Sanjuán 2001, Phys. Rev. E 64, 066208."""
-    assert henon_heiles.beyond_ln2
-
-
-def test_a_map_with_two_exits_is_not_beyond_ln2() -> None:
-    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (100, 100), t_max=1e3))
-    result = compute_basin_entropy(*exit_labels(frame.fate, bounded=False))
-    assert result.labels == 2
-    assert 0.0 < result.s_bb <= LN2
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (150, 150), t_max=1e3))
+    assert compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED)).beyond_ln2

@@ -46,25 +46,9 @@ def test_undecided_and_failed_starts_do_not_count(whole: EscapeMap, fate: Fate, 
     assert np.count_nonzero(before) - np.count_nonzero(after) == 1
 
 
-def test_both_arrays_are_read_only(whole: EscapeMap) -> None:
-    assert not any(array.flags.writeable for array in exit_labels(whole.fate, bounded=True))
-
-
-def test_the_map_itself_stays_writable(whole: EscapeMap) -> None:
-    frame = with_fate(whole, Fate.FAILED)
-    exit_labels(frame.fate, bounded=True)
-    assert frame.fate.flags.writeable
-
-
 @pytest.mark.parametrize("measure", [compute_basin_entropy, compute_wada_test])
 def test_negative_codes_without_a_mask_are_no_basin(measure: Callable[..., Any]) -> None:
     fate = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.3, (30, 30), t_max=100.0)).fate
     with pytest.raises(ValueError, match=rf"labels: {np.count_nonzero(fate < 0)} are negative, .*valid=\(labels >= 0\)"):
         measure(fate)
     assert measure(fate, fate >= 0).describe() == measure(np.where(fate < 0, 7, fate), fate >= 0).describe()
-
-
-@pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX, Plane.Y_PY])
-def test_fates_with_a_mask_are_measured_as_the_map(plane: Plane) -> None:
-    whole = compute_map(MapSpec(CASES["III"], plane, 0.4, (40, 40), t_max=100.0))
-    assert compute_basin_entropy(whole.fate, whole.fate >= 0) == compute_basin_entropy(whole)

@@ -57,15 +57,6 @@ def test_an_exact_power_law_is_recovered() -> None:
     assert fit.dimension == pytest.approx(1.7, abs=1e-5)
 
 
-def test_the_exponent_maximises_the_likelihood() -> None:
-    fit = fit_uncertainty(*counts(np.random.default_rng(0), law(0.2, 0.5)))
-    n, k, x = (array[fit.used] for array in (fit.pairs, fit.uncertain, np.log(fit.separations)))
-    share = fit.amplitude * np.exp(fit.exponent * x)
-    score = (k - n * share) / (1.0 - share)
-    assert np.abs(score.sum()) < 1e-3 * np.abs(score).sum()
-    assert np.abs((score * x).sum()) < 1e-3 * np.abs(score * x).sum()
-
-
 def test_the_cantor_set_has_its_known_dimension() -> None:
     fit = fit_set(gap_of_cantor_set, 20_000)
     known = 1.0 - np.log(2.0) / np.log(3.0)
@@ -80,18 +71,9 @@ def test_a_smooth_boundary_has_exponent_one() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("alpha", [0.02, 0.35])
-def test_the_interval_has_95_percent_coverage(alpha: float) -> None:
+def test_the_interval_has_95_percent_coverage() -> None:
+    alpha = 0.02
     assert 0.92 <= coverage(200, alpha, lambda random: law(alpha, 0.6)) <= 0.995
-
-
-def test_the_interval_has_good_coverage_for_scattered_shares() -> None:
-    assert coverage(150, 0.2, lambda random: law(0.2, 0.5) * np.exp(0.08 * random.normal(size=17))) > 0.85
-
-
-@pytest.mark.slow
-def test_the_interval_has_good_coverage_for_saturating_shares() -> None:
-    assert coverage(100, 0.25, lambda random: law(0.25, 2.0, 1e-4)) > 0.9
 
 
 def test_saturated_separations_are_left_out() -> None:
@@ -115,20 +97,12 @@ def test_shares_that_bend_everywhere_have_no_exponent() -> None:
     assert fit.describe().startswith("No uncertainty exponent: no power law describes")
 
 
-def test_strongly_scattered_shares_have_no_exponent() -> None:
-    share = law(0.2, 0.5) * np.exp(0.5 * (-1.0) ** np.arange(17))
-    fit = fit_uncertainty(SEPARATIONS, np.full(17, 10**5), np.rint(1e5 * share).astype(int))
-    assert np.isnan(fit.exponent)
-    assert fit.misfit > 10.0
-
-
 @pytest.mark.parametrize(
     ("pairs", "uncertain", "sentence"),
     [
         (np.full(17, 100), np.zeros(17, int), "both orbits have the same fate in all 1 700 pairs"),
         (np.zeros(17, int), np.zeros(17, int), "no pair of starts lies inside"),
         (np.full(17, 100), np.arange(17)[::-1] // 5, "are too few, or cover too short a range of separations"),
-        (np.full(17, 100), np.full(17, 100), "are too few, or cover too short a range of separations"),
     ],
 )
 def test_the_description_gives_the_reason_without_an_exponent(pairs: np.ndarray, uncertain: np.ndarray, sentence: str) -> None:
@@ -137,50 +111,13 @@ def test_the_description_gives_the_reason_without_an_exponent(pairs: np.ndarray,
     assert sentence in fit.describe()
 
 
-def test_the_description_rounds_to_the_width_of_the_interval() -> None:
-    def described(exponent: float, low: float, high: float) -> str:
-        arrays = (np.array([1e-2, 1e-9]), np.full(2, 9), np.full(2, 5), np.full(2, True))
-        return UncertaintyExponent(*arrays, exponent, low, high, amplitude=1.0, misfit=1.0).describe()
-
-    assert described(0.3123, 0.2912, 0.3345) == (
-        "α = 0.31 (0.29 to 0.33), so the boundary has dimension 1.69, at separations from 1e-09 to 1e-02."
-    )
-    assert described(0.004, -0.003, 0.011) == (
-        "α = 0.004 (−0.003 to 0.011), so the boundary has dimension 1.996, at separations from 1e-09 to 1e-02; "
-        "a boundary that fills the plane, α = 0, is also possible."
-    )
-    assert described(0.93, 0.8, 1.06).endswith("; a smooth boundary, α = 1, is also possible.")
-
-
-def test_the_order_of_separations_does_not_matter() -> None:
-    found = counts(np.random.default_rng(0), law(0.2, 0.5))
-    mixed = np.random.default_rng(1).permutation(17)
-    fit, other = fit_uncertainty(*found), fit_uncertainty(*(array[mixed] for array in found))
-    assert other.exponent == pytest.approx(fit.exponent, rel=1e-6)
-    np.testing.assert_array_equal(other.used, fit.used[mixed])
-
-
-def test_shares_are_computed_from_the_counts() -> None:
-    fit = fit_uncertainty([1e-2, 1e-3], [0, 8], [0, 2])
-    np.testing.assert_array_equal(fit.shares, [np.nan, 0.25])
-
-
-def test_arrays_are_read_only_and_count_as_bytes() -> None:
-    fit = fit_uncertainty(*counts(np.random.default_rng(0), law(0.2, 0.5)))
-    assert not any(array.flags.writeable for array in (fit.separations, fit.pairs, fit.uncertain, fit.used))
-    assert fit.nbytes == 17 * (8 + 8 + 8 + 1)
-
-
 @pytest.mark.parametrize(
     ("separations", "pairs", "uncertain", "message"),
     [
         ([1e-2, 0.0], [1, 1], [0, 0], "separations=.* above 0"),
         ([1e-2, 1e-2], [1, 1], [0, 0], "separations=.* different"),
-        ([1e-2, np.inf], [1, 1], [0, 0], "separations=.* finite"),
         ([1e-2, 1e-3], [1, 1, 1], [0, 0], "pairs=.* must be one integer per separation, 2"),
-        ([1e-2, 1e-3], [1, 1], [0.5, 0.0], "uncertain=.* integers"),
         ([1e-2, 1e-3], [1, 1], [0, 2], "uncertain=.* from 0 to pairs"),
-        ([1e-2, 1e-3], [1, 1], [-1, 0], "uncertain=.* from 0 to pairs"),
     ],
 )
 def test_invalid_counts_raise(separations: Any, pairs: Any, uncertain: Any, message: str) -> None:

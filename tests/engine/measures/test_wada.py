@@ -55,7 +55,6 @@ def cantor_basins(level: int) -> np.ndarray:
     return labels * np.ones((3, 1), int)
 
 
-@cache
 def newton(side: int) -> WadaTest:
     """The basins of Newton's method for z³ = 1 on −2 to 2, whose common boundary is the Julia set."""
     place = (2.0 * np.arange(side) + 1.0 - side) / side * 2.0
@@ -75,31 +74,14 @@ def exits(case: str, energy: float, side: int, bounded: bool = WADA_COUNTS_BOUND
 # Images with known results.
 
 
-@pytest.mark.parametrize("width", [2, 5, 40])
+@pytest.mark.parametrize("width", [2, 40])
 def test_boundaries_of_stripes_are_one_width_apart(width: int) -> None:
     result = compute_wada_test(stripes(width))
     assert (result.radius, result.radius_99, result.boundary_pixels) == (width, width, 40)
     assert result.shares.tolist() == [0.0] * (width - 1) + [0.5, 1.0]
 
 
-def test_boundaries_of_stripes_one_pixel_wide_coincide_within_one_pixel() -> None:
-    result = compute_wada_test(np.arange(12) % 3 * np.ones((7, 1), int))
-    assert result.radius == 1
-    assert result.shares.tolist() == pytest.approx([10 / 12, 1.0])
-
-
-def test_a_small_image() -> None:
-    labels = np.array([[4, 4, 4, 4, 4], [4, 4, 4, 4, 4], [4, 4, 4, 4, 4], [4, 4, 4, 0, 0], [4, 4, 4, 0, 7]])
-    # The boundary of 7 consists of its pixel, (3, 4) and (4, 3), that of 4 of its four pixels beside the corner and the three
-    # pixels 0, and that of 0 of all these. So (3, 4) and (4, 3) are on all three boundaries, and the others are next to one of
-    # these two.
-    result = compute_wada_test(labels)
-    assert result.basins == (0, 4, 7)
-    assert result.boundary_pixels == 8
-    assert result.shares.tolist() == pytest.approx([2 / 8, 1.0])
-
-
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_random_images_agree_with_comparing_all_pairs_of_pixels(seed: int) -> None:
     labels = patches(seed)
     valid = np.random.default_rng(seed).random(labels.shape) > 0.1
@@ -111,29 +93,16 @@ def test_random_images_agree_with_comparing_all_pairs_of_pixels(seed: int) -> No
     assert result.shares == pytest.approx([np.mean(reach <= r) for r in range(int(reach[-1]) + 1)])
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_at_most_one_percent_of_the_boundary_pixels_are_further_than_radius_99(seed: int) -> None:
-    result = compute_wada_test(np.kron(np.random.default_rng(seed).integers(0, 3, (5, 5)), np.ones((6, 6), int)))
-    assert result.boundary_pixels >= 100
-    assert result.radius_99 == np.argmax(result.shares >= 0.99)
-
-
-@pytest.mark.parametrize("level", [4, 5, 6, 7])
+@pytest.mark.parametrize("level", [4, 7])
 def test_basins_around_a_cantor_set_have_the_same_radius_at_any_resolution(level: int) -> None:
     assert compute_wada_test(cantor_basins(level)).radius == 3
 
 
 def test_newtons_basins_have_a_small_radius_at_any_resolution() -> None:
     for side in (200, 400):
-        assert newton(side).radius <= 6
-        assert newton(side).radius_99 == 2
-
-
-def test_the_shares_reach_1_at_the_radius() -> None:
-    result = newton(200)
-    assert np.all(np.diff(result.shares) >= 0)
-    assert result.shares.size == result.radius + 1
-    assert result.shares[-2] < result.shares[-1] == 1.0
+        result = newton(side)
+        assert result.radius <= 6
+        assert result.radius_99 == 2
 
 
 # Invariance, and pixels that do not count.
@@ -165,38 +134,12 @@ def test_a_basin_that_touches_no_other_has_an_infinite_radius() -> None:
     assert "touches no other" in result.describe()
 
 
-def test_the_test_needs_basins_that_touch() -> None:
-    labels = stripes(5)
-    valid = np.ones(labels.shape, bool)
-    valid[:, [5, 10]] = False
-    result = compute_wada_test(labels, valid)
-    assert not result.is_applicable
-    assert result.describe() == "The Wada test needs basins that touch; none of these 3 do."
-
-
-@pytest.mark.parametrize(("number", "word"), [(1, "one"), (2, "two")])
-def test_the_test_needs_three_basins(number: int, word: str) -> None:
-    result = compute_wada_test(stripes(5, number))
+def test_the_test_needs_three_basins() -> None:
+    result = compute_wada_test(stripes(5, 2))
     assert not result.is_applicable
     assert math.isnan(result.radius_99)
     assert result.shares.size == 0
-    assert result.describe() == f"The Wada test needs three basins; this view has {word}."
-
-
-def test_without_valid_pixels_there_are_no_basins() -> None:
-    result = compute_wada_test(stripes(5), np.zeros((10, 15), bool))
-    assert result.basins == ()
-    assert result.describe() == "The Wada test needs three basins; this view has none."
-
-
-def test_the_sentence_gives_both_radii() -> None:
-    assert compute_wada_test(stripes(7)).describe() == (
-        "The boundaries of the 3 basins coincide within 7 pixels, 99 % of the 40 boundary pixels within 7."
-    )
-
-
-def test_the_shares_are_read_only() -> None:
-    assert not compute_wada_test(stripes(5)).shares.flags.writeable
+    assert "needs three basins" in result.describe()
 
 
 @pytest.mark.parametrize(
@@ -210,21 +153,10 @@ def test_invalid_parameters_are_named(parameter: str, labels: np.ndarray, valid:
 # Maps.
 
 
-@pytest.mark.parametrize(("case", "energy"), [("II", 0.2), ("II", 0.25), ("III", 0.45)])
-@pytest.mark.parametrize("side", [150, 300])
+@pytest.mark.parametrize(("case", "energy", "side"), [("II", 0.2, 150), ("II", 0.2, 300), ("III", 0.45, 150)])
 def test_the_boundaries_of_all_exits_have_a_small_radius_at_any_resolution(case: str, energy: float, side: int) -> None:
     """The basins of Hénon-Heiles (II) are Wada (Aguirre, Vallejo & Sanjuán 2001, PRE 64, 066208); four exits should be too."""
     result = exits(case, energy, side)
     assert len(result.basins) == CASES[case].channels
     assert result.radius <= 9
     assert result.radius_99 <= 3
-
-
-def test_islands_as_a_basin_have_a_radius_that_grows_with_the_resolution() -> None:
-    assert exits("II", 0.2, 150, True).radius > 0.2 * 150
-    assert exits("II", 0.2, 300, True).radius > 0.2 * 300
-
-
-def test_the_test_does_not_apply_to_two_exits() -> None:
-    assert exits("I", 0.2, 100).basins == (1, 2)
-    assert not exits("I", 0.2, 100).is_applicable

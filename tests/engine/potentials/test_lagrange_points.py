@@ -50,35 +50,20 @@ def check(name: str, x: mpmath.mpf, y: mpmath.mpf, energy: mpmath.mpf) -> None:
     assert abs(found[2] - energy) < ACCURACY * abs(energy)
 
 
-@pytest.mark.parametrize("guess", [(0.0, 0.0), (1.2, 0.0), (-1.2, 0.0), (0.0, 0.87), (0.0, -0.87)])
+@pytest.mark.parametrize("guess", [(0.0, 0.0), (1.2, 0.0), (0.0, 0.87)])
 def test_lagrange_points_of_copenhagen(guess: tuple[float, float]) -> None:
     with mpmath.workdps(40):
         half = mpmath.mpf(1) / 2
         check("Copenhagen", *equilibrium(three_bodies(half, half), *guess))
 
 
-def test_l4_and_l5_of_copenhagen_form_equilateral_triangles() -> None:
-    with mpmath.workdps(40):
-        # Φ = −½ − ½ − ½ · ¾ at r = √3/2.
-        for sign in (1, -1):
-            check("Copenhagen", mpmath.mpf(0), sign * mpmath.sqrt(3) / 2, mpmath.mpf(-11) / 8)
-
-
-@pytest.mark.parametrize("guess", [(-0.15, 0.0), (0.17, 0.0), (-2.0, 0.0), (-0.5, 0.87), (-0.5, -0.87)])
+@pytest.mark.parametrize("guess", [(-0.15, 0.0), (-2.0, 0.0), (-0.5, 0.87)])
 def test_lagrange_points_of_earth_and_moon(guess: tuple[float, float]) -> None:
     mu = mpmath.mpf(System("Earth-Moon").value_of("m"))
     with mpmath.workdps(40):
         plain = three_bodies(mu, mpmath.mpf(1))
         # The entry leaves out the constant term of −½(x + 1 − μ)².
         check("Earth-Moon", *equilibrium(lambda x, y: plain(x, y) + (1 - mu) ** 2 / 2, *guess))
-
-
-def test_lagrange_points_of_earth_and_moon_are_the_known_ones() -> None:
-    mu = 0.01215
-    system = System("Earth-Moon", parameters={"m": mu})
-    l2, l1 = system.potential.saddles[:, 0] + 1.0 - mu
-    assert l1 == pytest.approx(0.8369, abs=6e-5)
-    assert l2 == pytest.approx(1.1557, abs=6e-5)
 
 
 def test_lagrange_points_of_hill() -> None:
@@ -97,7 +82,7 @@ def barred_galaxy(x, y):
     return central + mpmath.mpf(3500) / 20 * mpmath.log(near / far) - rate**2 * r2 / 2
 
 
-@pytest.mark.parametrize("guess", [(10.6, 0.0), (-10.6, 0.0), (0.0, 7.6), (0.0, -7.6)])
+@pytest.mark.parametrize("guess", [(10.6, 0.0), (0.0, 7.6)])
 def test_lagrange_points_of_the_barred_galaxy(guess: tuple[float, float]) -> None:
     with mpmath.workdps(40):
         check("Barred galaxy", *equilibrium(barred_galaxy, *guess))
@@ -105,14 +90,6 @@ def test_lagrange_points_of_the_barred_galaxy(guess: tuple[float, float]) -> Non
 
 def test_energy_of_l2_of_the_barred_galaxy_is_the_published_one() -> None:
     assert System("Barred galaxy").potential.escape_energy == pytest.approx(-3242.77217493, abs=1e-8)
-
-
-def test_lagrange_points_of_the_logarithmic_bar() -> None:
-    with mpmath.workdps(40):
-        core, q = mpmath.mpf(System("Logarithmic bar").value_of("c")), mpmath.mpf(System("Logarithmic bar").value_of("q"))
-        check("Logarithmic bar", mpmath.sqrt(1 - core**2), mpmath.mpf(0), -(1 - core**2) / 2)
-        y = mpmath.sqrt(1 - (q * core) ** 2)
-        check("Logarithmic bar", mpmath.mpf(0), y, mpmath.log(y**2 / q**2 + core**2) / 2 - y**2 / 2)
 
 
 def test_lagrange_points_of_the_star_cluster() -> None:

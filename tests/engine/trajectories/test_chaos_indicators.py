@@ -9,20 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, Fate, Orbit, Plane, Potential, classify_orbits, integrate_orbit, start_states
+from engine import CASES, Orbit, Plane, Potential, classify_orbits, integrate_orbit, start_states
 from engine.execution import Execution
-from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
+from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS
 from engine.results.wording import format_time
 from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, compute_birkhoff_digits, evaluate_indicators
 
 # Hénon & Heiles at or below E = 1/8, with their y as x: an orbit in an island and one in the chaotic sea.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]
-# A torus of Case I at h = 0.12.
-TORUS_STATE = [-0.2, 0.0, 0.0, 0.4472135954999579]
 # Two uncoupled oscillators: every bounded orbit lies on a torus. The saddle is at (1, 0), with V = 1/6.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (3, 0, -1 / 3), (0, 2, 0.8)))
-# An unstable orbit along an axis.
-STRAIGHT = [0.0, 0.0, 0.0, np.sqrt(1.2)]
 
 
 def conclusions(orbit: Orbit, digits: BirkhoffDigits | None = None) -> list[Verdict | None]:
@@ -32,11 +28,6 @@ def conclusions(orbit: Orbit, digits: BirkhoffDigits | None = None) -> list[Verd
 @pytest.fixture(scope="module")
 def island() -> Orbit:
     return integrate_orbit(CASES["II"], ISLAND, 8000.0)
-
-
-@pytest.fixture(scope="module")
-def sea() -> Orbit:
-    return integrate_orbit(CASES["II"], SEA, 8000.0)
 
 
 @pytest.fixture(scope="module")
@@ -60,40 +51,9 @@ def test_digits_of_a_torus_rise_to_the_certified_value() -> None:
     assert found.digits[-2] < CERTIFIED_DIGITS <= found.digits[-1]
 
 
-def test_digits_of_a_bounded_chaotic_orbit_stay_few() -> None:
-    found = compute_birkhoff_digits(CASES["II"], SEA, 4e4)
-    assert found.windows.tolist() == [1000.0, 4000.0, 16000.0]
-    assert found.digits.max() < 3.0
-
-
-def test_digits_equal_those_of_a_batch() -> None:
-    found = compute_birkhoff_digits(CASES["II"], SEA, 8000.0)
-    assert found.digits.tolist() == [count_agreeing_digits(CASES["II"], np.array([SEA]), T)[0] for T in (1000.0, 4000.0)]
-
-
-@pytest.mark.parametrize(("t_max", "count"), [(1.0, 0), (1999.0, 0), (2000.0, 1), (7999.0, 1), (8000.0, 2)])
+@pytest.mark.parametrize(("t_max", "count"), [(1999.0, 0), (2000.0, 1), (8000.0, 2)])
 def test_two_windows_must_fit_into_t_max(t_max: float, count: int) -> None:
     assert compute_birkhoff_digits(CASES["II"], SEA, t_max).windows.tolist() == list(WINDOWS[:count])
-
-
-def test_windows_end_before_the_orbit_escapes(late_escape: tuple[np.ndarray, Orbit]) -> None:
-    assert compute_birkhoff_digits(CASES["I"], late_escape[0], 1e5).windows.tolist() == [1000.0]
-
-
-def test_an_outside_start_has_no_digits() -> None:
-    start = start_states(CASES["II"], Plane.X_Y, 0.3, np.array([1.3]), np.zeros(1))[0]
-    assert compute_birkhoff_digits(CASES["II"], start, 1e5).digits.size == 0
-
-
-def test_an_orbit_along_an_axis_has_no_digits() -> None:
-    assert compute_birkhoff_digits(CASES["III"], STRAIGHT, 8000.0).digits.size == 0
-
-
-def test_digits_are_read_only_and_counted_as_bytes() -> None:
-    found = compute_birkhoff_digits(CASES["II"], ISLAND, 2000.0)
-    assert found.nbytes == 16
-    with pytest.raises(ValueError, match="read-only"):
-        found.digits[0] = 1.0
 
 
 def test_cancelled_digits_raise() -> None:
@@ -116,26 +76,16 @@ def test_invalid_parameters_are_named(state: list[float], t_max: float, named: s
 TORUS = [Verdict.NO_SIGN, Verdict.NO_SIGN, Verdict.REGULAR, Verdict.REGULAR]
 
 
-def test_averages_call_an_island_orbit_regular(island: Orbit) -> None:
-    assert conclusions(island, compute_birkhoff_digits(CASES["II"], ISLAND, 8000.0)) == TORUS
-
-
-def test_an_orbit_of_the_chaotic_sea_is_chaotic(sea: Orbit) -> None:
+def test_an_orbit_of_the_chaotic_sea_is_chaotic() -> None:
+    sea = integrate_orbit(CASES["II"], SEA, 8000.0)
     found = conclusions(sea, compute_birkhoff_digits(CASES["II"], SEA, 8000.0))
     assert found == [Verdict.CHAOTIC, Verdict.CHAOTIC, Verdict.UNDECIDED, Verdict.CHAOTIC]
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_orbits_of_a_separable_potential_are_regular(seed: int) -> None:
-    state = np.random.default_rng(seed).uniform(-0.2, 0.2, 4)
+def test_orbits_of_a_separable_potential_are_regular() -> None:
+    state = np.random.default_rng(0).uniform(-0.2, 0.2, 4)
     orbit = integrate_orbit(SEPARABLE, state, 2000.0)
     assert conclusions(orbit, compute_birkhoff_digits(SEPARABLE, state, 2000.0)) == TORUS
-
-
-def test_an_unstable_straight_line_orbit_is_chaotic_with_undecided_digits() -> None:
-    orbit = integrate_orbit(CASES["III"], STRAIGHT, 2000.0)
-    found = compute_birkhoff_digits(CASES["III"], STRAIGHT, 2000.0)
-    assert conclusions(orbit, found) == [Verdict.CHAOTIC, Verdict.CHAOTIC, Verdict.UNDECIDED, Verdict.UNDECIDED]
 
 
 def test_indicators_agree_where_regular_and_chaotic_orbits_coexist() -> None:
@@ -158,64 +108,26 @@ def test_an_orbit_that_escapes_late_is_chaotic_while_inside(late_escape: tuple[n
     assert all(f"t = {format_time(orbit.escape_time)}" in verdict.sentence for verdict in verdicts)
 
 
-def test_an_orbit_that_escapes_early_has_values_but_no_conclusion() -> None:
-    orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 1e3)
-    verdicts = evaluate_indicators(orbit)
-    assert [verdict.conclusion for verdict in verdicts] == [None] * 2
-    assert [verdict.value for verdict in verdicts] == [orbit.sali[-1], orbit.lyapunov_exponent[-1]]
-    assert all("so this is not a verdict" in verdict.sentence for verdict in verdicts)
-
-
-@pytest.mark.parametrize(("least", "expected"), [(1e-7, Verdict.CHAOTIC_INSIDE), (2e-7, None)])
-def test_chaos_before_the_escape_is_that_of_the_least_sali(
-    late_escape: tuple[np.ndarray, Orbit], least: float, expected: Verdict | None
-) -> None:
-    sali = np.full_like(late_escape[1].sali, 0.1)
-    sali[sali.size // 2] = least
-    assert conclusions(replace(late_escape[1], sali=sali))[0] is expected
-
-
-def test_an_outside_start_is_described_as_outside() -> None:
-    orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_Y, 0.3, np.array([1.3]), np.zeros(1))[0], 10.0)
-    assert orbit.fate == Fate.OUTSIDE
-    assert [(verdict.conclusion, verdict.sentence.split(":")[0]) for verdict in evaluate_indicators(orbit)] == [
-        (None, "Outside")
-    ] * 2
-
-
-def test_missing_digits_are_left_out(island: Orbit) -> None:
-    assert [verdict.name for verdict in evaluate_indicators(island)] == ["SALI", "Lyapunov exponent", "Birkhoff digits of halves"]
-
-
-@pytest.mark.parametrize("t_max", [1e-3, 2.0, 300.0])
+@pytest.mark.parametrize("t_max", [1e-3, 300.0])
 def test_a_short_regular_orbit_is_undecided(t_max: float) -> None:
     orbit = integrate_orbit(CASES["II"], ISLAND, t_max)
     digits = compute_birkhoff_digits(CASES["II"], ISLAND, t_max)
     assert conclusions(orbit, digits) == [Verdict.UNDECIDED] * 4
 
 
-def test_strong_chaos_is_detected_before_any_orbit_is_called_regular() -> None:
-    start = start_states(CASES["II"], Plane.X_PX, 0.1666, np.array([0.1]), np.array([-0.2]))[0]
-    assert conclusions(integrate_orbit(CASES["II"], start, 500.0))[:2] == [Verdict.CHAOTIC] * 2
-
-
 @pytest.mark.parametrize(
     ("sali", "expected"),
     [
-        (1e-16, Verdict.CHAOTIC),
         (1e-7, Verdict.CHAOTIC),
         (1e-6, Verdict.UNDECIDED),
         (2e-5, Verdict.NO_SIGN),
-        (1.0, Verdict.NO_SIGN),
     ],
 )
 def test_sali_between_chaos_and_tori_is_undecided(island: Orbit, sali: float, expected: Verdict) -> None:
     assert conclusions(replace(island, sali=np.full_like(island.t, sali)))[0] is expected
 
 
-@pytest.mark.parametrize(
-    ("power", "expected"), [(0.0, Verdict.NO_SIGN), (1.0, Verdict.NO_SIGN), (1.8, Verdict.UNDECIDED), (2.1, Verdict.CHAOTIC)]
-)
+@pytest.mark.parametrize(("power", "expected"), [(1.0, Verdict.NO_SIGN), (1.8, Verdict.UNDECIDED), (2.1, Verdict.CHAOTIC)])
 def test_growth_by_a_power_of_time_is_judged_by_the_power(island: Orbit, power: float, expected: Verdict) -> None:
     with np.errstate(divide="ignore", invalid="ignore"):
         exponent = power * np.log(island.t) / island.t
@@ -244,12 +156,3 @@ def test_growth_that_turns_exponential_late_is_not_regular(island: Orbit) -> Non
 def test_digits_are_judged_at_the_longest_window(island: Orbit, window: float, digits: float, expected: Verdict) -> None:
     found = BirkhoffDigits(np.array([500.0, window]), np.array([5.0, digits]))
     assert conclusions(island, found)[3] is expected
-
-
-def test_digits_of_halves_are_those_of_windows_of_half_the_length(sea: Orbit) -> None:
-    """Of an orbit of two windows of 4000."""
-    torus = integrate_orbit(CASES["I"], TORUS_STATE, 8000.0)
-    expected = count_agreeing_digits(CASES["I"], np.array([TORUS_STATE]), 4000.0)[0]
-    assert torus.digits_of_halves == pytest.approx(expected, abs=0.5)
-    assert expected > 5.0
-    assert sea.digits_of_halves < 3.0

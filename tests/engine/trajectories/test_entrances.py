@@ -22,7 +22,7 @@ from engine.exits.interior import find_outside_channels
 
 COUNT = 4000
 # Without islands, so that all of the volume is passed.
-OPEN = [(CASES["I"], 0.4), (CASES["II"], 0.4), (CASES["III"], 0.6), (POTENTIALS["HH"], 0.3)]
+OPEN = [(CASES["III"], 0.6), (POTENTIALS["HH"], 0.3)]
 UNEQUAL = Potential("unequal", ((2, 0, 0.5), (0, 2, 0.6), (1, 2, -1.0), (3, 0, 0.3)))
 
 
@@ -38,13 +38,12 @@ def test_the_mean_time_inside_is_volume_over_flux(potential: Potential, energy: 
     assert float(times.mean()) == pytest.approx(compute_flux(potential, energy).mean_passage_time, abs=4.0 * error)
 
 
-@pytest.mark.parametrize(("energy", "t_max"), [(0.3, 100.0), (0.3, 1000.0), (0.45, 100.0)])
-def test_orbits_that_enter_pass_the_volume_that_drains(energy: float, t_max: float) -> None:
+def test_orbits_that_enter_pass_the_volume_that_drains() -> None:
     """Of all starts a share leaves until t_max; that share of volume over flux is the mean time of entering orbits until t_max.
 
-    Some of these orbits are still inside then, and islands take much of the volume at h = 0.3.
+    Some of these orbits are still inside then, and islands take much of the volume.
     """
-    potential = CASES["III"]
+    potential, energy, t_max = CASES["III"], 0.3, 1000.0
     starts, entrances = (draw(potential, energy, 5 * COUNT, seed=1) for draw in (sample_starts, sample_entrances))
     times = times_inside(potential, energy, entrances, t_max)
     leave = classify_orbits(potential, energy, starts, t_max).fate > Fate.BOUNDED
@@ -73,12 +72,6 @@ def test_each_exit_has_its_share_of_the_flux() -> None:
     nearest = np.argmin([np.hypot(*(states[:, :2] - middle).T) for middle in middles], axis=0)
     counts = np.bincount(nearest, minlength=flux.shares.size)
     np.testing.assert_allclose(counts / counts.sum(), flux.shares, atol=4.0 * 0.5 / math.sqrt(20_000))
-
-
-def test_equal_seeds_give_equal_states() -> None:
-    first, again, other = (sample_entrances(CASES["I"], 0.2, 50, seed=seed) for seed in (1, 1, 2))
-    np.testing.assert_array_equal(first, again)
-    assert (first != other).any()
 
 
 def test_closed_exits_are_named() -> None:

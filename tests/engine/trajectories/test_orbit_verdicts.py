@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,11 +11,9 @@ from engine import (
     CASES,
     BirkhoffDigits,
     Certificate,
-    Fate,
     Orbit,
     Plane,
     Verdict,
-    evaluate_indicators,
     integrate_orbit,
     judge_orbit,
     start_states,
@@ -53,15 +50,6 @@ def bounded() -> Orbit:
     return replace(integrate_orbit(CASES["II"], ISLAND, 2000.0), certificate=Certificate.INTEGRATED)
 
 
-def test_a_short_orbit_is_undecided_as_for_its_indicators() -> None:
-    start = start_states(CASES["II"], Plane.X_H, 0.0, np.array([0.3]), np.array([0.05]))[0]
-    orbit = integrate_orbit(CASES["II"], start, 100.0)
-    assert {indicator.conclusion for indicator in evaluate_indicators(orbit)} == {Verdict.UNDECIDED}
-    verdict = judge_orbit(orbit)
-    assert verdict.character is Verdict.UNDECIDED
-    assert ", undecided whether regular or chaotic, with " in verdict.describe()
-
-
 @pytest.mark.parametrize(
     ("sali", "growth", "halves", "digits", "character"),
     [
@@ -87,23 +75,9 @@ def test_the_character_is_that_of_the_indicators_that_decide(
     assert judge_orbit(orbit, None if digits is None else digits_of(digits)).character is character
 
 
-@pytest.mark.parametrize(
-    ("sali", "halves", "sentence"),
-    [
-        (0.1, 3.0, "Bounded until t = 2 000, no sign of chaos until t = 2 000, with "),
-        (0.1, 8.25, "Bounded until t = 2 000, regular (Birkhoff digits of halves 8.2), with "),
-        (1e-9, 3.0, "Bounded until t = 2 000, chaotic (SALI 1e-09), with "),
-        (1e-6, 3.0, "Bounded until t = 2 000, undecided whether regular or chaotic, with "),
-    ],
-)
-def test_a_verdict_states_its_evidence_and_its_time(bounded: Orbit, sali: float, halves: float, sentence: str) -> None:
-    assert judge_orbit(with_end(bounded, sali=sali, growth=1.0, halves=halves)).describe().startswith(sentence)
-
-
-@pytest.mark.parametrize("t_max", [1000.0, 2000.0, 5000.0])
-def test_sticky_orbits_are_not_called_regular(t_max: float) -> None:
-    for case, state in STICKY:
-        assert judge_orbit(integrate_orbit(CASES[case], state, t_max)).character is not Verdict.REGULAR
+@pytest.mark.parametrize(("case", "state"), STICKY)
+def test_sticky_orbits_are_not_called_regular(case: str, state: tuple[float, ...]) -> None:
+    assert judge_orbit(integrate_orbit(CASES[case], state, 5000.0)).character is not Verdict.REGULAR
 
 
 @pytest.mark.parametrize(("state", "character"), [(ISLAND, Verdict.REGULAR), (SEA, Verdict.CHAOTIC)])
@@ -111,7 +85,6 @@ def test_an_orbit_below_the_escape_energy_is_bounded_for_ever(state: list[float]
     verdict = judge_orbit(integrate_orbit(CASES["II"], state, 2000.0))
     assert (verdict.certificate, verdict.character) == (Certificate.CLOSED, character)
     assert verdict.describe().startswith(f"Bounded for ever (its energy is below every saddle), {character} (")
-    assert verdict.describe().endswith(" until t = 2 000.")
 
 
 @pytest.mark.parametrize(("digits", "on_a_torus"), [(7.9, False), (8.0, True)])
@@ -133,21 +106,6 @@ def test_signs_of_chaos_withdraw_the_evidence_of_a_torus(bounded: Orbit, sali: f
     assert "for ever" not in verdict.describe()
 
 
-def test_without_windows_to_compare_an_orbit_is_not_certified(bounded: Orbit) -> None:
-    assert judge_orbit(bounded, BirkhoffDigits(np.array([]), np.array([]))).certificate is Certificate.INTEGRATED
-
-
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
-        ({"crossings": 1}, "with 1 upward crossing of y = 0."),
-        ({"crossings": 12345}, "with 12 345 upward crossings of y = 0."),
-    ],
-)
-def test_crossings_are_counted_in_words(bounded: Orbit, changes: dict[str, Any], sentence: str) -> None:
-    assert judge_orbit(replace(bounded, **changes)).describe().endswith(sentence)
-
-
 def test_an_escape_names_channel_time_and_crossings() -> None:
     orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_PX, 0.3, np.array([0.1]), np.array([0.2]))[0], 1e3)
     verdict = judge_orbit(orbit)
@@ -155,23 +113,8 @@ def test_an_escape_names_channel_time_and_crossings() -> None:
     assert (verdict.certificate, verdict.character) == (Certificate.NONE, None)
     assert f"channel {orbit.fate} at t = {orbit.escape_time:.6g}" in verdict.describe()
     assert verdict.summarize() == f"channel {orbit.fate} at t = {orbit.escape_time:.5g}"
-    assert "after 1 upward crossing of y = 0." in judge_orbit(replace(orbit, crossings=1)).describe()
-    assert judge_orbit(replace(orbit, crossings=0)).describe().endswith("directly, without crossing y = 0 upward.")
-
-
-def test_an_orbit_with_aligned_deviation_vectors_was_chaotic_while_inside() -> None:
-    orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_PX, 0.3, np.array([0.1]), np.array([0.2]))[0], 1e3)
-    verdict = judge_orbit(replace(orbit, sali=np.full_like(orbit.sali, 1e-9)))
-    assert verdict.character is Verdict.CHAOTIC_INSIDE
-    assert verdict.describe().endswith(", chaotic while inside.")
-    assert verdict.summarize() == f"channel {orbit.fate} at t = {orbit.escape_time:.5g}, chaotic while inside"
-
-
-def test_an_outside_start_is_neither_bounded_nor_judged() -> None:
-    orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_Y, 0.3, np.array([1.3]), np.zeros(1))[0], 10.0)
-    verdict = judge_orbit(orbit)
-    assert (verdict.fate, verdict.character, verdict.summarize()) == (Fate.OUTSIDE, None, "outside")
-    assert verdict.describe().startswith("Outside")
+    aligned = judge_orbit(replace(orbit, sali=np.full_like(orbit.sali, 1e-9)))
+    assert aligned.character is Verdict.CHAOTIC_INSIDE
 
 
 def test_a_collision_is_named_in_the_sentence_and_in_the_list() -> None:
@@ -180,5 +123,3 @@ def test_a_collision_is_named_in_the_sentence_and_in_the_list() -> None:
     verdict = judge_orbit(orbit)
     assert verdict.describe().startswith("Collided with a disc at t = ")
     assert verdict.summarize().startswith("collision with a disc at t = ")
-    assert "The orbit collides at t = " in evaluate_indicators(orbit)[0].sentence
-    assert "fate collision with a disc" in repr(orbit)

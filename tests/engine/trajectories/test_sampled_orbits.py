@@ -12,7 +12,6 @@ from engine import (
     CASES,
     Execution,
     Fate,
-    Potential,
     classify_orbits,
     integrate_orbit,
     sample_orbits,
@@ -50,14 +49,6 @@ def test_states_are_those_of_single_orbits(case: str) -> None:
         np.testing.assert_array_equal(np.isfinite(orbits.y[place]), known)
 
 
-def test_the_energy_is_kept_at_every_sample() -> None:
-    potential, states = CASES["II"], np.random.default_rng(5).uniform(-0.3, 0.3, (20, 4))
-    orbits = sample_orbits(potential, states, TIMES)
-    energies = potential.energy(np.stack([orbits.x, orbits.y, orbits.px, orbits.py], axis=-1))
-    inside = np.isfinite(energies)
-    np.testing.assert_allclose(energies[inside], np.broadcast_to(orbits.energy[:, None], energies.shape)[inside], atol=1e-13)
-
-
 def test_each_orbit_has_its_own_times() -> None:
     states = starts_of("I", 3)
     own = np.array([[0.0, 1.0, 2.0], [0.5, 0.5, 0.75], [0.0, 0.1, 40.0]])
@@ -68,29 +59,12 @@ def test_each_orbit_has_its_own_times() -> None:
     np.testing.assert_array_equal(orbits.t, own)
 
 
-def test_lengths_and_times_are_in_the_units_of_the_potential() -> None:
-    given, scale = CASES["III"], 3.7
-    scaled = Potential("scaled", tuple((i, j, c * scale ** (2 - i - j)) for i, j, c in given.terms))
-    states = starts_of("III", 10)
-    one, other = sample_orbits(given, states, TIMES), sample_orbits(scaled, scale * states, TIMES)
-    short = TIMES < 5.0
-    np.testing.assert_allclose(other.x[:, short], scale * one.x[:, short], atol=1e-9)
-    np.testing.assert_allclose(other.energy, scale**2 * one.energy, rtol=1e-12)
-
-
 def test_a_start_outside_has_no_path() -> None:
     outside = np.array([[0.0, 3.0, 0.0, 0.1], [0.1, 0.0, 0.0, 0.1]])
     orbits = sample_orbits(CASES["I"], outside, [0.0, 1.0])
     assert orbits.fate[0] == Fate.OUTSIDE
     assert np.isfinite(orbits.x).tolist() == [[True, False], [True, True]]
-
-
-def test_the_dataset_has_orbits_and_samples() -> None:
-    orbits = sample_orbits(CASES["III"], starts_of("III", 5), TIMES)
-    dataset = orbits.to_xarray()
-    assert dict(dataset.sizes) == {"orbit": 5, "sample": TIMES.size}
-    assert {"fate", "escape_time", "x", "y", "px", "py"} <= set(dataset.data_vars)
-    assert "t" in dataset.coords
+    assert orbits.y[0, 0] == 3.0
 
 
 def test_a_cancelled_call_ends() -> None:
@@ -104,11 +78,9 @@ def test_a_cancelled_call_ends() -> None:
     ("states", "times", "sentence"),
     [
         (np.zeros(4), TIMES, r"states=.*: must be \(n, 4\) finite numbers"),
-        (np.full((2, 4), np.nan), TIMES, r"states=.*: must be \(n, 4\) finite numbers"),
         (np.zeros((2, 4)), [1.0, 0.5], r"times of shape \(2,\): must be ascending from 0, \(m,\) or \(2, m\)"),
         (np.zeros((2, 4)), np.zeros((3, 2)), r"times of shape \(3, 2\): must be ascending"),
         (np.zeros((2, 4)), [0.0], r"times: the last one=0.0: must be above 0"),
-        (np.zeros((2, 4)), [-1.0, 2.0], r"times of shape \(2,\): must be ascending from 0"),
     ],
 )
 def test_wrong_arguments_are_named(states: np.ndarray, times: object, sentence: str) -> None:

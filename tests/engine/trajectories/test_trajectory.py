@@ -26,7 +26,7 @@ from tests.peers.exit_lines import exit_lines
 
 # An energy of each case at which some orbits escape and some do not.
 ENERGY = {"I": 0.14, "II": 0.18, "III": 0.35}
-ESCAPING = [(name, channel) for name in CASES for channel in range(1, CASES[name].channels + 1)]
+ESCAPING = [("I", 1), ("II", 3), ("III", 4)]
 
 
 def interior_starts(name: str, energy: float, count: int, reach: float = 0.4) -> np.ndarray:
@@ -60,27 +60,13 @@ def states_of(orbit: Orbit) -> np.ndarray:
 # The path.
 
 
-def test_the_path_begins_at_the_start(bounded: tuple[str, np.ndarray, Orbit]) -> None:
+def test_the_path_leads_from_the_start_to_t_max_in_equal_intervals(bounded: tuple[str, np.ndarray, Orbit]) -> None:
     _, start, orbit = bounded
     np.testing.assert_array_equal(states_of(orbit)[0], start)
-
-
-def test_samples_are_evenly_spaced_to_t_max(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    t = bounded[2].t
-    assert (t[0], t[-1]) == (0.0, 200.0)
-    np.testing.assert_allclose(np.diff(t), t[1], rtol=1e-9)
-
-
-def test_every_sample_has_the_initial_energy(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    name, _, orbit = bounded
-    np.testing.assert_allclose(CASES[name].energy(states_of(orbit)), orbit.energy, rtol=1e-12)
-
-
-def test_momentum_is_the_velocity_of_the_path(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    _, _, orbit = bounded
-    # The error of central differences of samples 0.02 apart is the third derivative times 0.02²/6.
-    np.testing.assert_allclose(np.gradient(orbit.x, orbit.t)[1:-1], orbit.px[1:-1], atol=1e-3)
-    np.testing.assert_allclose(np.gradient(orbit.y, orbit.t)[1:-1], orbit.py[1:-1], atol=1e-3)
+    assert (orbit.t[0], orbit.t[-1]) == (0.0, 200.0)
+    np.testing.assert_allclose(np.diff(orbit.t), orbit.t[1], rtol=1e-9)
+    np.testing.assert_allclose(orbit.r2, orbit.x**2 + orbit.y**2, rtol=1e-14)
+    assert np.isnan(orbit.escape_time)
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.05), ("II", 0.08), ("III", 0.1)])
@@ -93,28 +79,7 @@ def test_a_regular_orbit_agrees_with_scipy(name: str, energy: float) -> None:
     np.testing.assert_allclose(states_of(orbit)[:: orbit.t.size // 40].T, path, atol=1e-9)
 
 
-def test_r2_is_the_squared_distance_from_the_origin(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    orbit = bounded[2]
-    np.testing.assert_allclose(orbit.r2, np.hypot(orbit.x, orbit.y) ** 2, rtol=1e-14)
-
-
-def test_arrays_are_read_only(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    with pytest.raises(ValueError, match="read-only"):
-        bounded[2].x[0] = 1.0
-
-
-def test_crossings_agree_with_the_samples(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    orbit = bounded[2]
-    assert orbit.crossings == np.sum((orbit.y[:-1] < 0) & (orbit.y[1:] >= 0)) > 5
-
-
 # Fate and verdict.
-
-
-def test_a_bounded_orbit_has_no_escape_time(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    orbit = bounded[2]
-    assert orbit.fate == Fate.BOUNDED
-    assert np.isnan(orbit.escape_time)
 
 
 def test_fate_time_and_crossings_equal_those_of_a_batch(escaping: tuple[str, np.ndarray, Orbit]) -> None:
@@ -124,29 +89,21 @@ def test_fate_time_and_crossings_equal_those_of_a_batch(escaping: tuple[str, np.
     assert mine == (outcome.fate[0], outcome.escape_time[0], outcome.crossings[0], outcome.energy_error[0])
 
 
-def test_an_escaped_orbit_ends_at_its_escape_time(escaping: tuple[str, np.ndarray, Orbit]) -> None:
-    assert escaping[2].t[-1] == escaping[2].escape_time
-
-
 def test_an_escaped_orbit_ends_on_its_exit_and_is_inside_before(escaping: tuple[str, np.ndarray, Orbit]) -> None:
     name, _, orbit = escaping
     line = exit_lines(CASES[name], orbit.energy)[orbit.fate - 1]
     beyond = line.beyond(orbit.x, orbit.y)
+    assert orbit.t[-1] == orbit.escape_time
     assert beyond[-1] == pytest.approx(0.0, abs=1e-8)
     assert np.all(beyond[:-1] < 0)
 
 
-@pytest.mark.parametrize(("factor", "escapes"), [(1 - 1e-9, False), (1 + 1e-9, True), (1.001, True), (0.999, False)])
+@pytest.mark.parametrize(("factor", "escapes"), [(1 - 1e-9, False), (1.0, True), (1 + 1e-9, True)])
 def test_t_max_around_the_escape_time_decides(escaping: tuple[str, np.ndarray, Orbit], factor: float, escapes: bool) -> None:
     name, start, orbit = escaping
     again = integrate_orbit(CASES[name], start, factor * orbit.escape_time)
     assert again.fate == (orbit.fate if escapes else Fate.BOUNDED)
     assert again.t[-1] == (orbit.escape_time if escapes else factor * orbit.escape_time)
-
-
-def test_t_max_exactly_at_the_escape_time_is_an_escape(escaping: tuple[str, np.ndarray, Orbit]) -> None:
-    name, start, orbit = escaping
-    assert integrate_orbit(CASES[name], start, orbit.escape_time).fate == orbit.fate
 
 
 def test_an_outside_start_stays_where_it_is() -> None:
@@ -155,44 +112,7 @@ def test_an_outside_start_stays_where_it_is() -> None:
     assert orbit.certificate is Certificate.NONE
 
 
-def test_an_orbit_at_rest_at_the_minimum_stays_there() -> None:
-    orbit = integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 0.0], 10.0)
-    assert orbit.fate == Fate.BOUNDED
-    assert not states_of(orbit).any()
-
-
-@pytest.mark.parametrize("t_max", [1e-9, 0.01, 3.3])
-def test_short_times_are_possible(t_max: float) -> None:
-    orbit = integrate_orbit(CASES["III"], start_with_fate("III", Fate.BOUNDED), t_max)
-    assert orbit.t[-1] == t_max
-    assert np.isfinite(states_of(orbit)).all()
-
-
 # SALI.
-
-
-@pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.1666), ("III", 0.24)])
-def test_sali_agrees_with_scipys_variational_equations(name: str, energy: float) -> None:
-    start = interior_starts(name, energy, 20)[0]
-    orbit = integrate_orbit(CASES[name], start, 40.0)
-    pick = slice(None, None, orbit.t.size // 50)
-    flat = np.concatenate([start, DEVIATION_VECTORS.ravel()])
-    both = solve_ivp(variational_equations(CASES[name]), (0, 40), flat, "DOP853", rtol=1e-12, atol=1e-12, t_eval=orbit.t[pick]).y[
-        4:
-    ]
-    one, two = (w / np.linalg.norm(w, axis=0) for w in both.reshape(2, 4, -1))
-    sali = np.minimum(np.linalg.norm(one - two, axis=0), np.linalg.norm(one + two, axis=0))
-    np.testing.assert_allclose(orbit.sali[pick], sali, rtol=1e-6, atol=1e-9)
-
-
-def test_deviations_start_orthonormal() -> None:
-    np.testing.assert_allclose(DEVIATION_VECTORS @ DEVIATION_VECTORS.T, np.eye(2), atol=1e-15)
-
-
-def test_sali_starts_at_its_largest_value() -> None:
-    orbit = integrate_orbit(CASES["II"], start_with_fate("II", Fate.BOUNDED), 5.0)
-    assert orbit.sali[0] == pytest.approx(np.sqrt(2), rel=1e-15)
-    assert orbit.sali.max() <= np.sqrt(2) * (1 + 1e-15)
 
 
 # Hénon & Heiles (1964): at half the escape energy nearly every orbit lies on a torus, just below the escape energy few do.
@@ -204,33 +124,26 @@ def test_henon_heiles_changes_from_regular_to_chaotic(energy: float, expected: V
     assert sum(verdict in allowed for verdict in verdicts) >= 6
 
 
-def test_case_1_below_its_escape_energy_has_both_kinds() -> None:
-    verdicts = {judge_orbit(integrate_orbit(CASES["I"], start, 2e4)).character for start in interior_starts("I", 0.12, 12)}
-    assert {Verdict.REGULAR, Verdict.CHAOTIC} <= verdicts
-
-
-def test_sali_of_a_chaotic_orbit_decreases_as_nearby_orbits_separate() -> None:
-    """An orbit at a distance of 1e-9 separates about as fast as SALI decreases."""
-    start = interior_starts("II", 0.1666, 4)[0]
-    chaotic = integrate_orbit(CASES["II"], start, 300.0)
-    neighbour = integrate_orbit(CASES["II"], start + np.array([1e-9, 0.0, 0.0, 0.0]), 300.0)
-    apart = np.linalg.norm(states_of(chaotic) - states_of(neighbour), axis=1)
-    assert apart.max() > 1e-3
-    assert chaotic.sali[-1] < 1e-6
-
-
 # The Lyapunov exponent.
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.1666), ("III", 0.24)])
-def test_the_lyapunov_exponent_agrees_with_scipys_variational_equations(name: str, energy: float) -> None:
+def test_sali_and_the_lyapunov_exponent_agree_with_scipys_variational_equations(name: str, energy: float) -> None:
     start = interior_starts(name, energy, 20)[0]
     orbit = integrate_orbit(CASES[name], start, 80.0)
     pick = slice(orbit.t.size // 20, None, orbit.t.size // 20)
     flat = np.concatenate([start, DEVIATION_VECTORS.ravel()])
-    both = solve_ivp(variational_equations(CASES[name]), (0, 80), flat, "DOP853", rtol=1e-12, atol=1e-12, t_eval=orbit.t[pick]).y
-    exponent = np.log(np.linalg.norm(both[4:8], axis=0)) / orbit.t[pick]
+    both = solve_ivp(variational_equations(CASES[name]), (0, 80), flat, "DOP853", rtol=1e-12, atol=1e-12, t_eval=orbit.t[pick]).y[
+        4:
+    ]
+    exponent = np.log(np.linalg.norm(both[:4], axis=0)) / orbit.t[pick]
     np.testing.assert_allclose(orbit.lyapunov_exponent[pick], exponent, rtol=1e-6, atol=1e-9)
+    one, two = (w / np.linalg.norm(w, axis=0) for w in both.reshape(2, 4, -1))
+    sali = np.minimum(np.linalg.norm(one - two, axis=0), np.linalg.norm(one + two, axis=0))
+    early = orbit.t[pick] < 40.0
+    np.testing.assert_allclose(orbit.sali[pick][early], sali[early], rtol=1e-6, atol=1e-9)
+    assert orbit.sali[0] == pytest.approx(np.sqrt(2.0))
+    assert np.isnan(orbit.lyapunov_exponent[0])
 
 
 # Along the axis x = 0 of Case III the orbit is y = A sin t, A² = 2h, and deviations from the axis obey Mathieu's equation.
@@ -248,51 +161,12 @@ def test_the_lyapunov_exponent_of_a_straight_line_orbit_agrees_with_mathieus_equ
     assert orbit.lyapunov_exponent[-1] == pytest.approx(np.log(multiplier) / np.pi, rel=3e-3)
 
 
-def test_the_lyapunov_exponent_falls_like_a_logarithm_over_t_on_a_torus() -> None:
-    # In an island of Hénon & Heiles at E = 1/8.
-    orbit = integrate_orbit(CASES["II"], [0.558, 0.0, 0.0, 0.2334], 1e4)
-    late = orbit.t > 1000.0
-    ratio = orbit.lyapunov_exponent[late] * orbit.t[late] / np.log(orbit.t[late])
-    assert 0.5 < ratio.min() < ratio.max() < 1.0
-    assert orbit.lyapunov_exponent[-1] < 1e-3
-
-
-def test_mirror_images_have_equal_growth() -> None:
-    """Their deviation vectors are not mirror images, but all vectors align with the fastest growing direction."""
-    start = interior_starts("II", 0.1666, 20)[0]
-    orbit, image = (integrate_orbit(CASES["II"], start * signs, 1000.0) for signs in ([1, 1, 1, 1], [1, -1, 1, -1]))
-    growth = orbit.lyapunov_exponent[-1] * 1000.0
-    assert growth > 100.0
-    assert image.lyapunov_exponent[-1] * 1000.0 == pytest.approx(growth, abs=4.0)
-
-
-def test_a_reversed_chaotic_orbit_has_equal_growth() -> None:
-    start = interior_starts("II", 0.1666, 20)[2]
-    orbit = integrate_orbit(CASES["II"], start, 300.0)
-    back = integrate_orbit(CASES["II"], states_of(orbit)[-1] * [1, 1, -1, -1], 300.0)
-    np.testing.assert_allclose(states_of(back)[-1] * [1, 1, -1, -1], start, atol=1e-4)
-    growth = orbit.lyapunov_exponent[-1] * 300.0
-    assert growth > 20.0
-    assert back.lyapunov_exponent[-1] * 300.0 == pytest.approx(growth, abs=2.0)
-
-
-def test_the_lyapunov_exponent_is_nan_at_time_0() -> None:
-    orbit = integrate_orbit(CASES["II"], start_with_fate("II", Fate.BOUNDED), 5.0)
-    assert np.isnan(orbit.lyapunov_exponent[0])
-    assert np.isfinite(orbit.lyapunov_exponent[1:]).all()
-
-
-def test_nbytes_counts_all_arrays(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    arrays = [value for value in vars(bounded[2]).values() if isinstance(value, np.ndarray)]
-    assert bounded[2].nbytes == sum(array.nbytes for array in arrays) == 8 * bounded[2].t.nbytes
-
-
 # Invalid parameters.
 
 
 @pytest.mark.parametrize(
     "state",
-    [[0.0, 0.0, 0.0], [0.0] * 5, [[0.0, 0.0, 0.0, 0.1]], [np.nan, 0, 0, 0], [0, np.inf, 0, 0], [0, 0, 0, -np.inf], None, 3.0],
+    [[0.0] * 5, [[0.0, 0.0, 0.0, 0.1]], [np.nan, 0, 0, 0], None],
 )
 def test_a_state_that_is_not_four_finite_numbers_raises(state: Any) -> None:
     with pytest.raises(ValueError, match="state=") as error:
@@ -300,7 +174,7 @@ def test_a_state_that_is_not_four_finite_numbers_raises(state: Any) -> None:
     assert repr(state) in str(error.value)
 
 
-@pytest.mark.parametrize("t_max", [0.0, -1.0, np.nan, np.inf, 1e9])
+@pytest.mark.parametrize("t_max", [0.0, np.nan, 1e9])
 def test_t_max_out_of_range_raises(t_max: float) -> None:
     with pytest.raises(ValueError, match="t_max="):
         integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 0.1], t_max)
@@ -312,9 +186,9 @@ def test_an_orbit_of_a_far_too_high_energy_is_followed_without_exits() -> None:
     assert orbit.fate < 1
 
 
-@pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("side", [-1.0, 0.0, 1.0])
-def test_an_orbit_at_rest_on_a_saddle_is_bounded_and_does_not_run_away(name: str, side: float) -> None:
+def test_an_orbit_at_rest_on_a_saddle_is_bounded_and_does_not_run_away(side: float) -> None:
+    name = "II"
     saddle = CASES[name].saddles[0]
     x, y = np.nextafter(saddle, saddle + side * saddle) if side else saddle
     orbit = integrate_orbit(CASES[name], (x, y, 0.0, 0.0), 100.0)

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.potentials.forms import exit_saddles
 from engine.potentials.forms.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.potential import Potential
-from engine.potentials.review.potential_review import review_potential
-from tests.fuzz.test_random_wells import random_well
+from tests.peers.random_systems import random_well
 
 # A ring-shaped valley around a hill, lowest at the origin; its highest point is a saddle with the origin below on both sides.
 RING = parse_formula("((x − 1.1)² + y² − 1)² + 0.924x")
@@ -52,19 +50,6 @@ def test_a_saddle_at_the_end_of_a_long_narrow_valley_is_an_exit() -> None:
     for _ in range(50):
         x -= potential.gradient(x, y)[0] / potential.hessian(x, y)[0]
     assert (np.diff(potential.value(x, y)) > 0.0).all()
-
-
-def test_descents_that_take_too_many_steps_are_a_refusal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(exit_saddles, "_MOST_STEPS", 100)
-    refusal = review_potential(parse_formula("x²/2 + y²/2 − 0.9876xy²")).refusal
-    assert refusal is not None
-    assert "steepest descent" in refusal
-
-
-def test_descents_from_a_saddle_far_beyond_the_others_end() -> None:
-    potential = random_well(810)
-    assert np.hypot(*potential.critical_points.T).max() > 560.0
-    assert potential.channels == 4
 
 
 def test_descents_that_need_an_implicit_method_from_the_start_end() -> None:

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import math
 import re
-import time
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -11,13 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from engine import CASES
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.formulas.formula_tokens import FormulaError
 from engine.potentials.formulas.formula_writer import write_formula
-from engine.potentials.known_potentials import CASES
 from engine.potentials.potential import Potential
-from engine.potentials.review.potential_review import review_potential
-from tests.fuzz.test_random_expressions import random_formula
+from tests.peers.random_systems import random_formula
 
 III = CASES["III"].terms
 
@@ -40,10 +38,8 @@ def potential_of(table: dict[tuple[int, int], float]) -> Potential:
     [
         "½(x² + y²) − x²y²",
         "0.5*(x^2+y^2) - x^2*y^2",
-        "1/2 x^2 + 1/2 y^2 - x^2 y^2",
         ".5r^2 - (xy)^2",
         "r²/2 − x·x·y×y",
-        "V = 1/2 (x**2 + y**2) - x**2*y**2",
         "V(x, y) = (x^2+y^2)/(1+1) - ((x))^2 y²",
         "5e-1(x²+y²)+-x²y²",
     ],
@@ -62,13 +58,10 @@ def test_expansion_is_exact_before_rounding() -> None:
     [
         ("-x^2", ((2, 0, -1.0),)),
         ("2x²/4y", ((2, 1, 0.5),)),
-        ("x - -x", ((1, 0, 2.0),)),
         ("--x", ((1, 0, 1.0),)),
         ("(x+y)³", ((3, 0, 1.0), (2, 1, 3.0), (1, 2, 3.0), (0, 3, 1.0))),
-        ("r^4", ((4, 0, 1.0), (2, 2, 2.0), (0, 4, 1.0))),
         ("y + 1/4", ((0, 0, 0.25), (0, 1, 1.0))),
         ("x^0 y", ((0, 1, 1.0),)),
-        ("2³x", ((1, 0, 8.0),)),
     ],
 )
 def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...]) -> None:
@@ -79,51 +72,31 @@ def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...
     ("text", "position", "reason"),
     [
         ("", 0, "ends"),
-        ("x +", 3, "ends"),
         ("x + tan(x)", 4, "not understood"),
-        # Otherwise products of a parameter p, which here cancel.
-        ("½r² − x²y − 0.3(x py − y px)", 18, "'py' is not understood"),
         ("½r² − x²y cos(3t)", 15, "'t' is not understood"),
-        ("½r² − x²y − 0.3(y vx − x vy)", 18, "'vx' is not understood"),
         ("x + sin x", 8, "its argument in brackets"),
         ("x + log(1 − 1)", 4, "not a finite real number"),
-        ("x + √(−2)", 4, "not a finite real number"),
-        ("x exp(10^9)", 2, "not a finite real number"),
         ("x2", 1, "directly after"),
-        ("2 3x", 2, "directly after"),
-        ("x/0", 1, "must not be 0"),
         ("x/(y − y)", 1, "must not be 0"),
         ("x//2", 2, "unexpected /"),
         ("(x + y", 0, "not closed"),
         ("x + y)", 5, "unexpected )"),
         ("x^y", 2, "a number from -12 to 12"),
-        ("x^(y)", 2, "without x and y"),
-        ("x^)", 2, "a number from -12 to 12"),
-        ("0^(-1) x", 0, "not a finite real number"),
         ("x + a b c d f g h k l", 20, "at most 8"),
         ("x^13", 2, "from -12 to 12"),
-        ("x^-12.5", 2, "from -12 to 12"),
-        ("(x+y)^999999999", 6, "from -12 to 12"),
         ("9^9^9^9", 3, "power of a power"),
         ("x^7 y^6", 4, "degree 13"),
-        ("((x^4)^4)^4", 1, "degree 16"),
         ("((9^12)^12)^12 x", 0, "300 digits"),
         ("1e999x", 0, "decimal exponent"),
         ("1e12x", 0, "between 1e-09 and 1e"),
-        ("1e-12x", 0, "between 1e-09 and 1e"),
-        ("3 + 4", 0, "neither x nor y"),
         ("x - x", 0, "neither x nor y"),
         ("(1 + x + y)^12", 0, "91 terms"),
         ("y" + "".join(f"/(x−{k})" for k in range(1, 41)), 0, "The first derivatives of V have"),
         ("x" + "".join(f"+log((r²−{k})^6)" for k in range(1, 9)), 0, "V has"),
-        ("sin(" * 45 + "x" + ")" * 45, 0, "The first derivatives of V have"),
         ("√(x+" * 30 + "y" + ")" * 30, 0, "The first and second derivatives of V have"),
         ("x" + " " * 500, 500, "at most 500"),
         ("(" * 51 + "x" + ")" * 51, 50, "more than 50"),
-        ("√" * 52 + "x", 50, "more than 50"),
-        ("__import__('os')", 0, "not understood"),
         ("x\u0000", 1, "not understood"),
-        ("١x", 0, "not understood"),
     ],
 )
 def test_errors_have_position_and_reason(text: str, position: int, reason: str) -> None:
@@ -132,27 +105,15 @@ def test_errors_have_position_and_reason(text: str, position: int, reason: str) 
     assert caught.value.position == position
 
 
-def test_fifty_nested_brackets_are_parsed() -> None:
-    assert parse_formula("(" * 50 + "x" + ")" * 50).terms == ((1, 0, 1.0),)
-
-
 NESTED = ["exp(", "√(", "√", "(", "−(", "1/(1+", "exp(a*", "x^(", "("]
 
 
 @pytest.mark.parametrize("opening", NESTED)
-@pytest.mark.parametrize("depth", [30, 50, 60, 240])
+@pytest.mark.parametrize("depth", [50, 240])
 def test_a_deeply_nested_text_is_parsed_or_refused(opening: str, depth: int) -> None:
     text = opening * depth + "x" + ")" * depth * opening.count("(")
     with suppress(FormulaError):
         assert parse_formula(text[:500])
-
-
-def test_large_expansions_are_fast() -> None:
-    text = "*".join(["(x+y+1)^2"] * 6) + "*" + "*".join(["(1/7+2/3)"] * 40)
-    begin = time.process_time()
-    with pytest.raises(FormulaError):
-        parse_formula(text[:500])
-    assert time.process_time() - begin < 1.0
 
 
 @given(tables)
@@ -168,25 +129,6 @@ def test_a_formula_of_few_digits_has_small_relative_errors(table: dict[tuple[int
     assert {(i, j) for i, j, _ in again.terms} == {(i, j) for i, j, _ in potential.terms}
     for powers, c in again.form.coefficients.items():
         assert c == pytest.approx(potential.form.coefficients[powers], rel=5.001 * 10.0**-digits)
-
-
-def test_the_rounding_error_of_a_product_is_not_written() -> None:
-    potential = CASES["II"].with_parameters(omega_1=1.46, epsilon=0.9)
-    assert "1.0657999999999999" in write_formula(potential)
-    assert write_formula(potential, 12) == "1.0658x² + y²/2 − 0.3x³ + 0.9xy²"
-
-
-@pytest.mark.parametrize(("name", "text"), [("I", "x²/2 + y²/2 − xy²"), ("II", "x²/2 + y²/2 − x³/3 + xy²")])
-def test_cases_as_text(name: str, text: str) -> None:
-    assert write_formula(CASES[name]) == text
-
-
-def test_default_name_is_the_formula() -> None:
-    assert parse_formula("x*x/2").name == "x²/2"
-
-
-def test_given_name_is_used() -> None:
-    assert parse_formula("x²", "mine").name == "mine"
 
 
 letter_values = st.dictionaries(
@@ -210,34 +152,20 @@ def test_letters_equal_the_numbers_substituted_for_them(table: dict[tuple[int, i
         assert parse_formula(text, parameters=values).terms == expected
 
 
-def test_letters_that_are_not_given_are_one() -> None:
-    assert parse_formula("½r² − a x y²").terms == parse_formula("½r² − x y²").terms
-
-
-def test_a_letter_changes_the_powers_only_where_it_is_zero() -> None:
-    powers = {value: set(parse_formula("½r² − a x y²", parameters={"a": value}).form.coefficients) for value in (-2.0, 0.5, 0.0)}
-    assert powers[-2.0] == powers[0.5] == powers[0.0] | {(1, 2)}
-
-
 @pytest.mark.parametrize(
     ("text", "value"),
     [
         ("x/y", 0.4 / 0.7),
         ("x^-1 y", 0.7 / 0.4),
-        ("x⁻¹y", 0.7 / 0.4),
         ("x^2.5", 0.4**2.5),
-        ("x^a", 0.4**1.7),
         ("x^(a/2 - 1)", 0.4 ** (-0.15)),
         ("r", math.hypot(0.4, 0.7)),
-        ("r³", math.hypot(0.4, 0.7) ** 3),
         ("√r", math.hypot(0.4, 0.7) ** 0.5),
         ("2/√(x² + y² + a)", 2.0 / math.sqrt(0.16 + 0.49 + 1.7)),
-        ("-1/sqrt(x^2 + y^2 + a)", -1.0 / math.sqrt(0.16 + 0.49 + 1.7)),
         ("½x² − a x² y exp(−y²)", 0.08 - 1.7 * 0.16 * 0.7 * math.exp(-0.49)),
         ("ln(1 + x) + log(2y)", math.log(1.4) + math.log(1.4)),
         ("1 − cos(x) cos(a y)", 1.0 - math.cos(0.4) * math.cos(1.19)),
         ("sin(x)²/3 y", math.sin(0.4) ** 2 / 3.0 * 0.7),
-        ("x (1 + sin(y))^2", 0.4 * (1.0 + math.sin(0.7)) ** 2),
     ],
 )
 def test_formulas_with_functions_have_the_value_of_python(text: str, value: float) -> None:
@@ -249,11 +177,8 @@ def test_formulas_with_functions_have_the_value_of_python(text: str, value: floa
     ("text", "polynomial"),
     [
         ("√2 x²", None),
-        ("x⁴/x²", "x²"),
         ("√(x² + y²)²", "x² + y²"),
-        ("exp(0) x", "x"),
         ("x + sin(y) − sin(y)", "x"),
-        ("r²/2", "x²/2 + y²/2"),
     ],
 )
 def test_functions_that_cancel_leave_a_polynomial(text: str, polynomial: str | None) -> None:
@@ -261,7 +186,7 @@ def test_functions_that_cancel_leave_a_polynomial(text: str, polynomial: str | N
     assert terms == (((2, 0, math.sqrt(2.0)),) if polynomial is None else parse_formula(polynomial).terms)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(6))
 def test_written_formulas_with_functions_parse_to_equal_potentials(seed: int) -> None:
     text, values = random_formula(seed)
     potential = parse_formula(text, parameters=values)
@@ -285,16 +210,3 @@ def test_a_divisor_that_is_a_power_stays_one(text: str, written: str, function: 
     potential, places = parse_formula(text), (np.array([0.3, -0.2]), np.array([0.1, 0.4]))
     assert potential.name == written
     np.testing.assert_allclose(potential.value(*places), function(*places), rtol=1e-13)
-
-
-@pytest.mark.parametrize("power", [4, 5, 6, 12])
-def test_high_powers_of_a_wall_are_reviewed(power: int) -> None:
-    found = review_potential(parse_formula(f"x² + y² − x⁴ + 0.01/(y − x + 0.8)^{power}"))
-    assert "The only minimum is at" in str(found.refusal)
-
-
-def test_a_root_of_a_negative_product_is_understood() -> None:
-    text = "x⁴ + y⁴ − (14(√(−x y²) + exp(−y) + (y³)^1.5)^−3 − 4.7y³)^−1"
-    assert parse_formula(text).value(-0.5, 0.3) == pytest.approx(
-        0.0625 + 0.0081 - 1 / (14 * (math.sqrt(0.045) + math.exp(-0.3) + 0.027**1.5) ** -3 - 4.7 * 0.027)
-    )

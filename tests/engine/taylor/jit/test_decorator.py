@@ -31,10 +31,6 @@ def test_a_subroutine_is_part_of_the_file_of_its_kernel(tmp_path: Path, monkeypa
     assert "four_times" in file.name
 
 
-def test_a_subroutine_can_be_called_from_python() -> None:
-    assert twice(1.5) == 3.0
-
-
 def test_the_code_of_a_kernel_contains_its_subroutines() -> None:
     """Code of the same name in another kernel would replace it and round differently, depending on the order of loading."""
     find_lyapunov_orbits(CASES["I"], 0.2)

@@ -27,24 +27,3 @@ def test_steps_cover_the_whole_time(kernels) -> None:
     assert t[0] == 0.0
     assert np.all(np.diff(t) > 0)
     assert t[-1] < 50.0 <= t[-1] + 1.0
-
-
-def test_length_of_pieces_makes_no_difference(kernels, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = dense_output.trace_steps(kernels, START, 50.0, 4)
-    times = np.linspace(0, 50, 333)
-    path = dense_output.sample_path(kernels, whole, times)
-    sali, growth = dense_output.sample_deviations(kernels, path, times, np.eye(4)[:2])
-    monkeypatch.setattr(dense_output, "_CHUNK", 16)
-    assert len(whole) > 2 * 16
-    np.testing.assert_array_equal(dense_output.trace_steps(kernels, START, 50.0, 4), whole)
-    np.testing.assert_array_equal(dense_output.sample_path(kernels, whole, times), path)
-    again = dense_output.sample_deviations(kernels, path, times, np.eye(4)[:2])
-    np.testing.assert_allclose(again, [sali, growth], rtol=1e-9)
-
-
-def test_parallel_deviation_vectors_stay_parallel(kernels) -> None:
-    times = np.linspace(0, 5, 51)
-    path = dense_output.sample_path(kernels, dense_output.trace_steps(kernels, START, 5.0, 4), times)
-    vector = np.array([1.0, 2.0, 3.0, 4.0])
-    sali, _ = dense_output.sample_deviations(kernels, path, times, np.array([vector, -2 * vector]))
-    assert sali.max() < 1e-15

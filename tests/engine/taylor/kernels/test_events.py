@@ -52,18 +52,25 @@ def random_series(seed: int, direction: int) -> tuple[Polynomial, np.ndarray]:
         ((0.2, 0.8), +1, 1),  # above, below, above
         ((0.2, 0.8), -1, 1),  # below, above, below
         ((0.2, 0.5, 0.8), +1, 2),
-        ((0.2, 0.5, 0.8), -1, 1),
-        ((0.1, 0.35, 0.6, 0.85), +1, 2),
         ((-0.3, 1.2), +1, 0),
-        ((-0.3, 1.2), -1, 0),
+        # Starts on 0, upward and downward.
+        ((0.0,), +1, 0),
+        ((0.0, 0.4, 0.7), +1, 1),
+        ((0.0, 1e-4), +1, 1),
+        # Ends on 0, from below and from above.
+        ((1.0,), +1, 1),
+        ((1.0,), -1, 0),
+        # Touches 0, exact in floating point: y reaches y ≥ 0 from below; from above, it is never negative.
+        ((0.25, 0.25), +1, 0),
+        ((0.25, 0.25), -1, 1),
     ],
 )
 def test_crossings_are_the_roots_with_positive_slope(roots: tuple[float, ...], sign: int, expected: int) -> None:
     assert crossings(sign * with_roots(*roots)) == expected
 
 
-@pytest.mark.parametrize("apart", [0.1, 1e-2, 1e-4, 1e-6])
-@pytest.mark.parametrize("where", [0.01, 0.13, 0.3, 0.6180339, 0.97])
+@pytest.mark.parametrize("apart", [1e-2, 1e-6])
+@pytest.mark.parametrize("where", [0.13, 0.6180339])
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_two_roots_in_one_part_of_a_step_are_one_crossing(apart: float, where: float, sign: int) -> None:
     # Above, below, above and below, above, below both contain exactly one upward crossing.
@@ -71,38 +78,11 @@ def test_two_roots_in_one_part_of_a_step_are_one_crossing(apart: float, where: f
     assert crossings(sign * with_roots(low, high)) == 1
 
 
-@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
-@pytest.mark.parametrize("where", [0.05, 0.3, 0.77])
+@pytest.mark.parametrize("gap", [1e-3, 1e-12])
+@pytest.mark.parametrize("where", [0.3])
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_an_extremum_just_before_zero_is_no_crossing(gap: float, where: float, sign: int) -> None:
     assert crossings(sign * (with_roots(where, where) + gap)) == 0
-
-
-@pytest.mark.parametrize(("sign", "expected"), [(1, 0), (-1, 1)])
-def test_touching_zero_counts_from_below_only(sign: int, expected: int) -> None:
-    # Exact in floating point. From below, y reaches y ≥ 0; from above, it is never negative.
-    assert crossings(sign * with_roots(0.25, 0.25)) == expected
-
-
-def test_an_upward_start_on_zero_is_not_counted() -> None:
-    assert crossings(with_roots(0.0)) == 0
-
-
-def test_an_upward_start_on_zero_counts_a_later_return() -> None:
-    assert crossings(with_roots(0.0, 0.4, 0.7)) == 1
-
-
-@pytest.mark.parametrize("turn", [0.5, 0.05, 0.01, 1e-4])
-def test_a_downward_start_on_zero_counts_the_return(turn: float) -> None:
-    assert crossings(with_roots(0.0, turn)) == 1
-
-
-def test_end_on_zero_from_below_is_counted() -> None:
-    assert crossings(with_roots(1.0)) == 1
-
-
-def test_end_on_zero_from_above_is_not_counted() -> None:
-    assert crossings(-with_roots(1.0)) == 0
 
 
 def test_start_on_zero_after_a_step_that_ended_there_is_not_counted_twice() -> None:
@@ -114,14 +94,14 @@ def test_only_crossings_within_the_duration_are_counted() -> None:
     assert [crossings(with_roots(0.2, 0.5, 0.8), duration) for duration in (0.1, 0.4, 0.7, 0.9)] == [0, 1, 1, 2]
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(10))
 def test_crossings_of_random_series_are_their_roots_with_positive_slope(seed: int) -> None:
     polynomial, rising = random_series(seed, +1)
     assert crossings(polynomial) == rising.size
 
 
 @pytest.mark.parametrize("direction", [+1, -1])
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(5))
 def test_points_of_crossings_lie_at_the_roots_of_the_direction(seed: int, direction: int) -> None:
     polynomial, roots = random_series(seed, direction)
     x = Polynomial([0.3, -0.7, 0.2])
@@ -129,13 +109,6 @@ def test_points_of_crossings_lie_at_the_roots_of_the_direction(seed: int, direct
     append_crossings(jet_of(x), jet_of(polynomial), 0, float(direction), 5.0, 1.0, points, found, 1)
     assert found.tolist() == [0, roots.size]
     np.testing.assert_allclose(points[1, : roots.size], np.column_stack([x(roots), x.deriv()(roots), 5.0 + roots]), atol=1e-12)
-
-
-def test_no_more_crossings_are_appended_than_there_is_room_for() -> None:
-    jet, points, found = jet_of(with_roots(0.2, 0.5, 0.8)), np.full((1, 1, 3), np.nan), np.zeros(1, np.int64)
-    append_crossings(jet, jet, 0, 1.0, 0.0, 1.0, points, found, 0)
-    assert found[0] == 1
-    assert points[0, 0, 2] == pytest.approx(0.2)
 
 
 # Exits.
@@ -146,16 +119,8 @@ def orbit_through(x: float, y: float, px: float, py: float) -> tuple[np.ndarray,
     return jet_of(Polynomial([x, px])), jet_of(Polynomial([y, py]))
 
 
-@pytest.mark.parametrize(("name", "energy"), [("I", 0.13), ("I", 0.5), ("II", 0.5), ("III", 1.0)])
-def test_every_point_of_a_lyapunov_orbit_lies_on_its_curve(name: str, energy: float) -> None:
-    for orbit in find_lyapunov_orbits(CASES[name], energy):
-        distances = [exit_distance(x, y, orbit.curve) for x, y in zip(orbit.x, orbit.y, strict=True)]
-        assert np.abs(distances).max() < 1e-10
-
-
-@pytest.mark.parametrize(("name", "energy"), [("I", 0.5), ("II", 0.5), ("III", 1.0)])
-def test_curves_continue_straight_beyond_both_ends_of_a_lyapunov_orbit(name: str, energy: float) -> None:
-    for orbit in find_lyapunov_orbits(CASES[name], energy):
+def test_curves_continue_straight_beyond_both_ends_of_a_lyapunov_orbit() -> None:
+    for orbit in find_lyapunov_orbits(CASES["II"], 0.5):
         path = np.array([orbit.x, orbit.y])[:, : orbit.x.size // 2 + 1]
         for end, before in ((0, 1), (-1, -2)):
             # The path is densest at its ends, so that its last piece is nearly its tangent there.
@@ -166,9 +131,8 @@ def test_curves_continue_straight_beyond_both_ends_of_a_lyapunov_orbit(name: str
             assert far == pytest.approx(100.0 * near, abs=1e-6)
 
 
-@pytest.mark.parametrize(("name", "energy"), [("I", 0.3), ("II", 0.4), ("III", 0.8)])
-def test_exit_time_of_a_straight_line_is_that_of_its_intersection_with_the_lyapunov_orbit(name: str, energy: float) -> None:
-    for orbit in find_lyapunov_orbits(CASES[name], energy):
+def test_exit_time_of_a_straight_line_is_that_of_its_intersection_with_the_lyapunov_orbit() -> None:
+    for orbit in find_lyapunov_orbits(CASES["II"], 0.4):
         end = np.array([orbit.x[30], orbit.y[30]])
         tau = find_exit_time(*orbit_through(0.0, 0.0, *end), 0, 1.2, orbit.curve)
         assert tau == pytest.approx(1.0, abs=1e-9)
@@ -182,8 +146,3 @@ def test_the_place_where_a_step_crosses_an_exit_decides(across: tuple[float, flo
     gates = np.array([[1.0, 0.0, 0.5]])
     # A tenth of the step lies inside.
     assert crossed_exit(0.9, across[0], 1.9, across[1], curve, gates) == channel
-
-
-def test_a_step_that_starts_outside_has_exit_time_zero() -> None:
-    curve = find_lyapunov_orbits(CASES["II"], 0.3)[0].curve
-    assert find_exit_time(*orbit_through(1.5, 0.0, 1.0, 0.0), 0, 0.1, curve) == 0.0

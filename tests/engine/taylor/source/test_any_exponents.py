@@ -5,7 +5,6 @@ The programs are run operation by operation, so that nothing is compiled.
 
 from __future__ import annotations
 
-import itertools
 import operator
 
 import numpy as np
@@ -114,44 +113,22 @@ def difference_of_squares(one: tuple[int, int], other: tuple[int, int]) -> Terms
     return (2, 0, 0.5), (0, 2, 0.5), (2 * a + 1, 2 * b, 1 / (2 * a + 1)), (2 * c + 1, 2 * d, -1 / (2 * c + 1))
 
 
-@pytest.mark.parametrize("degree", range(2, 8))
+@pytest.mark.parametrize("degree", [3, 7])
 def test_random_exponents_generate_the_equations_of_motion(degree: int) -> None:
     rng = np.random.default_rng(degree)
     for _ in range(3):
         check(random_terms(rng, degree), rng)
 
 
-@pytest.mark.parametrize("n", [5, 6, 8])
+@pytest.mark.parametrize("n", [6])
 def test_families_with_lower_terms_generate_the_equations_of_motion(n: int) -> None:
     rng = np.random.default_rng(n)
     for _ in range(2):
         check(family_with_lower_terms(rng, n), rng)
 
 
-def test_a_square_of_which_the_hessian_contains_the_difference_too() -> None:
-    eighth = ((8, 0, -0.125), (6, 2, 3.5), (4, 4, -8.75), (2, 6, 3.5), (0, 8, -0.125))
-    check(((2, 0, 0.5), (0, 2, 0.5), *eighth, (3, 2, 0.03)), np.random.default_rng(1))
-
-
-@pytest.mark.parametrize("other", [(1, 1), (2, 0), (0, 2), (2, 1), (3, 0)])
+@pytest.mark.parametrize("other", [(1, 1), (3, 0)])
 @pytest.mark.parametrize("one", [(1, 0), (0, 1)])
 def test_differences_of_squares_generate_the_equations_of_motion(one: tuple, other: tuple) -> None:
     """Such as y² − x⁴, whose series have different scales."""
     check(difference_of_squares(one, other), np.random.default_rng(1))
-
-
-@pytest.mark.exhaustive
-@pytest.mark.parametrize("seed", range(6))
-def test_random_exponents_up_to_degree_12(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    for _ in range(50):
-        check(random_terms(rng, int(rng.integers(2, 13))), rng)
-        check(family_with_lower_terms(rng, int(rng.integers(3, 13))), rng)
-
-
-@pytest.mark.exhaustive
-def test_all_differences_of_squares_up_to_degree_12() -> None:
-    rng = np.random.default_rng(1)
-    monomials = [(a, b) for a in range(6) for b in range(7) if 0 < a + b <= 6]
-    for one, other in itertools.permutations(monomials, 2):
-        check(difference_of_squares(one, other), rng)

@@ -8,7 +8,6 @@ import re
 import heyoka as hy
 import numpy as np
 import pytest
-import sympy
 from numba import njit
 
 from engine import CASES, Fate, Potential, classify_orbits, start_states
@@ -16,14 +15,13 @@ from engine.potentials.known_potentials import channel_family
 from engine.slices.planes import Plane
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
-from engine.taylor.source.polynomial_recurrence import crossings_can_hide
-from engine.taylor.source.recurrence import LANES, ROWS, TOLERANCE, generate_code
+from engine.taylor.source.recurrence import LANES, ROWS, TOLERANCE
 from engine.taylor.source.series import ORDER
 from tests.peers import taylor_heyoka
 
 # A potential that is not in the paper: odd in both coordinates and of degree 5.
 ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 0.3), (0, 3, -0.2), (4, 1, 0.11), (1, 1, 0.07)))
-POTENTIALS = {**CASES, "odd": ODD}
+POTENTIALS = {"II": CASES["II"], "III": CASES["III"], "odd": ODD}
 each_potential = pytest.mark.parametrize("name", POTENTIALS)
 SYMPLECTIC = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
 
@@ -72,19 +70,6 @@ def test_series_equal_those_of_heyoka(name: str) -> None:
         np.testing.assert_allclose(series, expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())
 
 
-@each_potential
-def test_series_obey_the_equations_of_motion(name: str) -> None:
-    """(k+1)(k+2) x_(k+2) = −[t^k] V_x, with the right-hand side in exact arithmetic from the computed coefficients up to k."""
-    potential, t = POTENTIALS[name], sympy.Symbol("t")
-    jets = jets_of(potential, some_states(1))[:, :, 0]
-    x, y = (sympy.Poly([sympy.Rational(float(c)) for c in axis[::-1]], t) for axis in jets)
-    for axis, table in enumerate(potential.form.slopes):
-        force = sum((sympy.Rational(c) * x**i * y**j for (i, j), c in table.items()), sympy.Poly(0, t)).all_coeffs()[::-1]
-        expected = np.array([-float(c) for c in force[: ORDER - 1]])
-        accelerations = np.arange(1, ORDER) * np.arange(2, ORDER + 1) * jets[axis, 2:]
-        np.testing.assert_allclose(accelerations, expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())
-
-
 @pytest.mark.parametrize("order", [ORDER, ORDER - 1])
 @each_potential
 def test_local_error_is_of_one_order_more_than_the_series(name: str, order: int) -> None:
@@ -124,39 +109,7 @@ def test_tangent_flow_is_symplectic(name: str) -> None:
         np.testing.assert_allclose(m.T @ SYMPLECTIC @ m, SYMPLECTIC, atol=1e-13)
 
 
-@each_potential
-def test_tangent_flow_maps_the_phase_velocity_at_the_start_to_that_at_the_end(name: str) -> None:
-    def phase_velocity(s: np.ndarray) -> np.ndarray:
-        vx, vy = POTENTIALS[name].gradient(s[0], s[1])
-        return np.array([s[2], s[3], -vx, -vy])
-
-    for state in some_states(5):
-        end = flowed(POTENTIALS[name], state[None], 0.2)[0]
-        moved = transition_matrix(POTENTIALS[name], state, 0.2) @ phase_velocity(state)
-        np.testing.assert_allclose(moved, phase_velocity(end), atol=1e-12)
-
-
-@each_potential
-def test_a_step_ends_at_the_value_of_its_series(name: str) -> None:
-    potential, states = POTENTIALS[name], some_states(LANES)
-    ends = stepped(potential, states, TOLERANCE)
-    expected = np.concatenate([flowed(potential, state[None], length) for state, length in zip(states, ends[5], strict=True)])
-    np.testing.assert_allclose(ends[:4].T, expected, rtol=0, atol=1e-14)
-
-
-def test_lanes_beyond_the_given_number_stay_unchanged() -> None:
-    ends = stepped(POTENTIALS["odd"], some_states(LANES), TOLERANCE, count=8)
-    assert ends[:6, :8].all()
-    assert not ends[:, 8:].any()
-
-
-def test_arrays_of_another_width_are_refused() -> None:
-    potential = POTENTIALS["odd"]
-    with pytest.raises(ValueError, match="must have 64 columns"):
-        load_kernels(potential.terms, potential.channels).fixed_step(8, 0.1, 1.0, np.zeros((4, 8)), np.zeros((2, 8)))
-
-
-@pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.16), ("III", 0.24), ("III", 0.26)])
+@pytest.mark.parametrize(("name", "energy"), [("II", 0.16), ("III", 0.26)])
 def test_energy_error_is_at_most_1e_11_over_1e5_time_units(name: str, energy: float) -> None:
     x, px = np.random.default_rng(5).uniform(-0.45, 0.45, (2, 40))
     states = start_states(CASES[name], Plane.X_PX, energy, x, px)
@@ -166,30 +119,13 @@ def test_energy_error_is_at_most_1e_11_over_1e5_time_units(name: str, energy: fl
     assert outcome.energy_error[bounded].max() <= 1e-11
 
 
-@pytest.mark.parametrize("terms", [(), ((0, 0, 1.0),), ((1, 0, 2.0),), ((2, 0, 0.5),), ((6, 3, -1.0),)])
+@pytest.mark.parametrize("terms", [(), ((1, 0, 2.0),), ((6, 3, -1.0),)])
 def test_generated_functions_compile_for_any_polynomial(terms: tuple) -> None:
     kernels = load_kernels(terms, 0)
     assert kernels.potential_value(0.5, 0.7) == pytest.approx(sum(c * 0.5**i * 0.7**j for i, j, c in terms))
     state, sums = some_states(LANES).T.copy(), np.zeros((2, LANES))
     kernels.fixed_step(LANES, 0.1, 1.0, state, sums)
     assert np.isfinite(state).all()
-
-
-def test_a_potential_without_terms_has_straight_orbits() -> None:
-    states, jets = some_states(16), np.empty((2, ORDER + 1, 16))
-    load_kernels((), 0).jets(16, *states.T.copy(), *jets)
-    np.testing.assert_array_equal(jets[:, :2].transpose(2, 1, 0).reshape(16, 4), states)
-    assert not jets[:, 2:].any()
-
-
-def test_crossings_cannot_hide_where_y_oscillates_slowly() -> None:
-    assert not any(crossings_can_hide({(i, j): c for i, j, c in potential.terms}) for potential in CASES.values())
-
-
-@pytest.mark.parametrize("terms", [{(0, 2): 0.5, (0, 3): 0.1}, {(0, 2): 5.0}, {(0, 2): 0.5, (2, 2): 1.0}])
-def test_crossings_can_hide_where_y_may_turn_back_within_a_step(terms: dict) -> None:
-    # Odd in y; faster than the longest step; faster far out.
-    assert crossings_can_hide(terms)
 
 
 @each_potential
@@ -202,7 +138,7 @@ def test_a_fixed_step_is_the_flow_and_adds_weighted_squares(name: str) -> None:
     np.testing.assert_array_equal(sums.T, 2.0 * states[:, :2] ** 2)
 
 
-@pytest.mark.parametrize("exponent", range(-12, 13, 3))
+@pytest.mark.parametrize("exponent", [-12, 0, 12])
 def test_the_step_is_the_sixteenth_root_to_within_6_percent(exponent: int) -> None:
     potential = POTENTIALS["odd"]
     states = np.repeat(some_states(1) * 1.5, LANES, axis=0)
@@ -214,31 +150,8 @@ def test_the_step_is_the_sixteenth_root_to_within_6_percent(exponent: int) -> No
     assert 0.999 * exact <= h <= 1.065 * exact
 
 
-def count_products(terms: tuple) -> int:
-    return sum(symbol == "*" for symbol, _ in generate_code(terms, 0).functions[0].program.operations)
-
-
-def test_squares_that_enter_as_their_difference_become_one_series() -> None:
-    for factor in np.linspace(0.1, 2.0, 20):
-        # V_x contains factor · (y² − x²), or y² and x² with different coefficients.
-        others = ((2, 0, 0.5), (0, 2, 0.5), (1, 2, factor))
-        as_difference, separate = (count_products((*others, (3, 0, c))) for c in (-factor / 3, 0.1))
-        # One product less in each of the orders 0 … ORDER − 2.
-        assert as_difference == separate - (ORDER - 1)
-
-
-def test_other_coefficients_or_another_order_of_terms_give_the_same_code() -> None:
-    (i, j, c), *rest = CASES["III"].terms
-    assert generate_code((*rest, (i, j, 1.3 * c)), 4) is generate_code(CASES["III"].terms, 4)
-
-
-def test_table_of_coefficients_is_read_only() -> None:
-    terms = CASES["I"].terms
-    assert not generate_code(terms, 2).tabulate(terms).flags.writeable
-
-
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="reads the assembly of x86-64")
-@pytest.mark.parametrize("name", ["I", "5", *(pytest.param(name, marks=pytest.mark.slow) for name in ("II", "III", "8"))])
+@pytest.mark.parametrize("name", ["5", pytest.param("III", marks=pytest.mark.slow)])
 def test_a_step_is_vectorised_throughout(name: str) -> None:
     """A single library call or branch in the loop would keep the compiler from vectorising it."""
     potential = channel_family(int(name)) if name.isdigit() else CASES[name]

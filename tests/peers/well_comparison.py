@@ -1,6 +1,6 @@
-"""Random open wells of degree 3 to 10 in random units, compared with heyoka.
+"""Outcomes of a well at rest compared with heyoka.
 
-heyoka integrates in the units in which the well was drawn, the engine in random ones. The Lyapunov orbits are integrated anew:
+heyoka integrates in the units in which the well was drawn, the engine in others. The Lyapunov orbits are integrated anew:
 their paths are the exits, a flood fill on a grid with these exits gives the interior, and an orbit escapes where a finely sampled
 path crosses an exit. A fate is robust if a shift of the start by 1e-11 and a coarser tolerance leave channel and crossings as
 they are and move the end of the orbit by less than 1e-3.
@@ -8,71 +8,27 @@ they are and move the end of the orbit by less than 1e-3.
 
 from __future__ import annotations
 
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import pytest
 from scipy import ndimage
 
-from engine import (
-    MapSpec,
-    Plane,
-    Potential,
-    Trust,
-    classify_orbits,
-    compute_map,
-    compute_trust,
-    find_lyapunov_orbits,
-    review_potential,
-)
+from engine import Potential, classify_orbits, find_lyapunov_orbits
 from engine.exits.interior import find_outside_channels
-from engine.potentials.well_units import WellUnits
-from tests.contracts.test_every_unit import Scaling
-from tests.forked import fork_context
+from tests.contracts.scaling import Scaling
 from tests.peers.sampled_paths import Exits, Peer
 
-CHUNK = 10
 # Times and lengths are in units of the well.
 T_MAX, STARTS, SHIFT, APART = 60.0, 20, 1e-11, 1e-3
 TOLERANCE, COARSER, ROUNDING = 1e-16, 1e-13, 1e-15
 # Largest difference of the escape times of an orbit whose time is steady: it changes by less with the start and the tolerance.
 LARGEST_DELAY, STEADY = 1e-4, 1e-6
-# Points along a side of the flood fill, and of maps.
-GRID, SIDE = 400, 16
+# Points along a side of the flood fill.
+GRID = 400
 # Half the width of the first grid of the flood fill.
 SMALLEST = 1e-3
-HIGHEST_DEGREE = 10
-# Every fifth well is also mapped in both units.
-PICTURED = 5
 DRAWN = Scaling(1.0, 1.0)
-# Refusals of wells that are not open, as no orbit escapes or the escape energy is not defined, and of energies of merged exits.
-EXPECTED = ("No saddle leads out", "The well is open without a saddle", "are one exit above V")
-# Most other refusals of a chunk.
-MOST_REFUSED = 2
-
-chunks = pytest.mark.parametrize(
-    "chunk", [pytest.param(k, marks=pytest.mark.exhaustive if k else pytest.mark.slow) for k in range(1000 // CHUNK)]
-)
-
-
-def random_well(seed: int, highest_degree: int = 8) -> Potential:
-    """A well with up to ten random terms of degree 3 and higher."""
-    random = np.random.default_rng([19, seed])
-    degree = int(random.integers(3, highest_degree + 1))
-    a, b = random.uniform(0.2, 1.2, 2)
-    c = random.uniform(-1.8, 1.8) * np.sqrt(a * b) if random.random() < 0.5 else 0.0
-    powers = [(i, n - i) for n in range(3, degree + 1) for i in range(n + 1)]
-    chosen = random.choice(len(powers), int(random.integers(1, min(len(powers), 10) + 1)), replace=False)
-    terms = {(2, 0): a, (0, 2): b, (1, 1): c} | {powers[k]: 0.5 * random.normal() for k in chosen}
-    return Potential(f"random {seed}", tuple((*power, round(value, 4)) for power, value in terms.items() if round(value, 4)))
-
-
-def random_scaling(seed: int) -> Scaling:
-    """Units from the least to the largest that are supported, no powers of 2."""
-    length, energy = 10.0 ** np.random.default_rng([20, seed]).uniform(-6.0, 6.0, 2)
-    return Scaling(float(length), float(energy))
 
 
 def flood_fill(potential: Potential, energy: float, exits: Exits) -> tuple[np.ndarray, ...]:
@@ -186,85 +142,3 @@ def compare_orbits(setting: Setting, peers: tuple[Peer, Peer], exits: Exits, sta
             delay = float(ours.escape_time[k]) / scaling.time - theirs.time
             if abs(delay) > LARGEST_DELAY * units.time:
                 found.wrong.append(f"escape later by {delay} than {theirs} from {state.tolist()}")
-
-
-def map_in(scaling: Scaling, potential: Potential, energy: float, plane: Plane) -> MapSpec:
-    """A map in other units; on (x, h) of the energies up to this one."""
-    t_max = scaling.time * T_MAX * potential.units.time
-    energies = (
-        (0.9 * scaling.energy * energy, scaling.energy * energy) if plane.energy_axis is not None else scaling.energy * energy
-    )
-    return MapSpec(scaling.potential(potential), plane, energies, (SIDE, SIDE), t_max=t_max)
-
-
-def differing_pictures(potential: Potential, energy: float, plane: Plane, scaling: Scaling) -> list[str]:
-    """Pixels of a map, which is not doubtful, and its default window, if they are others in other units, in words."""
-    usual, scaled = (map_in(units, potential, energy, plane) for units in (DRAWN, scaling))
-    window = usual.find_window()
-    units = plane.axis_units(WellUnits(scaling.length, scaling.time))
-    restored = scaled.find_window().scaled(*(1.0 / unit for unit in units))
-    size = max(map(abs, astuple(window)))
-    wrong = [] if np.allclose(astuple(restored), astuple(window), rtol=0.0, atol=1e-9 * size) else [f"{restored}, not {window}"]
-    first, second = compute_map(usual), compute_map(replace(scaled, window=scaling.window(window, plane)))
-    differs = (first.fate != second.fate) | ((first.fate > 0) & (first.crossings != second.crossings))
-    doubtful = compute_trust(first).trust == Trust.DOUBTFUL
-    return wrong + [f"pixel {place} on {plane.title}" for place in np.argwhere(differs & ~doubtful).tolist()]
-
-
-def random_energies(potential: Potential, seed: int) -> list[float]:
-    """One below the escape energy, one slightly above it, and one up to twice the depth of the well."""
-    random = np.random.default_rng([21, seed])
-    factors = random.uniform(0.2, 1.0), 1.0 + 10.0 ** random.uniform(-6.0, -1.0), random.uniform(1.02, 2.0)
-    return [factor * potential.escape_energy for factor in factors]
-
-
-def check_well(seed: int) -> tuple[list[Comparison], list[str]]:
-    """Comparisons of a well at random energies in random units, and the sentences by which it or its energies are refused."""
-    potential, scaling = random_well(seed, HIGHEST_DEGREE), random_scaling(seed)
-    usual, review = review_potential(potential), review_potential(scaling.potential(potential))
-    assert (review.refusal is None, review.channels) == (usual.refusal is None, usual.channels)
-    if review.refusal is not None:
-        return [], [review.refusal]
-    assert review.escape_energy == pytest.approx(scaling.energy * usual.escape_energy, rel=1e-9)
-    comparisons, refusals = [], []
-    for energy in random_energies(potential, seed):
-        try:
-            comparisons.append(compare_with_heyoka(potential, energy, seed, scaling))
-        except ValueError as error:
-            refusals.append(str(error))
-    if seed % PICTURED == 0 and len(comparisons) == 3:
-        plane = list(Plane)[seed // PICTURED % len(Plane)]
-        comparisons[-1].wrong += differing_pictures(potential, energy, plane, scaling)
-    return comparisons, refusals
-
-
-@chunks
-def test_random_wells_in_random_units(chunk: int) -> None:
-    seeds = range(CHUNK * chunk, CHUNK * (chunk + 1))
-    # In a process of its own, as compiled code stays in memory until the end of its process.
-    with ProcessPoolExecutor(1, mp_context=fork_context()) as process:
-        found = dict(zip(seeds, process.map(check_well, seeds), strict=True))
-    assert not {seed: wrong for seed, (comparisons, _) in found.items() if (wrong := [w for c in comparisons for w in c.wrong])}
-    unexpected = {seed: r for seed, (_, refusals) in found.items() for r in refusals if not any(part in r for part in EXPECTED)}
-    assert len(unexpected) <= MOST_REFUSED, unexpected
-
-
-@pytest.mark.parametrize(
-    ("seed", "factor"),
-    [
-        (97, 2.0),
-        (299, 1.25),
-        *(pytest.param(*well, marks=pytest.mark.slow) for well in ((131, 1.25), (155, 2.0), (275, 1.1))),
-    ],
-)
-def test_exits_found_by_continuation_or_from_both_ends(seed: int, factor: float) -> None:
-    potential = random_well(seed)
-    assert not compare_with_heyoka(potential, factor * potential.escape_energy, seed).wrong
-
-
-@pytest.mark.parametrize("seed", [81, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (154, 454, 896))])
-def test_exits_of_several_channels(seed: int) -> None:
-    potential = random_well(seed, HIGHEST_DEGREE)
-    energy = random_energies(potential, seed)[-1]
-    assert potential.well.merged_exits(energy)
-    assert not compare_with_heyoka(potential, energy, seed).wrong

@@ -1,0 +1,144 @@
+"""Random systems compared with heyoka: wells in random units, wells with functions, and systems that rotate or have bodies."""
+
+from __future__ import annotations
+
+import itertools
+from concurrent.futures import ProcessPoolExecutor
+from functools import cache
+
+import numpy as np
+import pytest
+
+from engine import Plane, Potential, classify_orbits, parse_formula, review_potential, sample_starts, start_states
+from tests.forked import fork_context
+from tests.peers.exits_by_heyoka import compare
+from tests.peers.random_systems import FACTORS, HIGHEST_DEGREE, random_formula, random_scaling, random_system, random_well
+from tests.peers.well_comparison import Comparison, compare_with_heyoka
+
+CHUNK = 10
+# Refusals of wells that are not open, as no orbit escapes or the escape energy is not defined, and of energies of merged exits.
+EXPECTED = ("No saddle leads out", "The well is open without a saddle", "are one exit above V")
+# Most other refusals of a chunk.
+MOST_REFUSED = 2
+# Starts in a rotating system, and exact units of time for which they are followed.
+STARTS, DURATION = 40, 40.0
+# Fewest robust orbits of a system: of others rounding errors decide the ends or the crossings. At the high energy of one system
+# that is so for all orbits.
+LEAST_ROBUST = 0.5
+CHAOTIC_SEEDS = {39}
+chunks = pytest.mark.parametrize(
+    "chunk", [pytest.param(k, marks=pytest.mark.exhaustive if k else pytest.mark.slow) for k in range(1000 // CHUNK)]
+)
+
+
+def random_energies(potential: Potential, seed: int) -> list[float]:
+    """One below the escape energy, one slightly above it, and one up to twice the depth of the well."""
+    random = np.random.default_rng([21, seed])
+    factors = random.uniform(0.2, 1.0), 1.0 + 10.0 ** random.uniform(-6.0, -1.0), random.uniform(1.02, 2.0)
+    return [factor * potential.escape_energy for factor in factors]
+
+
+def check_well(seed: int) -> tuple[list[Comparison], list[str]]:
+    """Comparisons of a well at random energies in random units, and the sentences by which it or its energies are refused."""
+    potential, scaling = random_well(seed, HIGHEST_DEGREE), random_scaling(seed)
+    usual, review = review_potential(potential), review_potential(scaling.potential(potential))
+    assert (review.refusal is None, review.channels) == (usual.refusal is None, usual.channels)
+    if review.refusal is not None:
+        return [], [review.refusal]
+    assert review.escape_energy == pytest.approx(scaling.energy * usual.escape_energy, rel=1e-9)
+    comparisons, refusals = [], []
+    for energy in random_energies(potential, seed):
+        try:
+            comparisons.append(compare_with_heyoka(potential, energy, seed, scaling))
+        except ValueError as error:
+            refusals.append(str(error))
+    return comparisons, refusals
+
+
+@chunks
+def test_random_wells_in_random_units(chunk: int) -> None:
+    seeds = range(CHUNK * chunk, CHUNK * (chunk + 1))
+    # In a process of its own, as compiled code stays in memory until the end of its process.
+    with ProcessPoolExecutor(1, mp_context=fork_context()) as process:
+        found = dict(zip(seeds, process.map(check_well, seeds), strict=True))
+    assert not {seed: wrong for seed, (comparisons, _) in found.items() if (wrong := [w for c in comparisons for w in c.wrong])}
+    unexpected = {seed: r for seed, (_, refusals) in found.items() for r in refusals if not any(part in r for part in EXPECTED)}
+    assert len(unexpected) <= MOST_REFUSED, unexpected
+
+
+@pytest.mark.parametrize(("seed", "factor"), [(97, 2.0), pytest.param(155, 2.0, marks=pytest.mark.slow)])
+def test_exits_found_by_continuation_or_from_both_ends(seed: int, factor: float) -> None:
+    potential = random_well(seed)
+    assert not compare_with_heyoka(potential, factor * potential.escape_energy, seed).wrong
+
+
+@pytest.mark.parametrize("seed", [81, pytest.param(896, marks=pytest.mark.slow)])
+def test_exits_of_several_channels(seed: int) -> None:
+    potential = random_well(seed, HIGHEST_DEGREE)
+    energy = random_energies(potential, seed)[-1]
+    assert potential.merged_exits(energy)
+    assert not compare_with_heyoka(potential, energy, seed).wrong
+
+
+@cache
+def open_wells() -> tuple[tuple[int, Potential], ...]:
+    """The first wells with exits, with their seeds."""
+    wells: list[tuple[int, Potential]] = []
+    seed = 0
+    while len(wells) < 40:
+        text, values = random_formula(seed)
+        potential = parse_formula(text, parameters=values)
+        if review_potential(potential).refusal is None:
+            wells.append((seed, potential))
+        seed += 1
+    return tuple(wells)
+
+
+def energy_of(seed: int, potential: Potential) -> float:
+    highest = review_potential(potential).highest_energy
+    energy = potential.energy_at(float(np.random.default_rng(seed).uniform(*FACTORS)))
+    return min(energy, potential.escape_energy + 0.5 * (highest - potential.escape_energy))
+
+
+@pytest.mark.parametrize(
+    "number", [pytest.param(k, marks=pytest.mark.slow if k < 10 else pytest.mark.exhaustive) for k in range(40)]
+)
+def test_wells_with_functions(number: int) -> None:
+    seed, potential = open_wells()[number]
+    assert not compare_with_heyoka(potential, energy_of(seed, potential), seed).wrong, potential.name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(0, 40, 5))
+def test_energy_is_held_in_wells_with_functions(number: int) -> None:
+    _, potential = open_wells()[number]
+    energy = potential.energy_at(0.9)
+    x = 0.1 * potential.units.length * np.linspace(-1.0, 1.0, 8)
+    states = start_states(potential, Plane.X_Y, energy, x, np.zeros(8))
+    outcomes = classify_orbits(potential, energy, states, 1e4 * potential.units.time)
+    assert np.nanmax(outcomes.energy_error) < 1e-11
+
+
+@cache
+def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
+    """Of the systems that are accepted, in the order of their seeds: the seed, an energy and starts."""
+    first = accepted_system(number - 1)[0] + 1 if number else 0
+    for seed in itertools.count(first):
+        try:
+            potential, energy = random_system(seed)
+            starts = sample_starts(potential, energy, STARTS, seed=seed)
+        except ValueError:
+            continue
+        if review_potential(potential).refusal is None:
+            return seed, potential, energy, starts
+    raise AssertionError
+
+
+@pytest.mark.parametrize(
+    "number", [pytest.param(k, marks=pytest.mark.slow if k < 8 else pytest.mark.exhaustive) for k in range(40)]
+)
+def test_rotating_systems_bodies_and_escape_radii(number: int) -> None:
+    seed, potential, energy, starts = accepted_system(number)
+    comparison = compare(potential, energy, starts, DURATION * potential.exact_time_unit)
+    assert seed in CHAOTIC_SEEDS or comparison.robust > LEAST_ROBUST * STARTS
+    assert comparison.wrong == 0
