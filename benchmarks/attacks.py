@@ -9,12 +9,13 @@ import itertools
 import pkgutil
 import random
 from collections.abc import AsyncIterator, Callable
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 
 from bokeh.core.types import ID
 from bokeh.util.token import generate_jwt_token
 
 from benchmarks.simulated_sessions import SimulatedSession
+from tests.fuzz.random_formulas import random_link
 
 _WORST_MAP = "?case=III&h=0.3&plane=x_px&t_max=1000000&resolution=900&judge=yes&trust=yes&manifolds=yes&origins=yes"
 _REQUEST_PAUSE = 0.05
@@ -55,6 +56,28 @@ async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> A
         terms = " + ".join(f"{choice.uniform(-0.2, 0.2):.3f}*x^{i}*y^{j}" for i, j in choice.sample(powers, 6))
         visitor.follow_link(f"?case=typed&V={quote(f'x^2/2 + y^2/2 - x^3/3 + {terms}')}&resolution=112")
         await asyncio.sleep(1.0)
+        yield
+
+
+async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Pages with formulas of every kind, one after another."""
+    while True:
+        await visitor.open_formula(_formula_link(choice))
+        await asyncio.sleep(_REQUEST_PAUSE if visitor.is_open else 1.0)
+        yield
+
+
+async def follow_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Links with formulas of every kind, followed in one page."""
+    while True:
+        await visitor.follow_formula(_formula_link(choice))
+        yield
+
+
+async def type_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Formulas of every kind in the box of one page."""
+    while True:
+        await visitor.type_formula(random_link(choice)["V"])
         yield
 
 
@@ -113,6 +136,10 @@ async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> A
         yield
 
 
+def _formula_link(choice: random.Random) -> str:
+    return "?" + urlencode({"case": "typed", "resolution": "112", "t_max": "100", **random_link(choice)}, errors="replace")
+
+
 def _module_names() -> list[str]:
     """Modules of the packages, which are not imported here."""
     specs = [importlib.util.find_spec(package) for package in ("bokeh", "matplotlib", "numba", "panel", "scipy", "tornado")]
@@ -130,6 +157,9 @@ ATTACKS: dict[str, Attack] = {
     "largest map, all layers": compute_worst_map,
     "against energy": sweep_energies,
     "a new potential each second": type_potentials,
+    "pages of formulas": open_formulas,
+    "links to formulas": follow_formulas,
+    "typed formulas": type_formulas,
     "clicks": click,
     "resolution and colours": flip_choices,
     "links to radial potentials": link_to_radial_potentials,
