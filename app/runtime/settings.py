@@ -97,8 +97,8 @@ class Settings:
     log
         Format of the log.
     longest_delay
-        Delay of first frames by the event loop and the queue of computations, in seconds, above which the server is overloaded
-        (`app.runtime.overload`) and refuses further pages.
+        Delay of first frames by the event loop and by other computations and programs, in seconds, above which one thread is kept
+        for them, and for seconds of which the server is overloaded (`app.runtime.overload`) and refuses further pages.
     session_seconds
         Lifetime of a session without a connection, in seconds; a broken connection can be resumed within it.
     keep_alive_seconds
@@ -122,7 +122,7 @@ class Settings:
     memory_ceiling: int = _setting(0, _integer(0, 2**50))
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
-    longest_delay: float = _setting(0.5, _number(0.05, 3600.0))
+    longest_delay: float = _setting(1.0, _number(0.05, 3600.0))
     session_seconds: int = _setting(60, _integer(1, 86_400))
     keep_alive_seconds: int = _setting(20, _integer(1, 3600))
     frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)

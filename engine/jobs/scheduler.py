@@ -42,8 +42,6 @@ class _Call(NamedTuple):
     executor: QueueExecutor
     future: Future[Any]
     function: Callable[[], Any]
-    queued: float
-    """Time on the monotonic clock."""
 
     def cancel(self) -> None:
         self.future.cancel()
@@ -54,11 +52,19 @@ class _Call(NamedTuple):
         if not self.future.set_running_or_notify_cancel():
             return
         try:
-            result = self.function()
+            result = self._compute()
         except BaseException as error:
             self.future.set_exception(error)
         else:
             self.future.set_result(result)
+
+    def _compute(self) -> Any:
+        begin = time.thread_time()
+        self.executor.has_begun = True
+        try:
+            return self.function()
+        finally:
+            self.executor.count(time.thread_time() - begin)
 
 
 class FairScheduler:
@@ -81,7 +87,7 @@ class FairScheduler:
         self._active_threads = 0
         self._running: Counter[Priority] = Counter()
         self._background_paused = False
-        self._first_frame_wait = 0.0
+        self._one_is_free = False
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
 
@@ -108,22 +114,6 @@ class FairScheduler:
                 if executor.priority() is not Priority.IDLE
             )
 
-    def take_first_frame_wait(self) -> float:
-        """Longest time in seconds that a `Priority.FIRST_FRAME` call has waited for a thread since the last call of this method.
-
-        Those that still wait count.
-        """
-        now = time.monotonic()
-        with self._lock:
-            waiting = [
-                now - calls[0].queued
-                for queues in self._pending.values()
-                for executor, calls in queues.items()
-                if executor.priority() is Priority.FIRST_FRAME
-            ]
-            longest, self._first_frame_wait = max(self._first_frame_wait, *waiting, 0.0), 0.0
-        return longest
-
     def pause_background(self, paused: bool) -> None:
         """Pause or resume `Priority.BACKGROUND` calls and those of lower priority, to relieve an overloaded process.
 
@@ -134,6 +124,16 @@ class FairScheduler:
             resumed, self._background_paused = self._background_paused and not paused, paused
         if resumed or paused:
             self._start_threads(self.threads if resumed else 1)
+
+    def keep_one_free(self, is_free: bool) -> None:
+        """Let all calls but first frames leave one thread free if there are several, or no longer.
+
+        Beside other programs a short call takes long, and the first frame of a map would wait for some of them in turn.
+        """
+        with self._lock:
+            ended, self._one_is_free = self._one_is_free and not is_free, is_free
+        if ended:
+            self._start_threads(self.threads)
 
     def add(self, call: _Call) -> None:
         """Queue a call, or cancel it if those of its executor have been cancelled."""
@@ -188,8 +188,6 @@ class FairScheduler:
             self._running[priority] += 1
             queues = self._pending[executor.client]
             call = queues[executor].popleft()
-            if priority is Priority.FIRST_FRAME:
-                self._first_frame_wait = max(self._first_frame_wait, time.monotonic() - call.queued)
             if not queues[executor]:
                 del queues[executor]
             self._pending.move_to_end(executor.client)
@@ -208,21 +206,38 @@ class FairScheduler:
     def _may_start(self, priority: Priority) -> bool:
         if priority is Priority.FIRST_FRAME:
             return True
-        running = self._running[priority]
+        running, fewer = self._running[priority], max(self.threads - 1, 1)
+        if self._one_is_free and self._running.total() - self._running[Priority.FIRST_FRAME] >= fewer:
+            return False
         if priority is not Priority.LONG_CALL:
             return not self._background_paused and not (priority is Priority.IDLE and running)
         if self._background_paused:
             return running == 0 and time.monotonic() >= self._next_long_call
-        return running < max(self.threads - 1, 1)
+        return running < fewer
 
 
 class QueueExecutor(Executor):
-    """Executor whose calls are queued in a `FairScheduler`."""
+    """Executor whose calls are queued in a `FairScheduler`.
+
+    Attributes
+    ----------
+    has_begun
+        Whether a thread has begun one of its calls.
+    computed
+        Processor time of its calls that have ended, in seconds.
+    """
 
     def __init__(self, scheduler: FairScheduler, client: Hashable, priority: Callable[[], Priority]) -> None:
         self._scheduler = scheduler
         self.client = client
         self.priority = priority
+        self.has_begun, self.computed = False, 0.0
+        self._lock = threading.Lock()
+
+    def count(self, seconds: float) -> None:
+        """Count the processor time of a call."""
+        with self._lock:
+            self.computed += seconds
 
     @property
     def _max_workers(self) -> int:
@@ -233,7 +248,7 @@ class QueueExecutor(Executor):
         """Queue a call, which runs in the context of the caller, and return its future."""
         future: Future[Any] = Future()
         call = partial(copy_context().run, fn, *args, **kwargs)
-        self._scheduler.add(_Call(self, future, call, time.monotonic()))
+        self._scheduler.add(_Call(self, future, call))
         return future
 
     def cancel_futures(self) -> None:

@@ -61,6 +61,16 @@ def test_delays_of_loop_and_queue_are_added(monkeypatch: pytest.MonkeyPatch) -> 
     assert state.overload.delay == pytest.approx(0.7)
 
 
+def test_one_thread_is_kept_for_first_frames_as_soon_as_one_is_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    state, kept, wait = ProcessState(Settings(longest_delay=0.5)), list[bool](), [0.1, 0.6, 0.1]
+    monkeypatch.setattr(state.jobs, "take_first_frame_wait", lambda: wait.pop(0))
+    monkeypatch.setattr(state.jobs, "keep_one_free", kept.append)
+    for _ in range(3):
+        state.adapt_to_load()
+    assert kept == [False, True, True]
+    assert not state.overload.is_overloaded()
+
+
 def test_each_document_has_its_share() -> None:
     state, first, second = ProcessState(), Document(), Document()
     assert state.fair_share(first) is state.fair_share(first)
