@@ -89,7 +89,7 @@ class Settings:
         Maximum number of compiled operations of the integrators of all potentials but those of the catalogue, about 4 kB
         each; code is never unloaded.
     cache_bytes
-        Size limit of the result cache, in bytes.
+        Size limit of the result cache, in bytes; a complete map of 224 × 224 pixels takes 1.4 MB.
     memory_ceiling
         Resident memory above which the server reports that it is not ready, in bytes; 0 for no limit.
     threads
@@ -118,7 +118,7 @@ class Settings:
     most_connections: int = _setting(500, _integer(1, 100_000))
     link_pictures: int = _setting(4, _integer(0, 1000))
     compiled_operations: int = _setting(250_000, _integer(50_000, 10**9))
-    cache_bytes: int = _setting(512 * MIB, _integer(0, 2**50))
+    cache_bytes: int = _setting(64 * MIB, _integer(0, 2**50))
     memory_ceiling: int = _setting(0, _integer(0, 2**50))
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
