@@ -146,7 +146,8 @@ class Jobs:
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
             the second frame of any.
         account
-            Whose share of the limit of compiled code the job takes; None for no one's.
+            Whose share of the limit of compiled code the job takes, and whose turn in the queues of limited calls and of
+            compilations; None for no one's, and the turn of the client.
         """
         subscription = Subscription(partial(self._unsubscribe, job), on_result, on_error)
         with self._lock:
@@ -276,6 +277,8 @@ class Jobs:
         return found
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
+        # All pages of an account share a turn where one call may keep the only thread for seconds.
+        turn = run.client if run.account is None else run.account
         calls = long_calls = self._scheduler.executor(run.client, run.priority)
         if run.job.queue is not Queue.IDLE:
             long_calls = self._scheduler.executor(run.client, lambda: Priority.LONG_CALL)
@@ -284,8 +287,8 @@ class Jobs:
             Queue.BACKGROUND: calls,
             Queue.IDLE: calls,
             Queue.LONG_CALL: long_calls,
-            Queue.LIMITED: self._limited_calls.executor(run.client, lambda: Priority.LONG_CALL),
-            Queue.COMPILATION: self._compilations.executor(run.client, lambda: Priority.LONG_CALL),
+            Queue.LIMITED: self._limited_calls.executor(turn, lambda: Priority.LONG_CALL),
+            Queue.COMPILATION: self._compilations.executor(turn, lambda: Priority.LONG_CALL),
         }
 
     def _finish(self, run: _Run, result: Any, error: Exception | None) -> list[Subscription]:

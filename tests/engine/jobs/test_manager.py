@@ -319,6 +319,22 @@ def test_one_compilation_runs_at_a_time() -> None:
     assert [inbox.errors for inbox in inboxes] == [[], []]
 
 
+@pytest.mark.parametrize("queue", [Queue.LIMITED, Queue.COMPILATION])
+def test_all_pages_of_an_account_share_a_turn(queue: Queue) -> None:
+    jobs, begun, end, order = Jobs(threads=2), threading.Event(), threading.Event(), list[str]()
+    jobs.request(Job(wait_for, (begun, end), queue=queue), Inbox().result, Inbox().error)
+    assert begun.wait(30)
+    queued, inboxes = jobs._limited_calls if queue is Queue.LIMITED else jobs._compilations, list[Inbox]()
+    for account, client in (("crowd", 1), ("crowd", 2), ("crowd", 3), ("other", 4)):
+        inboxes.append(Inbox())
+        job = Job(order.append, (f"{account} {client}",), queue=queue)
+        jobs.request(job, inboxes[-1].result, inboxes[-1].error, client=client, account=account)
+        wait_until(lambda: queued.pending_calls == len(inboxes))
+    end.set()
+    assert all(inbox.done.wait(30) for inbox in inboxes)
+    assert order == ["crowd 1", "other 4", "crowd 2", "crowd 3"]
+
+
 @pytest.fixture
 def paused() -> Iterator[Jobs]:
     """A manager whose background is paused; a job that a failed test leaves would keep the process from ending."""
