@@ -56,7 +56,7 @@ class Record:
     reviews
         From a formula, in a link or typed, to what the page says of it.
     clicks, orbit_plots, refused
-        Counts; `refused` are pages that a full server has not opened.
+        Counts; `refused` are pages that a full server, or a proxy with a limit, has not opened.
     errors
         Messages.
     """
@@ -219,7 +219,7 @@ class SimulatedSession:
         try:
             self._channel = await Channel.open(address, self._options)
         except HTTPClientError as error:
-            if error.code != http.client.SERVICE_UNAVAILABLE:
+            if error.code not in (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE):
                 raise
             self._record.refused += 1
             return False
