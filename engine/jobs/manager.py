@@ -200,9 +200,9 @@ class Jobs:
     def _count_wait(self, run: _Run) -> None:
         self._first_frame_wait = max(self._first_frame_wait, run.waited())
 
-    def keep_one_free(self, is_free: bool) -> None:
-        """Keep one thread for first frames; see `FairScheduler.keep_one_free`."""
-        self._scheduler.keep_one_free(is_free)
+    def spare_first_frames(self, spared: bool) -> None:
+        """Keep one thread for first frames, or no longer; see `FairScheduler.spare_first_frames`."""
+        self._scheduler.spare_first_frames(spared)
 
     def pause_background(self, paused: bool) -> None:
         """Pause or resume everything but first frames and long calls; see `FairScheduler.pause_background`."""

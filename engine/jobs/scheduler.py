@@ -87,7 +87,7 @@ class FairScheduler:
         self._active_threads = 0
         self._running: Counter[Priority] = Counter()
         self._background_paused = False
-        self._one_is_free = False
+        self._first_frames_spared = False
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
 
@@ -125,15 +125,16 @@ class FairScheduler:
         if resumed or paused:
             self._start_threads(self.threads if resumed else 1)
 
-    def keep_one_free(self, is_free: bool) -> None:
-        """Let all calls but first frames leave one thread free if there are several, or no longer.
+    def spare_first_frames(self, spared: bool) -> None:
+        """Let others than first frames leave one thread free, and `Priority.UNSETTLED` calls wait; or end this.
 
-        Beside other programs a short call takes long, and the first frame of a map would wait for some of them in turn.
+        A single thread is not kept free. Beside other programs a short call takes long, and the first frame of a map would wait
+        for some of them in turn. To start the calls that are settled meanwhile, call this method about every 0.1 s.
         """
         with self._lock:
-            ended, self._one_is_free = self._one_is_free and not is_free, is_free
-        if ended:
-            self._start_threads(self.threads)
+            ended, self._first_frames_spared = self._first_frames_spared and not spared, spared
+        if ended or spared:
+            self._start_threads(self.threads if ended else 1)
 
     def add(self, call: _Call) -> None:
         """Queue a call, or cancel it if those of its executor have been cancelled."""
@@ -207,7 +208,8 @@ class FairScheduler:
         if priority is Priority.FIRST_FRAME:
             return True
         running, fewer = self._running[priority], max(self.threads - 1, 1)
-        if self._one_is_free and self._running.total() - self._running[Priority.FIRST_FRAME] >= fewer:
+        others = self._running.total() - self._running[Priority.FIRST_FRAME]
+        if self._first_frames_spared and (others >= fewer or priority is Priority.UNSETTLED):
             return False
         if priority is not Priority.LONG_CALL:
             return not self._background_paused and not (priority is Priority.IDLE and running)

@@ -64,7 +64,7 @@ def test_delays_of_loop_and_queue_are_added(monkeypatch: pytest.MonkeyPatch) -> 
 def test_one_thread_is_kept_for_first_frames_as_soon_as_one_is_late(monkeypatch: pytest.MonkeyPatch) -> None:
     state, kept, wait = ProcessState(Settings(longest_delay=0.5)), list[bool](), [0.1, 0.6, 0.1]
     monkeypatch.setattr(state.jobs, "take_first_frame_wait", lambda: wait.pop(0))
-    monkeypatch.setattr(state.jobs, "keep_one_free", kept.append)
+    monkeypatch.setattr(state.jobs, "spare_first_frames", kept.append)
     for _ in range(3):
         state.adapt_to_load()
     assert kept == [False, True, True]
