@@ -6,7 +6,7 @@ import pytest
 from engine import CASES, ParameterAxis, Potential, System
 from engine.potentials.catalogue import POTENTIALS
 from engine.slices import parameter_family
-from engine.slices.parameter_family import ManyExitsError, ParameterFamily
+from engine.slices.parameter_family import ManyExitsError, ParameterFamily, find_members
 
 EPSILON = ParameterAxis("epsilon", 0.5, 2.0, System("III"))
 # The saddles at x = 1/2 are exits everywhere; for b < 0 there is a third one at the left, at x = 1 / (3 b), V = 1 / (54 b²).
@@ -83,3 +83,10 @@ def test_a_value_asked_for_twice_has_the_same_numbers() -> None:
     first = [family.member(value).numbers.tolist() for value in values]
     assert [family.member(value).numbers.tolist() for value in values] == first
     assert len(family.outcomes) == 3
+
+
+def test_potentials_along_a_whole_axis_are_found_or_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    find_members(EPSILON)
+    monkeypatch.setattr(parameter_family, "_MOST_FOUND", 3)
+    with pytest.raises(ManyExitsError, match="choose a smaller range"):
+        find_members(THIRD_EXIT)
