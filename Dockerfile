@@ -26,7 +26,6 @@ RUN useradd --system --uid 10001 --create-home explorer && install --directory -
 ENV PATH=/opt/venv/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     PYTHONDONTWRITEBYTECODE=1 \
-    ESCAPE_EXPLORER_CACHE_BYTES=67108864 \
     ESCAPE_EXPLORER_CACHE=/var/cache/escape-explorer \
     MPLCONFIGDIR=/var/cache/escape-explorer/matplotlib
 # Origins that may open a WebSocket, such as the public name of a proxy: host:port, separated by commas.

@@ -9,12 +9,13 @@ import itertools
 import pkgutil
 import random
 from collections.abc import AsyncIterator, Callable
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 
 from bokeh.core.types import ID
 from bokeh.util.token import generate_jwt_token
 
 from benchmarks.simulated_sessions import SimulatedSession
+from tests.fuzz.random_formulas import random_link
 
 _WORST_MAP = "?case=III&h=0.3&plane=x_px&t_max=1000000&resolution=900&judge=yes&trust=yes&manifolds=yes&origins=yes"
 _REQUEST_PAUSE = 0.05
@@ -58,6 +59,28 @@ async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> A
         yield
 
 
+async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Pages with formulas of every kind, one after another."""
+    while True:
+        await visitor.open_formula(_formula_link(choice))
+        await asyncio.sleep(_REQUEST_PAUSE if visitor.is_open else 1.0)
+        yield
+
+
+async def follow_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Links with formulas of every kind, followed in one page."""
+    while True:
+        await visitor.follow_formula(_formula_link(choice))
+        yield
+
+
+async def type_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Formulas of every kind in the box of one page."""
+    while True:
+        await visitor.type_formula(random_link(choice)["V"])
+        yield
+
+
 async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
     """Twenty clicks a second on long orbits, removed when there are five."""
     for number in itertools.count():
@@ -85,15 +108,6 @@ async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Ra
         yield
 
 
-async def ask_for_pictures(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
-    """Pictures of the links that take longest, more at once than an address may have."""
-    while True:
-        energies = [choice.uniform(0.2, 0.24) for _ in range(4)]
-        await asyncio.gather(*(visitor.fetch(f"/app/picture.png?case=III&plane=x_y&h={h!r}") for h in energies))
-        await asyncio.sleep(_REQUEST_PAUSE)
-        yield
-
-
 async def name_modules(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
     """Resources of components in all modules of large packages, none of which the page needs."""
     names = _module_names()
@@ -113,6 +127,10 @@ async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> A
         yield
 
 
+def _formula_link(choice: random.Random) -> str:
+    return "?" + urlencode({"case": "typed", "resolution": "112", "t_max": "100", **random_link(choice)}, errors="replace")
+
+
 def _module_names() -> list[str]:
     """Modules of the packages, which are not imported here."""
     specs = [importlib.util.find_spec(package) for package in ("bokeh", "matplotlib", "numba", "panel", "scipy", "tornado")]
@@ -130,10 +148,12 @@ ATTACKS: dict[str, Attack] = {
     "largest map, all layers": compute_worst_map,
     "against energy": sweep_energies,
     "a new potential each second": type_potentials,
+    "pages of formulas": open_formulas,
+    "links to formulas": follow_formulas,
+    "typed formulas": type_formulas,
     "clicks": click,
     "resolution and colours": flip_choices,
     "links to radial potentials": link_to_radial_potentials,
     "resources of any module": name_modules,
     "compressed tokens": send_zlib_bombs,
-    "pictures of links": ask_for_pictures,
 }

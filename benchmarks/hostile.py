@@ -32,6 +32,18 @@ from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, free_port, 
 LONGEST_WAIT_SECONDS = 3.0
 """Longest permitted time to the first frame of the other visitor's map, and to the answer of ``/liveness``."""
 
+LONGEST_REVIEW_SECONDS = 20.0
+"""Longest permitted time until the page says what it thinks of a formula."""
+
+LONGEST_TURN_MILLISECONDS = 100.0
+"""Longest permitted processor time of a turn of the event loop, apart from those that make a page."""
+
+MOST_LINES = 3.0
+"""Most lines in the log for each formula."""
+
+MOST_LIMITED_MEGABYTES = 1024.0 + 300.0
+"""Most memory of the process for typed formulas: its limit, and what it has when it starts."""
+
 REST_SECONDS = 5.0
 """Between two attacks."""
 
@@ -54,15 +66,30 @@ class Effect:
     ----------
     record
         The waits of the other visitors.
+    attackers
+        Those of the attackers.
     liveness
         Seconds until each answer of ``/liveness``.
     megabytes
         Largest resident memory of a process before, during and after the attack.
+    actions
+        Number of the attacker's actions.
+    lines
+        Number of lines that the attack has added to the logs, apart from those on late turns of the event loop.
+    turn
+        Longest processor time of a late turn of the event loop, in milliseconds, and its cause.
+    limited_megabytes
+        Largest resident memory of the process for typed formulas.
     """
 
     record: Record
+    attackers: Record
     liveness: list[float]
     megabytes: tuple[float, float, float]
+    actions: int
+    lines: int
+    turn: tuple[float, str]
+    limited_megabytes: float
 
 
 @asynccontextmanager
@@ -82,21 +109,32 @@ async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[Sim
 
 async def measure(servers: Sequence[Server], places: Sequence[Place], name: str, seconds: float, seed: int) -> Effect:
     """The effect of an attack."""
-    before, liveness = largest_memory(servers), list[float]()
+    before, liveness, limited = largest_memory(servers), list[float](), [0.0]
+    lines = [len(server.log_lines()) for server in servers]
     for server in servers:
         server.forget_peak()
-    probes = [asyncio.create_task(_probe(server, liveness)) for server in servers]
-    record = await attack(places, name, seconds, seed)
+    probes = [asyncio.create_task(_probe(server, liveness, limited)) for server in servers]
+    record, attackers, actions = await attack(places, name, seconds, seed)
     for probe in probes:
         probe.cancel()
     peak = max(server.peak_megabytes() for server in servers)
     await asyncio.sleep(REST_SECONDS)
-    return Effect(record, liveness, (before, peak, largest_memory(servers)))
+    return Effect(
+        record,
+        attackers,
+        liveness,
+        (before, peak, largest_memory(servers)),
+        actions,
+        sum(server.count_lines(first) for server, first in zip(servers, lines, strict=True)),
+        max(server.longest_turn(first) for server, first in zip(servers, lines, strict=True)),
+        max(limited),
+    )
 
 
-async def _probe(server: Server, liveness: list[float]) -> None:
+async def _probe(server: Server, liveness: list[float], limited: list[float]) -> None:
     while True:
         liveness.append(await asyncio.to_thread(server.seconds_until_live))
+        limited.append(server.limited_megabytes())
         await asyncio.sleep(PROBE_SECONDS)
 
 
@@ -105,13 +143,15 @@ def largest_memory(servers: Sequence[Server]) -> float:
     return max(resident_megabytes(server.process) for server in servers)
 
 
-async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) -> Record:
-    """The waits of one visitor of each process while another one attacks it."""
-    record, ignored = Record(), Record()
+async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) -> tuple[Record, Record, int]:
+    """The waits of one visitor of each process while another one attacks it, those of the other one, and his or her actions."""
+    record, attackers, actions = Record(), Record(), 0
 
     async def run_attack(place: Place, number: int) -> None:
-        async with visiting(place, seed + 100 + number, ignored) as visitor:
+        nonlocal actions
+        async with visiting(place, seed + 100 + number, attackers) as visitor:
             async for _ in ATTACKS[name](visitor, random.Random(seed + number)):
+                actions += 1
                 # A refused visitor comes back, as a person would.
                 if not visitor.is_open:
                     await visitor.open()
@@ -129,7 +169,7 @@ async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) 
         for task in tasks:
             with suppress(asyncio.CancelledError):
                 await task
-    return record
+    return record, attackers, actions
 
 
 async def _visit(place: Place, seed: int, record: Record, end: float) -> None:
@@ -174,14 +214,17 @@ def count_delayed_messages(servers: Sequence[Server]) -> int:
 
 COLUMNS = (
     "attack", "waits", "minimum", "median", "95 %", "99 %", "maximum", "delayed messages", "liveness",
-    "memory before", "peak", "after",
+    "memory before", "peak", "after", "limited process", "actions", "log lines for each", "longest turn", "longest review",
 )  # fmt: skip
 
 
 def row(name: str, effect: Effect, delayed_messages: int) -> str:
     """A row of the table with `COLUMNS`."""
-    megabytes = " | ".join(f"{size:.0f}" for size in effect.megabytes)
-    return f"| {name} | {summary(waits(effect.record))} | {delayed_messages} | {max(effect.liveness):.2f} | {megabytes} |"
+    megabytes = " | ".join(f"{size:.0f}" for size in (*effect.megabytes, effect.limited_megabytes))
+    visitor = f"{summary(waits(effect.record))} | {delayed_messages} | {max(effect.liveness):.2f} | {megabytes}"
+    lines, (turn, cause) = effect.lines / max(effect.actions, 1), effect.turn
+    review = f"{max(effect.attackers.reviews):.2f}" if effect.attackers.reviews else "–"
+    return f"| {name} | {visitor} | {effect.actions} | {lines:.1f} | {turn:.0f} ms: {cause} | {review} |"
 
 
 def find_problems(effect: Effect) -> Iterator[str]:
@@ -190,9 +233,23 @@ def find_problems(effect: Effect) -> Iterator[str]:
         late = [wait for wait in seconds if wait > LONGEST_WAIT_SECONDS]
         if late:
             yield f"{len(late)} {what} later than {LONGEST_WAIT_SECONDS:g} s, the latest after {max(late):.2f} s"
+    if effect.attackers.reviews:
+        yield from _find_problems_of_formulas(effect)
     if effect.record.refused:
         yield f"the page was refused {effect.record.refused} times"
     yield from dict.fromkeys(effect.record.errors)
+
+
+def _find_problems_of_formulas(effect: Effect) -> Iterator[str]:
+    if max(effect.attackers.reviews) > LONGEST_REVIEW_SECONDS:
+        yield f"a formula was answered after {max(effect.attackers.reviews):.2f} s"
+    if effect.lines > MOST_LINES * effect.actions:
+        yield f"{effect.lines} lines in the log for {effect.actions} formulas"
+    if effect.turn[0] > LONGEST_TURN_MILLISECONDS:
+        yield f"a turn of the event loop took {effect.turn[0]:.0f} ms: {effect.turn[1]}"
+    if effect.limited_megabytes > MOST_LIMITED_MEGABYTES:
+        yield f"the process for formulas had {effect.limited_megabytes:.0f} MB"
+    yield from (f"the visitor who types: {error}" for error in dict.fromkeys(effect.attackers.errors))
 
 
 def main() -> int:

@@ -17,9 +17,11 @@ import tempfile
 import time
 import urllib.request
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+
+import psutil
 
 from benchmarks.simulated_sessions import Record, SimulatedSession
 from engine.storage.cache_files import CACHE_VARIABLE
@@ -43,7 +45,10 @@ WARM_SESSIONS = 6
 """The memory of a page is counted from this session on: the first ones load what all of them share."""
 _ROOT = Path(__file__).parents[1]
 # Refused pages are counted by the visitors.
-_ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^Traceback|Task exception was never retrieved")
+_ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^\s*Traceback|Task exception was never retrieved")
+# Turns that make a page or the figures of its first orbit are left out.
+_LATE = "event loop "
+_TURN = re.compile(_LATE + r"\d+ ms late, (\d+) ms of its own; cause: (?!main: |session/explorer: Explorer\._add_start)(.*)")
 
 
 @dataclass
@@ -68,6 +73,22 @@ class Server:
             [count] = re.findall(rf"^escape_explorer_{metric} (\S+)$", answer.read().decode(), re.MULTILINE)
         return int(float(count))
 
+    def log_lines(self) -> list[str]:
+        """All lines of the log."""
+        return self.log.read_text().splitlines()
+
+    def count_lines(self, first_line: int) -> int:
+        """Number of lines of the log from one on, apart from those on late turns of the event loop."""
+        return sum(_LATE not in line for line in self.log_lines()[first_line:])
+
+    def longest_turn(self, first_line: int) -> tuple[float, str]:
+        """Longest processor time of a late turn of the event loop in the log from a line on, in milliseconds, and its cause.
+
+        Those that make a page or the figures of its first orbit are left out.
+        """
+        found = _TURN.findall("\n".join(self.log_lines()[first_line:]))
+        return max(((float(milliseconds), cause) for milliseconds, cause in found), default=(0.0, ""))
+
     def seconds_until_live(self) -> float:
         """Seconds until ``/liveness`` answers."""
         begin = time.perf_counter()
@@ -80,8 +101,15 @@ class Server:
 
     def peak_megabytes(self) -> float:
         """Peak of the resident memory."""
-        [kilobytes] = re.findall(r"^VmHWM:\s+(\d+) kB$", Path(f"/proc/{self.process}/status").read_text(), re.MULTILINE)
-        return int(kilobytes) / 1024
+        return peak_megabytes(self.process)
+
+    def limited_megabytes(self) -> float:
+        """Peak of the resident memory of the process for typed formulas, as long as it runs."""
+        with suppress(psutil.Error):
+            # Not the one that begins, which is a copy of the server yet.
+            children = [child for child in psutil.Process(self.process).children() if "loky" in " ".join(child.cmdline())]
+            return max((peak_megabytes(child.pid) for child in children), default=0.0)
+        return 0.0
 
     def cpu_seconds(self) -> float:
         """Processor time of the process so far."""
@@ -90,7 +118,7 @@ class Server:
 
     def error_lines(self) -> list[str]:
         """Lines of the log with errors."""
-        return [line for line in self.log.read_text().splitlines() if _ERROR_LINE.search(line)]
+        return [line for line in self.log_lines() if _ERROR_LINE.search(line)]
 
     async def watch(self) -> None:
         """Record the resident memory."""
@@ -216,6 +244,15 @@ def resident_megabytes(process: int) -> float:
     """Resident memory of a process."""
     pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
     return pages * 4096 / 2**20
+
+
+def peak_megabytes(process: int) -> float:
+    """Peak of the resident memory of a process; 0 if it has ended."""
+    try:
+        status = Path(f"/proc/{process}/status").read_text()
+    except OSError:
+        return 0.0
+    return sum(int(kilobytes) for kilobytes in re.findall(r"^VmHWM:\s+(\d+) kB$", status, re.MULTILINE)) / 1024
 
 
 def summary(times: list[float]) -> str:

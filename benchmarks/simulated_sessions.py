@@ -46,8 +46,10 @@ class Record:
         By action, from the action to the first frame of its map.
     replaced
         Time waited in vain for a map before the next action replaced it.
+    reviews
+        From a formula, in a link or typed, to what the page says of it.
     clicks, orbit_plots, refused
-        Counts; `refused` are pages that a full server has not opened.
+        Counts; `refused` are pages that a full server, or a proxy with a limit, has not opened.
     errors
         Messages.
     """
@@ -55,6 +57,7 @@ class Record:
     opening: list[float] = field(default_factory=list)
     waits: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in ACTIONS if name != "click"})
     replaced: list[float] = field(default_factory=list)
+    reviews: list[float] = field(default_factory=list)
     clicks: int = 0
     orbit_plots: int = 0
     refused: int = 0
@@ -82,6 +85,9 @@ class SimulatedSession:
         self._parameters: dict[str, str] = {}
         self._accepted = True
         self._opened = asyncio.Event()
+        # The pane that says that a formula is reviewed, and when it says something else.
+        self._reviewing: str | None = None
+        self._reviewed = asyncio.Event()
         self._closing = False
         self._steps = 0
         self._reader: asyncio.Task[None] | None = None
@@ -89,19 +95,59 @@ class SimulatedSession:
     async def open(self) -> None:
         """Load the page and wait for its first map, or count that a full server has refused it."""
         begin = time.perf_counter()
-        try:
-            self._channel = await Channel.open(self._address, self._options)
-        except HTTPClientError as error:
-            if error.code != http.client.SERVICE_UNAVAILABLE:
-                raise
-            self._record.refused += 1
+        if not await self._load(self._address):
             return
-        self._reader = asyncio.create_task(self._read(self._channel))
         try:
             await asyncio.wait_for(self._opened.wait(), FRAME_TIMEOUT_SECONDS)
             self._record.opening.append(time.perf_counter() - begin)
         except TimeoutError:
             self._record.errors.append(f"no map within {FRAME_TIMEOUT_SECONDS:g} s of opening the page")
+
+    async def open_formula(self, link: str) -> None:
+        """Load a page with a link that has a formula in place of this page, and wait until the formula is reviewed."""
+        await self.close()
+        self._reviewed.clear()
+        begin = time.perf_counter()
+        if await self._load(self._address + link):
+            await self._wait_for_review(begin)
+
+    async def follow_formula(self, link: str) -> None:
+        """Show the view of a link that has a formula, as the browser's Back does, and wait until the formula is reviewed."""
+        self._reviewed.clear()
+        self.follow_link(link)
+        await self._wait_for_review(time.perf_counter())
+
+    async def type_formula(self, text: str) -> None:
+        """Type a formula and wait until it is reviewed."""
+        if "FormulaBox" not in self._models:
+            self.press("Other …")
+        while "FormulaBox" not in self._models:
+            await asyncio.sleep(POLL_SECONDS)
+        self._reviewed.clear()
+        self._steps += 1
+        entries = [["text", text], ["typed", self._steps], ["done", True]]
+        self._open_channel.emit("data_event", model={"id": self._models["FormulaBox"]}, data={"type": "map", "entries": entries})
+        await self._wait_for_review(time.perf_counter())
+
+    async def _wait_for_review(self, begin: float) -> None:
+        try:
+            await asyncio.wait_for(self._reviewed.wait(), FRAME_TIMEOUT_SECONDS)
+        except TimeoutError:
+            self._record.errors.append(f"no review within {FRAME_TIMEOUT_SECONDS:g} s")
+        self._record.reviews.append(time.perf_counter() - begin)
+
+    async def _load(self, address: str) -> bool:
+        """Load a page, or count that a full server has refused it; returns whether it is open."""
+        self._closing = False
+        try:
+            self._channel = await Channel.open(address, self._options)
+        except HTTPClientError as error:
+            if error.code not in (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE):
+                raise
+            self._record.refused += 1
+            return False
+        self._reader = asyncio.create_task(self._read(self._channel))
+        return True
 
     async def run(self, end: float) -> None:
         """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map; not without a page."""
@@ -234,6 +280,8 @@ class SimulatedSession:
                 # The address changes when the server accepts the action; earlier pixels belong to an earlier map.
                 link = dict(event["new"]["entries"])["link"]
                 self._accepted |= self._parameters.items() <= dict(parse_qsl(link.removeprefix("?"))).items()
+            if event.get("attr") == "text":
+                self._on_text(model, event["new"])
             if event.get("attr") != "data":
                 # Sections are rebuilt while the page is open.
                 self._models |= dict(_named_models(event))
@@ -243,6 +291,14 @@ class SimulatedSession:
                     self._on_pixels()
                 elif columns["xs"]:
                     self._record.orbit_plots += 1
+
+    def _on_text(self, model: str, text: str) -> None:
+        """Notice when a formula has been reviewed."""
+        if "Reviewing" in text:
+            self._reviewing = model
+        elif model == self._reviewing:
+            self._reviewing = None
+            self._reviewed.set()
 
     def _on_pixels(self) -> None:
         """Record the pixels of the map that is awaited."""

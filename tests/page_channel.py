@@ -29,7 +29,7 @@ class Channel:
     async def open(cls, address: str, options: Options = NO_OPTIONS) -> Channel:
         """Fetch the page and connect with its token."""
         page = await AsyncHTTPClient().fetch(address, request_timeout=60.0, **options)
-        return await cls.connect(address, page.body.decode(), options)
+        return await cls.connect(address.partition("?")[0], page.body.decode(), options)
 
     @classmethod
     async def connect(cls, address: str, page: str, options: Options = NO_OPTIONS) -> Channel:

@@ -14,8 +14,9 @@ from app.state.view_state import SYSTEM, ViewState
 from engine import EscapeMap, MapSpec
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from engine.jobs.map_jobs import map_job
+from engine.jobs.map_jobs import map_job, members_job
 from engine.jobs.subscription import Subscription
+from engine.potentials.system import TYPED
 from engine.warmup import is_ready_for_maps, prepare_for_maps
 from plots.image_columns import draw_over, map_columns
 
@@ -76,6 +77,7 @@ class MapRequests:
         self._painted: tuple[MapSpec, dict[str, list[Any]]] | None = None
         self._is_overloaded = is_overloaded
         self._continue = locked(self._on_compiled)
+        self._show_members = locked(self._on_members)
         self._show_frame = locked(self._on_frame)
         self._show_error = locked(self._on_error)
         self._follow_ups = FollowUpRequests(state, jobs, follow_ups, listener.map_failed, locked)
@@ -92,11 +94,23 @@ class MapRequests:
             compilation = Job(prepare_for_maps, (potential,), queue=Queue.COMPILATION)
             self._request(compilation, generation, lambda _: self._deliver(self._continue, generation, spec))
         else:
-            self._request_frames(generation, spec)
+            self._request_compiled(generation, spec)
 
     def _on_compiled(self, generation: int, spec: MapSpec) -> None:
         if generation == self._generation:
             self._listener.map_requested()
+            self._request_compiled(generation, spec)
+
+    def _request_compiled(self, generation: int, spec: MapSpec) -> None:
+        """Request the frames, after the potentials along a parameter of a typed formula: they take as long as their reviews."""
+        axis = spec.plane.parameter
+        if axis is None or axis.system.case != TYPED:
+            self._request_frames(generation, spec)
+        else:
+            self._request(members_job(axis), generation, lambda _: self._deliver(self._show_members, generation, spec))
+
+    def _on_members(self, generation: int, spec: MapSpec) -> None:
+        if generation == self._generation:
             self._request_frames(generation, spec)
 
     def _request_frames(self, generation: int, spec: MapSpec) -> None:

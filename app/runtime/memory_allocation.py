@@ -19,8 +19,9 @@ class _Option(NamedTuple):
 _OPTIONS = (
     # By default eight arenas per core, each of which keeps what its threads have freed.
     _Option("MALLOC_ARENA_MAX", -8, 2),
-    # Bytes from which an array has memory of its own; by default this number grows to 32 MiB.
-    _Option("MALLOC_MMAP_THRESHOLD_", -3, 2**20),
+    # Bytes from which an array has memory of its own; those of a map with 224 × 224 pixels have more. By default this number
+    # grows to 32 MiB.
+    _Option("MALLOC_MMAP_THRESHOLD_", -3, 2**17),
 )
 
 

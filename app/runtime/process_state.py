@@ -86,6 +86,8 @@ class ProcessState:
         """Adapt to the measured delays; call after each tick of `load` on the event loop."""
         self.overload.add(self.load.delay + self.jobs.take_first_frame_wait())
         self.jobs.pause_background(self.load.is_high())
+        # Before pages are refused.
+        self.jobs.spare_first_frames(self.overload.delay > self.settings.longest_delay)
 
     def is_overloaded(self) -> bool:
         """Whether the event loop is delayed or many calls wait for a thread."""

@@ -84,7 +84,7 @@ class Settings:
         Maximum number of compiled operations of the integrators of all potentials but those of the catalogue, about 4 kB
         each; code is never unloaded.
     cache_bytes
-        Size limit of the result cache, in bytes.
+        Size limit of the result cache, in bytes; a complete map of 224 × 224 pixels takes 1.4 MB.
     memory_ceiling
         Resident memory above which the server reports that it is not ready, in bytes; 0 for no limit.
     threads
@@ -92,8 +92,8 @@ class Settings:
     log
         Format of the log.
     longest_delay
-        Delay of first frames by the event loop and the queue of computations, in seconds, above which the server is overloaded
-        (`app.runtime.overload`) and refuses further pages.
+        Delay of first frames by the event loop and by other computations and programs, in seconds, above which one thread is kept
+        for them, and for seconds of which the server is overloaded (`app.runtime.overload`) and refuses further pages.
     frame_ancestors
         Origins that may embed the page in a frame; empty for none.
     bokeh_patches
@@ -107,11 +107,11 @@ class Settings:
     pages_per_address: int = _setting(50, _integer(1, 100_000))
     most_connections: int = _setting(500, _integer(1, 100_000))
     compiled_operations: int = _setting(250_000, _integer(50_000, 10**9))
-    cache_bytes: int = _setting(512 * MIB, _integer(0, 2**50))
+    cache_bytes: int = _setting(64 * MIB, _integer(0, 2**50))
     memory_ceiling: int = _setting(0, _integer(0, 2**50))
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
-    longest_delay: float = _setting(0.5, _number(0.05, 3600.0))
+    longest_delay: float = _setting(1.0, _number(0.05, 3600.0))
     frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)
     bokeh_patches: bool = _setting(True, _YES_OR_NO)
 

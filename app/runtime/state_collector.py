@@ -36,7 +36,7 @@ class StateCollector(Collector):
         yield _gauge("overloaded", "Whether pages are refused because first frames are late", state.overload.is_overloaded())
         yield _gauge(
             "delay_seconds",
-            f"Longest delay of a first frame by event loop and queue, last {WINDOW_SECONDS} s",
+            f"Longest delay of a first frame by the event loop, other computations and programs, last {WINDOW_SECONDS} s",
             state.overload.delay,
         )
         yield _gauge("delay_limit_seconds", "Delay above which pages are refused", state.settings.longest_delay)

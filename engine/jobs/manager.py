@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections import Counter
 from collections.abc import Callable, Hashable, Mapping
 from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
@@ -47,6 +48,8 @@ class _Run:
     latest: Any = None
     """The last partial result."""
     executors: Mapping[Queue, QueueExecutor] = field(default_factory=dict)
+    begun: float | None = None
+    """Processor time of the coordinating thread when the job began there."""
 
     def stop(self) -> None:
         """Cancel the job and its queued calls."""
@@ -58,6 +61,19 @@ class _Run:
         """Drop all references, so that reference counting alone frees the memory, and return the subscriptions."""
         subscriptions, self.subscriptions, self.executors, self.latest = self.subscriptions, [], {}, None
         return subscriptions
+
+    def waited(self) -> float:
+        """Seconds that a map without a frame has waited, apart from what was computed for it; call on the coordinating thread."""
+        if self.map_priority is None or self.map_priority() is not Priority.FIRST_FRAME or self.begun is None:
+            return 0.0
+        calls = self.executors[Queue.FIRST_FRAME].computed if self.executors else 0.0
+        return max(0.0, self.map_priority.seconds() - calls - (time.thread_time() - self.begun))
+
+    def waiting(self) -> float:
+        """Seconds that a map has waited for its first call to begin."""
+        if self.map_priority is None or any(executor.has_begun for executor in self.executors.values()):
+            return 0.0
+        return self.map_priority.seconds()
 
     def priority(self) -> Priority:
         """Of the short calls."""
@@ -102,6 +118,7 @@ class Jobs:
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
         self._lock = threading.RLock()
         self._in_flight: dict[Job[Any], _Run] = {}
+        self._first_frame_wait = 0.0
         self.cache = ResultCache(cache_bytes)
 
     def request[Result](
@@ -129,7 +146,8 @@ class Jobs:
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
             the second frame of any.
         account
-            Whose share of the limit of compiled code the job takes; None for no one's.
+            Whose share of the limit of compiled code the job takes, and whose turn in the queues of limited calls and of
+            compilations; None for no one's, and the turn of the client.
         """
         subscription = Subscription(partial(self._unsubscribe, job), on_result, on_error)
         with self._lock:
@@ -168,8 +186,23 @@ class Jobs:
         )
 
     def take_first_frame_wait(self) -> float:
-        """Longest recent wait of a first frame for a thread; see `FairScheduler.take_first_frame_wait`."""
-        return self._scheduler.take_first_frame_wait()
+        """Longest time in seconds that the first frame of a map has waited since the last call of this method.
+
+        It counts from the request, apart from the processor time of the map itself: a visitor with costly maps makes nobody wait,
+        but whoever keeps the threads, the interpreter or the processors busy does, also another program. Maps none of whose calls
+        has begun count, too.
+        """
+        with self._lock:
+            waiting = [run.waiting() for run in self._in_flight.values()]
+            longest, self._first_frame_wait = max(self._first_frame_wait, *waiting, 0.0), 0.0
+        return longest
+
+    def _count_wait(self, run: _Run) -> None:
+        self._first_frame_wait = max(self._first_frame_wait, run.waited())
+
+    def spare_first_frames(self, spared: bool) -> None:
+        """Keep one thread for first frames, or no longer; see `FairScheduler.spare_first_frames`."""
+        self._scheduler.spare_first_frames(spared)
 
     def pause_background(self, paused: bool) -> None:
         """Pause or resume everything but first frames and long calls; see `FairScheduler.pause_background`."""
@@ -195,6 +228,7 @@ class Jobs:
                 del self._in_flight[job]
 
     def _run_job(self, run: _Run) -> None:
+        run.begun = time.thread_time()
         error: Exception | None = None
         result: Any = ABSENT
         try:
@@ -243,18 +277,21 @@ class Jobs:
         return found
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
+        # All pages of an account share a turn where one call may keep the only thread for seconds.
+        turn = run.client if run.account is None else run.account
         calls = self._scheduler.executor(run.client, run.priority)
         return {
             Queue.FIRST_FRAME: calls,
             Queue.BACKGROUND: calls,
             Queue.LONG_CALL: self._scheduler.executor(run.client, lambda: Priority.LONG_CALL),
-            Queue.LIMITED: self._limited_calls.executor(run.client, lambda: Priority.LONG_CALL),
-            Queue.COMPILATION: self._compilations.executor(run.client, lambda: Priority.LONG_CALL),
+            Queue.LIMITED: self._limited_calls.executor(turn, lambda: Priority.LONG_CALL),
+            Queue.COMPILATION: self._compilations.executor(turn, lambda: Priority.LONG_CALL),
         }
 
     def _finish(self, run: _Run, result: Any, error: Exception | None) -> list[Subscription]:
         """Cache the result, remove the job and return its subscriptions."""
         with self._lock:
+            self._count_wait(run)
             # An interrupted result must not replace a complete one.
             if result is not ABSENT and (_is_complete(result) or not _is_complete(self.cache.get(run.job, ABSENT))):
                 self.cache.put(run.job, result)
@@ -269,6 +306,7 @@ class Jobs:
             return
         with self._lock:
             run.latest = result
+            self._count_wait(run)
             if run.map_priority is not None:
                 run.map_priority.add_frame(result.horizon)
             subscriptions = list(run.subscriptions)

@@ -21,6 +21,8 @@ from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import compute_statistics, pixels_inside
 from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
 from engine.measures.wada import WadaTest, compute_wada_test
+from engine.slices.axes import ParameterAxis
+from engine.slices.parameter_family import find_members
 from engine.slices.window import Window
 from engine.sweeps.measures import SweepPoint, compute_point
 from engine.sweeps.spec import SweepSpec
@@ -57,6 +59,11 @@ def map_job(spec: MapSpec) -> Job[EscapeMap]:
     columns, rows = spec.resolution
     orbits = min(columns * rows, LARGEST_RUN)
     return Job(run_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
+
+
+def members_job(axis: ParameterAxis) -> Job[None]:
+    """The job that finds the potentials along a parameter of a typed formula within limits, before a map shows them."""
+    return Job(find_members, (axis,), queue=Queue.LIMITED)
 
 
 def regularity_job(spec: MapSpec) -> Job[RegularityMap]:

@@ -28,6 +28,10 @@ class MapPriority:
             self._first_horizon = horizon
         self._horizon = horizon
 
+    def seconds(self) -> float:
+        """Time since the request."""
+        return time.monotonic() - self._requested
+
     def __call__(self) -> Priority:
         """Return the priority of the next call."""
         if self._first_horizon is None:

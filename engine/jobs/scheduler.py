@@ -39,8 +39,6 @@ class _Call(NamedTuple):
     executor: QueueExecutor
     future: Future[Any]
     function: Callable[[], Any]
-    queued: float
-    """Time on the monotonic clock."""
 
     def cancel(self) -> None:
         self.future.cancel()
@@ -51,11 +49,19 @@ class _Call(NamedTuple):
         if not self.future.set_running_or_notify_cancel():
             return
         try:
-            result = self.function()
+            result = self._compute()
         except BaseException as error:
             self.future.set_exception(error)
         else:
             self.future.set_result(result)
+
+    def _compute(self) -> Any:
+        begin = time.thread_time()
+        self.executor.has_begun = True
+        try:
+            return self.function()
+        finally:
+            self.executor.count(time.thread_time() - begin)
 
 
 class FairScheduler:
@@ -78,7 +84,7 @@ class FairScheduler:
         self._active_threads = 0
         self._running: Counter[Priority] = Counter()
         self._background_paused = False
-        self._first_frame_wait = 0.0
+        self._first_frames_spared = False
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
 
@@ -100,22 +106,6 @@ class FairScheduler:
         with self._lock:
             return sum(len(calls) for queues in self._pending.values() for calls in queues.values())
 
-    def take_first_frame_wait(self) -> float:
-        """Longest time in seconds that a `Priority.FIRST_FRAME` call has waited for a thread since the last call of this method.
-
-        Those that still wait count.
-        """
-        now = time.monotonic()
-        with self._lock:
-            waiting = [
-                now - calls[0].queued
-                for queues in self._pending.values()
-                for executor, calls in queues.items()
-                if executor.priority() is Priority.FIRST_FRAME
-            ]
-            longest, self._first_frame_wait = max(self._first_frame_wait, *waiting, 0.0), 0.0
-        return longest
-
     def pause_background(self, paused: bool) -> None:
         """Pause or resume `Priority.BACKGROUND` calls and those of lower priority, to relieve an overloaded process.
 
@@ -126,6 +116,17 @@ class FairScheduler:
             resumed, self._background_paused = self._background_paused and not paused, paused
         if resumed or paused:
             self._start_threads(self.threads if resumed else 1)
+
+    def spare_first_frames(self, spared: bool) -> None:
+        """Let others than first frames leave one thread free, and `Priority.UNSETTLED` calls wait; or end this.
+
+        A single thread is not kept free. Beside other programs a short call takes long, and the first frame of a map would wait
+        for some of them in turn. To start the calls that are settled meanwhile, call this method about every 0.1 s.
+        """
+        with self._lock:
+            ended, self._first_frames_spared = self._first_frames_spared and not spared, spared
+        if ended or spared:
+            self._start_threads(self.threads if ended else 1)
 
     def add(self, call: _Call) -> None:
         """Queue a call, or cancel it if those of its executor have been cancelled."""
@@ -180,8 +181,6 @@ class FairScheduler:
             self._running[priority] += 1
             queues = self._pending[executor.client]
             call = queues[executor].popleft()
-            if priority is Priority.FIRST_FRAME:
-                self._first_frame_wait = max(self._first_frame_wait, time.monotonic() - call.queued)
             if not queues[executor]:
                 del queues[executor]
             self._pending.move_to_end(executor.client)
@@ -200,21 +199,40 @@ class FairScheduler:
     def _may_start(self, priority: Priority) -> bool:
         if priority is Priority.FIRST_FRAME:
             return True
+        fewer = max(self.threads - 1, 1)
+        others = self._running.total() - self._running[Priority.FIRST_FRAME]
+        if self._first_frames_spared and (others >= fewer or priority is Priority.UNSETTLED):
+            return False
         if priority is not Priority.LONG_CALL:
             return not self._background_paused
         running = self._running[priority]
         if self._background_paused:
             return running == 0 and time.monotonic() >= self._next_long_call
-        return running < max(self.threads - 1, 1)
+        return running < fewer
 
 
 class QueueExecutor(Executor):
-    """Executor whose calls are queued in a `FairScheduler`."""
+    """Executor whose calls are queued in a `FairScheduler`.
+
+    Attributes
+    ----------
+    has_begun
+        Whether a thread has begun one of its calls.
+    computed
+        Processor time of its calls that have ended, in seconds.
+    """
 
     def __init__(self, scheduler: FairScheduler, client: Hashable, priority: Callable[[], Priority]) -> None:
         self._scheduler = scheduler
         self.client = client
         self.priority = priority
+        self.has_begun, self.computed = False, 0.0
+        self._lock = threading.Lock()
+
+    def count(self, seconds: float) -> None:
+        """Count the processor time of a call."""
+        with self._lock:
+            self.computed += seconds
 
     @property
     def _max_workers(self) -> int:
@@ -225,7 +243,7 @@ class QueueExecutor(Executor):
         """Queue a call, which runs in the context of the caller, and return its future."""
         future: Future[Any] = Future()
         call = partial(copy_context().run, fn, *args, **kwargs)
-        self._scheduler.add(_Call(self, future, call, time.monotonic()))
+        self._scheduler.add(_Call(self, future, call))
         return future
 
     def cancel_futures(self) -> None:

@@ -26,6 +26,8 @@ _PARTS, _MOST_PARTS, _HALVINGS = 8, 24, 12
 # Potentials whose critical points are found anew, at most: some 10 s.
 _MOST_FOUND = 120
 _NEWTON_STEPS = 20
+# Potentials along the axis that `find_members` finds.
+_TRIED = 112
 # Newton's method has converged when its last step is this small, and it may move a saddle by this share of the distance to the
 # nearest other one.
 _CONVERGED, _LARGEST_SHARE = 1e-12, 0.5
@@ -214,6 +216,25 @@ class ParameterFamily:
 def parameter_family(axis: ParameterAxis) -> ParameterFamily:
     """The family of an axis; takes up to a second the first time, and less when its nodes are stored on disk."""
     return ParameterFamily(axis)
+
+
+def find_members(axis: ParameterAxis) -> None:
+    """Find potentials along a whole axis: how long that takes is a measure of a map's lines, and their points are stored on disk.
+
+    Raises
+    ------
+    ManyExitsError
+        If the exits change too often.
+    """
+    family = parameter_family(axis)
+    for value in np.linspace(axis.low, axis.high, _TRIED).tolist():
+        try:
+            family.member(value)
+        except ManyExitsError:
+            raise
+        except ValueError:
+            # Such lines of a map stay empty.
+            continue
 
 
 def _match(first: Potential, last: Potential) -> list[int] | None:

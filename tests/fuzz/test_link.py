@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import random
 import re
+import time
 import warnings
 from functools import partial
 from typing import Any
@@ -18,6 +20,7 @@ from engine import CASES
 from engine.potentials.system import TYPED
 from tests.app.state.opened_link import open_link
 from tests.fuzz.hostile import LONGEST_MESSAGE, STRINGS, floats, formulas, result_or_error, texts
+from tests.fuzz.random_formulas import random_link
 
 NAMES = (
     "case", "plane", "h", "t_max", "resolution", "window", "box", "judge", "trust", "manifolds", "origins", "measures",
@@ -27,6 +30,8 @@ LEGAL = {
     "case": "II", "plane": "x_y", "h": "0.2", "t_max": "1000", "resolution": "224", "window": "-1,1,-1,1", "orbits": "0.1,0.2",
 }  # fmt: skip
 SAFE = re.compile(r"[A-Za-z0-9_ .,;:+()=?…-]*")
+LONGEST_READING = 0.1
+"""Most processor time to read a link, in seconds: it happens on the event loop."""
 POTENTIAL_PROBLEM = "Ignored the potential in the link: "
 
 numbers = floats.map(repr) | st.sampled_from(["1e999", "-inf", "1_0", "0x10", "١", " 1", "1e-400", "9" * 400])
@@ -72,6 +77,16 @@ def test_link_with_one_arbitrary_value(name: str, value: str) -> None:
 @given(formulas, st.dictionaries(st.sampled_from(["case", "omega_1", "omega_2", "epsilon", "h", "orbits"]), values, max_size=3))
 def test_link_with_a_formula(formula: str, others: dict[str, str]) -> None:
     check({"case": TYPED, **others, "V": formula})
+
+
+@given(st.integers(0, 2**32))
+def test_a_formula_of_any_kind_is_read_at_once(seed: int) -> None:
+    link = {"case": TYPED, **random_link(random.Random(seed))}
+    begin = time.thread_time()
+    values, problems = read_link(link)
+    summary = summary_of(values)
+    assert max(map(len, [summary.describe(), summary.title, *problems])) <= LONGEST_MESSAGE
+    assert time.thread_time() - begin < LONGEST_READING
 
 
 @given(st.sampled_from([name for name in NAMES if name]), texts)

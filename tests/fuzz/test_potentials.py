@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import time
 from typing import Any
 from urllib.parse import parse_qsl
@@ -9,7 +10,7 @@ from urllib.parse import parse_qsl
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.permalink import write_link
+from app.state.permalink import linked_system, read_link, write_link
 from app.state.view_state import ViewState
 from cli.potential_argument import file_name_part, find_potential
 from engine import Potential, PotentialReview, System, parse_formula, review_potential, write_formula
@@ -20,6 +21,7 @@ from plots.accepted_potentials import refusal
 from tests.app.state.opened_link import open_link
 from tests.contracts.potentials import WELLS
 from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error
+from tests.fuzz.random_formulas import random_link
 
 LONGEST_REVIEW = 3.0
 """Processor time in seconds; the page waits for the review of a formula in its link."""
@@ -66,6 +68,14 @@ def test_any_formula(text: str) -> None:
     if potential is not None:
         assert parse_formula(write_formula(potential)).terms == potential.terms
         check_display(System(TYPED, text), reviewed(potential))
+
+
+@given(st.integers(0, 2**32))
+def test_a_link_with_a_formula_of_any_kind_is_reviewed_or_refused(seed: int) -> None:
+    values, _ = read_link({"case": TYPED, **random_link(random.Random(seed))})
+    reviewed_system = result_or_error(lambda: review_system(linked_system(values)), ["formula", *WELL_PARAMETERS])
+    if reviewed_system is not None and reviewed_system.refusal is None:
+        check_display(reviewed_system.system, reviewed_system)
 
 
 @given(st.sampled_from(list(WELLS)), *[mostly(st.floats(0.5, 2.0))] * 3)

@@ -63,8 +63,8 @@ def annotate_picture(plot: figure, title: str, names: tuple[str, str], legend: s
         f"<i class='axis-names'>{names[1]} ↑ {names[0]} →</i><div class='foot' data-picture='{plot.name}'>{legend}"
         f"{''.join(f'<span>{note}</span>' for note in notes)}</div>"
     )
-    if plot.elements[0].html != html:
-        plot.elements = [HTML(html=html)]
+    # Not a new model: for each one Bokeh searches all models of the page.
+    plot.elements[0].html = html
 
 
 def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) -> list[str]:

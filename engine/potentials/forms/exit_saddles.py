@@ -7,6 +7,7 @@ through the walls of the channel; above the energy of a maximum at which one of 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -132,7 +133,10 @@ class _Descent:
         # LSODA may not notice that a long narrow valley needs an implicit method. Radau is one, but takes ten times as long, and
         # needs a steady flow: after a very slow start its steps would become shorter than the rounding error of the time.
         for method, flow in ((LSODA, self.flow), (Radau, self._steady_flow)):
-            end = self._follow(method, flow, saddle, side)
+            with warnings.catch_warnings():
+                # Where it fails, the other method is next.
+                warnings.filterwarnings("ignore", "lsoda: ", UserWarning)
+                end = self._follow(method, flow, saddle, side)
             if end is not None:
                 return end
         x, y = self.points[saddle]

@@ -12,9 +12,11 @@ from app.job_clients.map_requests import MapRequests
 from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, MapSpec, Plane, System, compute_map
+from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
 from engine.potentials.system import TYPED
+from engine.slices.slice_text import read_slice
 from engine.warmup import prepare_for_maps
 
 
@@ -108,9 +110,11 @@ class ManualJobs:
     """Requests whose results the test delivers."""
 
     def __init__(self) -> None:
+        self.jobs: list[Job[Any]] = []
         self.listeners: list[Callable[[Any], None]] = []
 
     def request(self, job: Any, on_result: Callable[[Any], None], on_error: Callable[[Exception], None]) -> Subscription:
+        self.jobs.append(job)
         self.listeners.append(on_result)
         return Subscription(lambda subscription: None, on_result, on_error)
 
@@ -171,6 +175,20 @@ def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_m
     jobs.listeners[1](None)
     session.run()
     assert len(jobs.listeners) == 3
+
+
+@pytest.mark.usefixtures("compiled")
+def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits_first() -> None:
+    state, recorder, jobs, session = ViewState(), Recorder(), ManualJobs(), LatestCalls()
+    requests = MapRequests(state, jobs, recorder, session.locked)
+    state.show_system(review_system(System(TYPED, "½(x² + y²) − a x²y + y³/3")))
+    state.plane = read_slice("x,a=0.5:1.5", "", state.system)
+    assert jobs.jobs[-1].queue is Queue.LIMITED
+    requested = len(jobs.jobs)
+    jobs.listeners[-1](None)
+    session.run()
+    assert [job.queue for job in jobs.jobs[requested:]] == [Queue.FIRST_FRAME]
+    requests.close()
 
 
 def test_an_invalid_energy_gives_a_message(session: Session) -> None:

@@ -23,3 +23,13 @@ def test_delays_of_the_loop_count_and_pause_the_background() -> None:
     state.load.delay = 0.7
     state.adapt_to_load()
     assert state.overload.delay == pytest.approx(0.7)
+
+
+def test_one_thread_is_kept_for_first_frames_as_soon_as_one_is_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    state, kept, wait = ProcessState(Settings(longest_delay=0.5)), list[bool](), [0.1, 0.6, 0.1]
+    monkeypatch.setattr(state.jobs, "take_first_frame_wait", lambda: wait.pop(0))
+    monkeypatch.setattr(state.jobs, "spare_first_frames", kept.append)
+    for _ in range(3):
+        state.adapt_to_load()
+    assert kept == [False, True, True]
+    assert not state.overload.is_overloaded()

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import gc
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
+from types import SimpleNamespace
+from typing import Any
 from weakref import ref
 
 import numpy as np
@@ -22,9 +24,13 @@ from engine import (
     find_divergent_start,
     integrate_orbit,
 )
+from engine.execution import Execution
+from engine.jobs import manager as manager_module
+from engine.jobs import map_priority, scheduler
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.map_jobs import map_job, regularity_job
+from tests.app.clock import Clock
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
@@ -185,6 +191,29 @@ def test_orbits_do_not_wait_for_a_compilation() -> None:
     end.set()
 
 
+def wait_for(begun: threading.Event, end: threading.Event) -> str:
+    """A call that lasts until `end` is set."""
+    begun.set()
+    end.wait(30)
+    return "waited"
+
+
+@pytest.mark.parametrize("queue", [Queue.LIMITED, Queue.COMPILATION])
+def test_all_pages_of_an_account_share_a_turn(queue: Queue) -> None:
+    jobs, begun, end, order = Jobs(threads=2), threading.Event(), threading.Event(), list[str]()
+    jobs.request(Job(wait_for, (begun, end), queue=queue), Inbox().result, Inbox().error)
+    assert begun.wait(30)
+    queued, inboxes = jobs._limited_calls if queue is Queue.LIMITED else jobs._compilations, list[Inbox]()
+    for account, client in (("crowd", 1), ("crowd", 2), ("crowd", 3), ("other", 4)):
+        inboxes.append(Inbox())
+        job = Job(order.append, (f"{account} {client}",), queue=queue)
+        jobs.request(job, inboxes[-1].result, inboxes[-1].error, client=client, account=account)
+        wait_until(lambda: queued.pending_calls == len(inboxes))
+    end.set()
+    assert all(inbox.done.wait(30) for inbox in inboxes)
+    assert order == ["crowd 1", "other 4", "crowd 2", "crowd 3"]
+
+
 @pytest.fixture
 def paused() -> Iterator[Jobs]:
     """A manager whose background is paused; a job that a failed test leaves would keep the process from ending."""
@@ -210,6 +239,55 @@ def test_cancelled_map_ends_while_background_is_paused(paused: Jobs) -> None:
     subscription.cancel()
     wait_until_idle(jobs)
     assert jobs.stats().calls_waiting == 0
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    made = Clock()
+    for module in (manager_module, map_priority, scheduler):
+        monkeypatch.setattr(module, "time", made)
+    return made
+
+
+def show_a_frame(clock: Clock, waits: int, *, execution: Execution, on_frame: Callable[[Any], None]) -> str:
+    """A map that needs 2 s of a processor until its first frame, has to wait for it, and takes long afterwards."""
+    clock.compute(1)
+    assert execution.executor is not None
+    execution.executor.submit(clock.compute, 1).result()
+    clock.now += waits
+    on_frame(SimpleNamespace(complete=False, horizon=1.0))
+    clock.now += 100.0
+    return "map"
+
+
+def test_the_wait_for_a_first_frame_is_measured_without_its_own_computation(clock: Clock) -> None:
+    jobs, inbox = Jobs(threads=1), Inbox()
+    jobs.request(Job(show_a_frame, (clock, 3), queue=Queue.FIRST_FRAME), inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    wait_until_idle(jobs)
+    assert (inbox.errors, jobs.take_first_frame_wait()) == ([], 3.0)
+    assert jobs.take_first_frame_wait() == 0.0
+
+
+def test_only_maps_have_a_first_frame(clock: Clock) -> None:
+    jobs, inbox = Jobs(threads=1), Inbox()
+    jobs.request(Job(show_a_frame, (clock, 3)), inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    wait_until_idle(jobs)
+    assert (inbox.errors, jobs.take_first_frame_wait()) == ([], 0.0)
+
+
+def test_maps_that_wait_for_a_thread_count(clock: Clock) -> None:
+    jobs, begun, end, inbox = Jobs(threads=1), threading.Event(), threading.Event(), Inbox()
+    jobs.request(Job(wait_for, (begun, end), queue=Queue.LONG_CALL), Inbox().result, Inbox().error)
+    assert begun.wait(30)
+    jobs.request(map_job(QUICK), inbox.result, inbox.error)
+    clock.now += 3.0
+    assert jobs.take_first_frame_wait() == 3.0
+    clock.now += 1.0
+    end.set()
+    assert inbox.done.wait(30)
+    assert jobs.take_first_frame_wait() == 4.0
 
 
 def test_finished_job_leaves_no_reference_cycles() -> None:

@@ -9,9 +9,7 @@ from typing import Any
 
 import pytest
 
-from engine.jobs import scheduler as scheduler_module
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
-from tests.app.clock import Clock
 
 SECONDS = 10.0
 
@@ -109,21 +107,6 @@ def test_calls_run_in_the_order_of_their_priorities() -> None:
     assert recorder.run(*calls) == ["e1", "e2", "d1", "c1", "b1"]
 
 
-def test_wait_of_first_frames_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = Clock()
-    monkeypatch.setattr(scheduler_module, "time", clock)
-    recorder = Recorder()
-    frame = recorder.submit(recorder.executor("b", first_frame), "b1")
-    recorder.submit(recorder.executor("a"), "a1")
-    clock.now += 3.0
-    # It still waits.
-    assert recorder.scheduler.take_first_frame_wait() == 3.0
-    clock.now += 1.0
-    recorder.run(*frame)
-    assert recorder.scheduler.take_first_frame_wait() == 4.0
-    assert recorder.scheduler.take_first_frame_wait() == 0.0
-
-
 def test_paused_background_calls_wait_and_others_run() -> None:
     recorder = Recorder(threads=2)
     recorder.scheduler.pause_background(True)
@@ -138,6 +121,37 @@ def test_paused_background_calls_wait_and_others_run() -> None:
     assert not wait(background, 0.2).done
     recorder.scheduler.pause_background(False)
     assert not wait(background, SECONDS).not_done
+
+
+def test_one_thread_is_kept_for_first_frames() -> None:
+    recorder, ended = Recorder(threads=2), threading.Event()
+    recorder.scheduler.spare_first_frames(True)
+    first = recorder.executor("b", long_call).submit(ended.wait, SECONDS)
+    others = recorder.submit(recorder.executor("a"), "a1")
+    assert recorder.run(*recorder.submit(recorder.executor("c", first_frame), "c1")) == ["c1"]
+    recorder.scheduler.spare_first_frames(False)
+    assert not wait(others, SECONDS).not_done
+    assert not first.done()
+    ended.set()
+
+
+def test_unsettled_calls_wait_while_first_frames_are_spared() -> None:
+    recorder, settled = Recorder(), threading.Event()
+    recorder.scheduler.spare_first_frames(True)
+    executor = recorder.executor("a", lambda: Priority.BACKGROUND if settled.is_set() else Priority.UNSETTLED)
+    unsettled = recorder.submit(executor, "a1")
+    assert recorder.run(*recorder.submit(recorder.executor("b"), "b1")) == ["b1"]
+    assert not wait(unsettled, 0.2).done
+    settled.set()
+    recorder.scheduler.spare_first_frames(True)
+    assert recorder.run(*unsettled) == ["b1", "a1"]
+
+
+def test_a_single_thread_runs_all_calls_in_turn() -> None:
+    recorder = Recorder()
+    recorder.scheduler.spare_first_frames(True)
+    calls = [*recorder.submit(recorder.executor("a"), "a1"), *recorder.submit(recorder.executor("b", first_frame), "b1")]
+    assert recorder.run(*calls) == ["b1", "a1"]
 
 
 def test_the_pool_has_no_more_tasks_than_threads() -> None:

@@ -5,7 +5,8 @@ import pytest
 
 from engine import CASES, ParameterAxis, Potential, System
 from engine.potentials.known_potentials import POTENTIALS
-from engine.slices.parameter_family import ParameterFamily
+from engine.slices import parameter_family
+from engine.slices.parameter_family import ManyExitsError, ParameterFamily, find_members
 
 EPSILON = ParameterAxis("epsilon", 0.5, 2.0, System("III"))
 # The saddles at x = 1/2 are exits everywhere; for b < 0 there is a third one at the left, at x = 1 / (3 b), V = 1 / (54 b²).
@@ -46,3 +47,10 @@ def test_a_continued_potential_is_kept_apart_from_an_equal_one() -> None:
     continued = ParameterFamily(EPSILON).member(0.7).potential
     assert continued != Potential(continued.name, continued.terms)
     assert continued.in_well_units != Potential(continued.name, continued.terms).in_well_units
+
+
+def test_potentials_along_a_whole_axis_are_found_or_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    find_members(EPSILON)
+    monkeypatch.setattr(parameter_family, "_MOST_FOUND", 3)
+    with pytest.raises(ManyExitsError, match="choose a smaller range"):
+        find_members(THIRD_EXIT)

@@ -56,3 +56,8 @@ def test_descents_that_need_an_implicit_method_from_the_start_end() -> None:
     potential = random_well(100, 10)
     farthest = potential.saddles[np.argmax(potential.saddles[:, 0])]
     np.testing.assert_allclose(farthest, [717.83953, -0.02207], atol=1e-5)
+
+
+def test_descents_whose_first_method_fails_end_without_a_warning() -> None:
+    text = "½(x²+y²) − 1.295xy³ − 6x⁶y − 2.133xy² − 1.746x⁴y² + 4x³y³ − 1.67x⁵y⁴ + 0.957x²y + 3x⁵y⁶ − 0.184x² + 9y² + 0.35x⁴y⁵"
+    assert len(exits(parse_formula(text))) == 3
