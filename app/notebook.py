@@ -17,7 +17,7 @@ from app.session.page import TITLE, explorer_page
 from app.state.permalink import write_link
 from app.state.view_state import ViewState
 from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, write_formula
-from engine.potentials.system import TYPED
+from engine.systems.system import TYPED
 
 _STARTS_WITHIN = 60.0
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from engine import CASES, Certificate, Fate, MapSpec, Plane, compute_map
-from engine.potentials.catalogue.table import PAPER_ENERGIES
+from engine.systems.catalogue.table import PAPER_ENERGIES
 
 SIDE, T_MAX = 61, 1e5
 EARLY = [code for code in Certificate if code > Certificate.INTEGRATED]

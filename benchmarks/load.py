@@ -24,7 +24,7 @@ from pathlib import Path
 import psutil
 
 from benchmarks.simulated_sessions import Record, SimulatedSession
-from engine.storage.cache_files import CACHE_VARIABLE
+from engine.foundations.cache_files import CACHE_VARIABLE
 
 LONGEST_WAIT_SECONDS = 2.0
 """Longest permitted time to the first frame of a map."""

@@ -9,7 +9,7 @@ import statistics
 import time
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from engine.execution import DEFAULT_EXECUTION
+from engine.foundations.execution import DEFAULT_EXECUTION
 
 REPEATS = 7
 T_MAX = 1000.0

@@ -20,7 +20,7 @@ from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from engine import CASES, MapSpec, Plane, Potential, compute_map, start_states
 from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.taylor.kernels.events import crossed_exit
+from engine.integrator.kernels.events import crossed_exit
 from tests.peers import taylor_heyoka
 from tests.peers.exit_lines import exit_lines
 

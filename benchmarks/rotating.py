@@ -17,10 +17,10 @@ import numpy as np
 
 from engine import POTENTIALS, Potential, classify_orbits, sample_starts
 from engine.exits.exit_rows import closed_exits, exit_gates
-from engine.potentials.compiled import kernels_of
-from engine.taylor.kernels import propagate
-from engine.taylor.kernels.events import NOT_COMPUTED
-from engine.taylor.source.recurrence import TOLERANCE
+from engine.integrator.kernels import propagate
+from engine.integrator.kernels.events import NOT_COMPUTED
+from engine.integrator.source.recurrence import TOLERANCE
+from engine.systems.compiled import kernels_of
 from tests.peers.taylor_heyoka import equations
 
 SYSTEMS = (("III", 0.24), ("Copenhagen", -2.2), ("Barred galaxy", -3300.0))

@@ -17,11 +17,11 @@ import numpy as np
 
 from engine import CASES, Plane, start_states
 from engine.exits.exit_rows import closed_exits, exit_gates
-from engine.storage.cache_files import CACHE_VARIABLE
-from engine.taylor.bound_kernels import load_kernels
-from engine.taylor.kernels import propagate
-from engine.taylor.kernels.events import NOT_COMPUTED
-from engine.taylor.source import polynomial_recurrence, recurrence
+from engine.foundations.cache_files import CACHE_VARIABLE
+from engine.integrator.bound_kernels import load_kernels
+from engine.integrator.kernels import propagate
+from engine.integrator.kernels.events import NOT_COMPUTED
+from engine.integrator.source import polynomial_recurrence, recurrence
 
 T_MAX = 1e5
 ORBITS = 64

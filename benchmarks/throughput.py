@@ -17,8 +17,8 @@ import numpy as np
 
 from benchmarks.steps import ENERGIES, ORBITS, T_MAX, bounded_starts, measure
 from engine import CASES, Potential
-from engine.taylor.source.recurrence import TOLERANCE, generate_code
-from engine.taylor.source.series import ORDER
+from engine.integrator.source.recurrence import TOLERANCE, generate_code
+from engine.integrator.source.series import ORDER
 from tests.peers.taylor_heyoka import equations
 
 REPEATS = 3

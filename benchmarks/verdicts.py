@@ -31,7 +31,7 @@ from engine import (
     judge_orbit,
     sample_starts,
 )
-from engine.potentials.known_potentials import channel_family
+from engine.systems.known_potentials import channel_family
 
 FIVE = channel_family(5)
 SEAS = (

@@ -11,7 +11,7 @@ from cli.options import Edges
 from cli.potential_argument import find_potential, find_system
 from engine import MapSpec, Slice
 from engine.slices.slice_text import read_slice
-from plots.palette import PALETTES, Palette
+from plots.pictures.palette import PALETTES, Palette
 
 
 def find_palette(name: str) -> Palette:

@@ -46,7 +46,7 @@ def cluster_executor(scheduler: str | None, local_workers: int | None, threads: 
 
 
 def _connect(scheduler: str | None, local_workers: int | None) -> Client:
-    from engine.results.extras import require_package
+    from engine.foundations.extras import require_package
 
     require_package("distributed", "cluster")
     import distributed

@@ -14,7 +14,7 @@ from cli.options import DEFAULT_PLANE, DEFAULT_STYLE
 if TYPE_CHECKING:
     from cli.files import Content
     from engine import Sweep
-    from plots.figure_style import FigureStyle
+    from plots.printed.figure_style import FigureStyle
 
 # Columns that are in files and JSON only.
 _ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
@@ -64,7 +64,7 @@ def draw_curves(
     from cli.run_context import cancellable_run
     from engine import ParameterAxis, SweepSpec, compute_sweep
     from engine.sweeps.measures import CURVES, QUICK_CURVES
-    from plots.figure_style import FigureFormat, FigureStyle
+    from plots.printed.figure_style import FigureFormat, FigureStyle
 
     style, values = FigureStyle(width, dpi, font_size, titles), space_energies(low, high, count)
     along = None if against == "h" else ParameterAxis(against, low, high, find_system(case))
@@ -87,22 +87,22 @@ def draw_curves(
 def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
     """Return the content of the output file with this ending."""
     if ending == "nc":
-        from plots.exports import dataset_bytes
+        from plots.texts.exports import dataset_bytes
 
         return dataset_bytes(curves.dataset)
     if ending == "csv":
-        from plots.exports import curves_csv
+        from plots.texts.exports import curves_csv
 
         return curves_csv(curves)
-    from plots.figure_files import curves_figure_bytes
-    from plots.figure_style import FigureFormat
+    from plots.printed.figure_files import curves_figure_bytes
+    from plots.printed.figure_style import FigureFormat
 
     return curves_figure_bytes(curves, FigureFormat(ending), style)
 
 
 def _print_result(curves: Sweep, files: list[str], as_json: bool) -> None:
     from cli.output import print_json, print_sentences, print_table
-    from plots.exports import curve_columns
+    from plots.texts.exports import curve_columns
 
     columns = curve_columns(curves)
     if as_json:

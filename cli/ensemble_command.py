@@ -62,7 +62,7 @@ def follow_ensemble(
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
     from engine import classify_orbits, compute_flux, compute_statistics, fit_decay_laws
-    from plots.figure_style import FigureStyle
+    from plots.printed.figure_style import FigureStyle
 
     potential, drawing = find_potential(case), Drawing(find_palette(palette), FigureStyle(width, dpi, font_size, titles), frames)
     check_count(output, count)
@@ -104,7 +104,7 @@ def _draw_starts(
 def _print_result(statistics: EscapeStatistics, laws: DecayLaws, flux: EscapeFlux, files: list[str], as_json: bool) -> None:
     from cli.output import print_json, print_sentences, print_table
     from engine import Fate
-    from engine.dynamics.fates import name_fate
+    from engine.propagation.fates import name_fate
 
     shares, intervals = statistics.shares, statistics.share_intervals
     shown = {code: name_fate(code, statistics.outcomes) for code in shares if code >= Fate.BOUNDED or shares[code]}

@@ -11,10 +11,10 @@ import numpy as np
 from cli.files import Content, add_ending, split_ending
 from cli.run_context import RunContext
 from engine import Outcomes, Potential, sample_orbits
-from plots.ensemble_movie import MovieFormat, ensemble_movie_bytes
-from plots.exports import dataset_bytes
-from plots.figure_style import FigureStyle
-from plots.palette import Palette
+from plots.pictures.palette import Palette
+from plots.printed.ensemble_movie import MovieFormat, ensemble_movie_bytes
+from plots.printed.figure_style import FigureStyle
+from plots.texts.exports import dataset_bytes
 
 MOST_PATHS = 20_000
 """Most orbits of a movie, or of a file of paths."""

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from engine.storage.output_lock import hold_lock
+from engine.foundations.output_lock import hold_lock
 
 Content = str | bytes
 

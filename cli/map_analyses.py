@@ -8,11 +8,11 @@ from typing import Any
 
 from cli.run_context import RunContext
 from engine import EscapeMap, MapSpec, compute_regularity, compute_trust, find_stable_manifolds
-from engine.invariant_sets.stable_manifolds import MOST_IMAGES
 from engine.maps.compute import run_map
 from engine.maps.origin_fates import join_origin_fates
+from engine.periodic.stable_manifolds import MOST_IMAGES
 from engine.slices.section import SECTION
-from plots.map_analyses import MapAnalyses
+from plots.pictures.map_analyses import MapAnalyses
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from cli.options import DEFAULT_PLANE, DEFAULT_STYLE
 
 if TYPE_CHECKING:
     from engine import EscapeMap
-    from plots.map_analyses import MapAnalyses
+    from plots.pictures.map_analyses import MapAnalyses
 
 EXAMPLES = """Examples:
 
@@ -102,8 +102,8 @@ def draw_map(
     from cli.map_analyses import AnalysisOptions, compute_map_with_analyses
     from cli.potential_argument import file_name_part
     from cli.run_context import cancellable_run
-    from plots.exports import file_stem
-    from plots.figure_style import FigureStyle
+    from plots.printed.figure_style import FigureStyle
+    from plots.texts.exports import file_stem
 
     spec = build_map_spec(case, plane, fix, energy, energies, window, resolution, t_max, certify, backward)
     wanted = AnalysisOptions(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)
@@ -128,7 +128,7 @@ def draw_map(
 def _print_result(frame: EscapeMap, analyses: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
     from cli.map_analyses import describe_analyses
     from cli.output import outcome_shares, print_json, print_sentences, print_table
-    from engine.dynamics.fates import UNRESOLVED
+    from engine.propagation.fates import UNRESOLVED
 
     shares = outcome_shares(frame, count_outside=count_outside)
     sentences = describe_analyses(analyses)

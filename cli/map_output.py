@@ -9,12 +9,12 @@ from pathlib import Path
 from cli.arguments import find_palette
 from cli.files import Content, add_ending
 from engine import EscapeMap
-from plots.exports import netcdf_bytes
-from plots.figure_files import map_figure_bytes
-from plots.figure_style import FigureFormat, FigureStyle
-from plots.map_analyses import MapAnalyses
-from plots.map_images import TITLES
-from plots.palette import Palette
+from plots.pictures.map_analyses import MapAnalyses
+from plots.pictures.map_images import TITLES
+from plots.pictures.palette import Palette
+from plots.printed.figure_files import map_figure_bytes
+from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.texts.exports import netcdf_bytes
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from plots.figure_style import FigureStyle
+from plots.printed.figure_style import FigureStyle
 
 DEFAULT_PLANE = "x_px"
 

@@ -57,7 +57,7 @@ def follow_orbit(
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
     from engine import Fate, compute_birkhoff_digits, evaluate_indicators, integrate_orbit, judge_orbit
-    from plots.figure_style import FigureStyle
+    from plots.printed.figure_style import FigureStyle
 
     style = FigureStyle(width, dpi, font_size, titles)
     potential, colours = find_potential(case), find_palette(palette)

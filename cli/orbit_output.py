@@ -7,11 +7,11 @@ from pathlib import Path
 
 from cli.files import Content, add_ending, split_ending
 from engine import Orbit, OrbitVerdict, Potential
-from plots.exports import orbits_csv
-from plots.figure_files import orbits_figure_bytes
-from plots.figure_style import FigureFormat, FigureStyle
-from plots.orbit_curves import compute_orbit_curves
-from plots.palette import Palette
+from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.pictures.palette import Palette
+from plots.printed.figure_files import orbits_figure_bytes
+from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.texts.exports import orbits_csv
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from engine import EscapeMap, Fate
-from engine.dynamics.fates import name_fate
+from engine.propagation.fates import name_fate
 
 # Width of tables when stdout is not a terminal.
 _PIPE_WIDTH = 200

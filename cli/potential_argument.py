@@ -6,11 +6,11 @@ import re
 import reprlib
 
 from engine import POTENTIALS, Potential, System, review_potential
-from engine.potentials.catalogue.table import CATALOGUE
-from engine.potentials.formulas.formula_parser import formula_letters
-from engine.potentials.parameters import WELL_PARAMETERS
-from engine.potentials.system import TYPED
-from plots.accepted_potentials import refusal
+from engine.systems.catalogue.table import CATALOGUE
+from engine.systems.formulas.formula_parser import formula_letters
+from engine.systems.parameters import WELL_PARAMETERS
+from engine.systems.system import TYPED
+from plots.texts.accepted_potentials import refusal
 
 
 def find_potential(case: str) -> Potential:

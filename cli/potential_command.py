@@ -38,7 +38,7 @@ def describe_potential(
 def _list_catalogue(as_json: bool) -> None:
     from cli.output import print_json, print_table
     from engine import POTENTIALS
-    from engine.potentials.catalogue.table import CATALOGUE
+    from engine.systems.catalogue.table import CATALOGUE
 
     if as_json:
         names = ("name", "title", "formula", "description", "reference")

@@ -35,7 +35,7 @@ def serve_page(
     """Serve the page until Ctrl-C or SIGTERM; environment variables ESCAPE_EXPLORER_… set its limits (docs/operation.md)."""
     if importlib.util.find_spec("panel") is None:
         # The engine is slow to import.
-        from engine.results.extras import require_package
+        from engine.foundations.extras import require_package
 
         require_package("panel", "page")
     command = serve_arguments(port, address, origin or [], show)

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import CASES, Orbit, Window
-from plots.figure_axes import new_figure
-from plots.figure_style import FigureStyle
+from plots.printed.figure_axes import new_figure
+from plots.printed.figure_style import FigureStyle
 
 STYLE = FigureStyle(width=24.0, dpi=100.0, font_size=12.0, titles=False)
 """Letters of a document, where a figure is as wide as the text."""

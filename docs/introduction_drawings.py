@@ -23,17 +23,17 @@ from engine import (
 )
 from engine.slices.planes import SPACE
 from engine.slices.section import SECTION
-from plots.figure_axes import (
+from plots.pictures.manifold_strokes import select_image
+from plots.pictures.orbit_curves import compute_orbit_curves, find_well_window
+from plots.pictures.palette import PAPER
+from plots.printed.figure_axes import (
     add_figure_legend,
     name_panel,
     patches,
 )
-from plots.manifold_strokes import select_image
-from plots.map_figure import draw_curve, draw_limits, draw_manifolds, draw_map_figure, draw_picture, show_window
-from plots.orbit_curves import compute_orbit_curves, find_well_window
-from plots.orbit_figure import draw_path
-from plots.palette import PAPER
-from plots.potential_figure import draw_well
+from plots.printed.map_figure import draw_curve, draw_limits, draw_manifolds, draw_map_figure, draw_picture, show_window
+from plots.printed.orbit_figure import draw_path
+from plots.printed.potential_figure import draw_well
 
 
 def well() -> Figure:

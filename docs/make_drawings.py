@@ -47,8 +47,10 @@ from engine import (
     start_states,
 )
 from engine.slices.section import SECTION
-from plots.curve_figures import draw_statistics_figure
-from plots.figure_axes import (
+from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.pictures.palette import LIGHT, MEASURED, PAPER, Entry, rgba
+from plots.printed.curve_figures import draw_statistics_figure
+from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
     label_axes,
@@ -57,11 +59,9 @@ from plots.figure_axes import (
     save_figure,
     style_axes,
 )
-from plots.figure_style import FigureFormat
-from plots.map_figure import draw_limits, draw_picture, draw_pixels, show_window
-from plots.orbit_curves import compute_orbit_curves
-from plots.orbit_figure import draw_sali
-from plots.palette import LIGHT, MEASURED, PAPER, Entry, rgba
+from plots.printed.figure_style import FigureFormat
+from plots.printed.map_figure import draw_limits, draw_picture, draw_pixels, show_window
+from plots.printed.orbit_figure import draw_sali
 
 FOLDER = Path(__file__).parent / "drawings"
 _COLOURS = 64

@@ -29,11 +29,11 @@ from engine import (
     start_states,
 )
 from engine.slices.limiting_curves import trace_equipotentials
-from plots.manifold_strokes import manifold_strokes
-from plots.map_analyses import MapAnalyses
-from plots.map_figure import draw_curve, draw_pixels
-from plots.map_images import picture_pixels
-from plots.palette import LIGHT, PAPER, PATCH_EDGE
+from plots.pictures.manifold_strokes import manifold_strokes
+from plots.pictures.map_analyses import MapAnalyses
+from plots.pictures.map_images import picture_pixels
+from plots.pictures.palette import LIGHT, PAPER, PATCH_EDGE
+from plots.printed.map_figure import draw_curve, draw_pixels
 
 FOLDER = Path(__file__).parents[1] / "app" / "static" / "gallery"
 SIDE = 160

@@ -11,9 +11,9 @@ from drawing_panels import new_panels
 from matplotlib.figure import Figure
 
 from engine import Fate, compute_map
-from plots.figure_axes import add_figure_legend, name_panel, patches
-from plots.map_figure import draw_picture
-from plots.palette import PAPER
+from plots.pictures.palette import PAPER
+from plots.printed.figure_axes import add_figure_legend, name_panel, patches
+from plots.printed.map_figure import draw_picture
 from reproduction.rotating.paper_maps import PAPER_MAPS, PaperMap
 
 # Pixels of a side: the maps are fractal, and files grow with them.

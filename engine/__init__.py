@@ -19,12 +19,9 @@ These are the public names of the library. All results show themselves in notebo
 
 from typing import TYPE_CHECKING
 
-from engine.dynamics.certificates import Certificate
-from engine.dynamics.classification import Outcomes, classify_orbits
-from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
-from engine.execution import Execution
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits, find_multipliers
-from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
+from engine.foundations.execution import Execution
+from engine.foundations.result import Result
 from engine.maps.compute import compute_map
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
 from engine.maps.regularity import RegularityMap, compute_regularity
@@ -37,14 +34,10 @@ from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.measures.wada import WadaTest, compute_wada_test
-from engine.potentials.formulas.formula_parser import parse_formula
-from engine.potentials.formulas.formula_writer import write_formula
-from engine.potentials.known_potentials import CASES, POTENTIALS, channel_family
-from engine.potentials.outcomes import Centre, Outcome
-from engine.potentials.potential import Potential
-from engine.potentials.review.potential_review import PotentialReview, review_potential
-from engine.potentials.system import System
-from engine.results.result import Result
+from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
+from engine.propagation.certificates import Certificate
+from engine.propagation.classification import Outcomes, classify_orbits
+from engine.propagation.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
 from engine.slices.axes import Coordinate, Direction, ParameterAxis
 from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
@@ -58,6 +51,13 @@ from engine.sweeps.opened_results import open_result
 from engine.sweeps.plan import SweepPlan, plan_sweep
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
+from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.formulas.formula_writer import write_formula
+from engine.systems.known_potentials import CASES, POTENTIALS, channel_family
+from engine.systems.outcomes import Centre, Outcome
+from engine.systems.potential import Potential
+from engine.systems.review.potential_review import PotentialReview, review_potential
+from engine.systems.system import System
 from engine.trajectories.chaos_indicators import (
     BirkhoffDigits,
     IndicatorVerdict,

@@ -13,23 +13,23 @@ from types import ModuleType
 
 import numpy as np
 
-from engine.dynamics.section_points import find_section_points
-from engine.execution import DEFAULT_EXECUTION
+from engine.evidence.birkhoff_averages import count_agreeing_digits
+from engine.evidence.invariant_curves import LEAST_POINTS, find_invariant_curve
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
-from engine.invariant_sets.birkhoff_averages import count_agreeing_digits
-from engine.invariant_sets.invariant_curves import LEAST_POINTS, find_invariant_curve
-from engine.invariant_sets.stable_manifolds import find_stable_manifolds
+from engine.foundations.execution import DEFAULT_EXECUTION
+from engine.integrator.bound_kernels import is_generated
+from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
+from engine.integrator.source.recurrence import generate_code
 from engine.maps.compute import run_map
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.potentials.compiled import kernels_of
-from engine.potentials.known_potentials import POTENTIALS
-from engine.potentials.potential import Potential
+from engine.periodic.stable_manifolds import find_stable_manifolds
+from engine.propagation.section_points import find_section_points
 from engine.slices.section import SECTION
-from engine.taylor.bound_kernels import is_generated
-from engine.taylor.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
-from engine.taylor.source.recurrence import generate_code
+from engine.systems.compiled import kernels_of
+from engine.systems.known_potentials import POTENTIALS
+from engine.systems.potential import Potential
 from engine.trajectories.trajectory import integrate_orbit
 
 # Integration time, in units of the well, of the calls that trigger compilation.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def __getattr__(name: str) -> Any:
     """Names are imported at their first use, so that the command line starts without the compiler."""
     if name == "Explorer":
-        import_module("engine.results.extras").require_package("panel", "page")
+        import_module("engine.foundations.extras").require_package("panel", "page")
         return import_module("app.notebook").Explorer
     engine = import_module("engine")
     if name == "__all__":

@@ -1,5 +1,5 @@
-"""The entry point `escape_explorer.pictures`, which `engine.results.pictures` loads."""
+"""The entry point `escape_explorer.pictures`, which `engine.foundations.pictures` loads."""
 
-from plots.results import plot_result, to_holoviews, to_html
+from plots.printed.results import plot_result, to_holoviews, to_html
 
 __all__ = ["plot_result", "to_holoviews", "to_html"]

@@ -23,7 +23,7 @@ from engine import (
     compute_sweep,
     compute_uncertainty_exponent,
 )
-from engine.execution import DEFAULT_EXECUTION
+from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.maps.compute import run_map
 from engine.sweeps.measures import compute_point
 from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine import CASES
-from engine.potentials.catalogue.table import PAPER_ENERGIES
+from engine.systems.catalogue.table import PAPER_ENERGIES
 from reproduction.analyses.published_fits import PAPER_FITS
 
 CHANNEL_ENERGIES = {"I": 0.15, "II": 0.2, "III": 0.3}

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import settings
 from playwright.sync_api import Browser, Playwright, expect, sync_playwright
 
-from engine.taylor.jit.compiled_operations import compiled_operations
+from engine.integrator.jit.compiled_operations import compiled_operations
 
 # All processes of a run import the same modules. Without bytecode files each compiles them anew, which takes 9 s.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

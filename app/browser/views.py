@@ -7,7 +7,7 @@ from typing import Any
 from app.browser.browser_system import system_key
 from app.state.view_state import ViewState
 from engine.slices.slice_text import write_slice
-from plots.image_columns import pixel_coding
+from plots.pictures.image_columns import pixel_coding
 
 
 def describe_view(state: ViewState) -> dict[str, Any]:

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.view_state import SYSTEM, Start, ViewState
 from engine import DivergentStart, find_divergent_start
-from engine.dynamics.fates import describe_fate
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
+from engine.propagation.fates import describe_fate
 
 
 class DivergentStartRequests:

@@ -16,9 +16,9 @@ from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_jobs import map_job, members_job
 from engine.jobs.subscription import Subscription
-from engine.potentials.system import TYPED
+from engine.systems.system import TYPED
 from engine.warmup import is_ready_for_maps, prepare_for_maps
-from plots.image_columns import draw_over, map_columns
+from plots.pictures.image_columns import draw_over, map_columns
 
 
 class MapListener(Protocol):

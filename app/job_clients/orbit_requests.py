@@ -11,11 +11,11 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.latest_request import Locked
 from app.state.view_state import SYSTEM, Start, ViewState
 from engine import BirkhoffDigits, Fate, Orbit, OrbitVerdict, judge_orbit
-from engine.dynamics.fates import describe_fate
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
 from engine.jobs.subscription import Subscription
-from plots.orbit_curves import OrbitCurves, compute_orbit_curves
+from engine.propagation.fates import describe_fate
+from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from app.state.view_state import ViewState
 from engine import Orbit, Separation, compute_separation
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from plots.orbit_curves import initial_state
+from plots.pictures.orbit_curves import initial_state
 
 Pair = tuple[int, int]
 

@@ -6,7 +6,7 @@ import psutil
 
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import variable_name
-from engine.taylor.jit.compiled_operations import compiled_operations
+from engine.integrator.jit.compiled_operations import compiled_operations
 
 
 def resident_bytes() -> int:

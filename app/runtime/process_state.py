@@ -18,8 +18,8 @@ from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.overload import OverloadMonitor
 from app.runtime.settings import Settings, read_settings
+from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.jobs.manager import Jobs
-from engine.taylor.jit.compiled_operations import compiled_operations
 
 # Waiting calls per thread above which the process is overloaded; the map of one session queues two.
 _MOST_WAITING = 4

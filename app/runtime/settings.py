@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
-from engine.execution import count_cores
+from engine.foundations.execution import count_cores
 
 PREFIX = "ESCAPE_EXPLORER_"
 """Prefix of the environment variables."""

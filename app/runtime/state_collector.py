@@ -11,7 +11,7 @@ from app.runtime.health import not_ready_reason, resident_bytes
 from app.runtime.metrics import NAMESPACE
 from app.runtime.overload import WINDOW_SECONDS
 from app.runtime.process_state import ProcessState
-from engine.taylor.jit.compiled_operations import compiled_operations
+from engine.integrator.jit.compiled_operations import compiled_operations
 
 
 class StateCollector(Collector):

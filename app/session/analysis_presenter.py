@@ -49,10 +49,10 @@ from engine.slices.section import SECTION
 from engine.slices.slice_text import default_range
 from engine.sweeps.measures import CURVES
 from engine.warmup import is_ready_for_maps
-from plots.manifold_strokes import select_image
-from plots.map_analyses import NO_ANALYSES, MapAnalyses
-from plots.map_images import ON_DEMAND
-from plots.palette import Palette
+from plots.pictures.manifold_strokes import select_image
+from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.pictures.map_images import ON_DEMAND
+from plots.pictures.palette import Palette
 
 # Columns and rows of the maps of a sweep.
 _SIDES = (112, 112)

@@ -16,9 +16,9 @@ from engine import EscapeMap, Fate
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_jobs import map_job
-from engine.potentials.review.potential_review import SystemReview
+from engine.systems.review.potential_review import SystemReview
 from engine.warmup import is_ready_for_maps, prepare_for_maps
-from plots.accepted_potentials import refusal
+from plots.texts.accepted_potentials import refusal
 
 
 class ComparisonPresenter:

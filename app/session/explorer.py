@@ -48,12 +48,12 @@ from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.slice_panel import SlicePanel
 from engine import EscapeMap, Fate, Potential, Slice, System, Window
-from engine.dynamics.fates import describe_fate
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
+from engine.propagation.fates import describe_fate
 from engine.slices.planes import checked_slice
 from engine.warmup import is_ready_for_maps, seconds_until_ready_for_maps
-from plots.palette import MOST_ORBITS
+from plots.pictures.palette import MOST_ORBITS
 
 
 class Explorer:

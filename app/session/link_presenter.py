@@ -31,7 +31,7 @@ from app.views.components.progress import ProgressView
 from app.views.panels.browser_events import BrowserEvents
 from app.views.panels.embedding import OpenLink
 from engine import System
-from engine.potentials.review.potential_review import SystemReview
+from engine.systems.review.potential_review import SystemReview
 
 
 class LinkPresenter:

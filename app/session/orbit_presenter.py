@@ -25,8 +25,8 @@ from app.views.orbits.separation_plot import SeparationPlot
 from engine import IndicatorVerdict, System
 from engine.jobs.client import JobSubmitter
 from engine.slices.section import SECTION
-from plots.orbit_curves import OrbitCurves, restrict_curves
-from plots.palette import Palette
+from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
+from plots.pictures.palette import Palette
 
 Interval = tuple[float, float]
 """Begin and end of an interval of time."""

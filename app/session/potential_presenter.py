@@ -12,10 +12,10 @@ from app.state.view_state import SYSTEM, ViewState
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System
 from engine.jobs.client import JobSubmitter
-from engine.potentials.review.potential_review import SystemReview
-from engine.potentials.system import TYPED
+from engine.systems.review.potential_review import SystemReview
+from engine.systems.system import TYPED
 from engine.warmup import is_ready_for_maps
-from plots.accepted_potentials import refusal
+from plots.texts.accepted_potentials import refusal
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from engine import System
-from engine.potentials.catalogue.table import CATALOGUE
-from engine.potentials.formulas.formula_parser import checked_letter_value, formula_letters
-from engine.potentials.parameters import WELL_PARAMETERS
-from engine.potentials.system import TYPED
+from engine.systems.catalogue.table import CATALOGUE
+from engine.systems.formulas.formula_parser import checked_letter_value, formula_letters
+from engine.systems.parameters import WELL_PARAMETERS
+from engine.systems.system import TYPED
 
 LETTERS = "letters"
 """Parameter with the values of the letters of a formula, such as a:1.5,b:-2."""

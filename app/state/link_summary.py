@@ -9,9 +9,9 @@ from typing import Any
 from app.state.permalink import linked_system
 from app.state.view_state import ViewState
 from engine import Slice, System
-from engine.potentials.formulas.formula_parser import formula_letters
-from engine.potentials.system import TYPED
-from engine.results.wording import format_number
+from engine.foundations.wording import format_number
+from engine.systems.formulas.formula_parser import formula_letters
+from engine.systems.system import TYPED
 
 LONGEST_FORMULA = 80
 """Largest number of characters of a formula in a title."""

@@ -25,15 +25,15 @@ from app.state.view_state import (
 )
 from app.state.watched_starts import COUNTS, DEFAULT_STARTS, StartsFrom, WatchedStarts
 from engine import POTENTIALS, Plane, Slice, System, Window
-from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
-from engine.potentials.parameters import WELL_PARAMETERS
-from engine.potentials.review.potential_review import SystemReview
-from engine.potentials.system import TYPED
+from engine.foundations.validation import LARGEST_NUMBER
 from engine.slices.slice_text import read_slice, write_slice
-from engine.validation import LARGEST_NUMBER
-from plots.map_images import ON_DEMAND
-from plots.palette import MOST_ORBITS, PALETTES
-from plots.time_scale import TimeScale
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
+from engine.systems.parameters import WELL_PARAMETERS
+from engine.systems.review.potential_review import SystemReview
+from engine.systems.system import TYPED
+from plots.pictures.map_images import ON_DEMAND
+from plots.pictures.palette import MOST_ORBITS, PALETTES
+from plots.pictures.time_scale import TimeScale
 
 LONGEST_VALUE = LONGEST_TEXT
 """Maximal length of a value in a link, in characters."""

@@ -30,7 +30,7 @@ class Preset:
     group
         One of `GROUPS`.
     picture
-        Picture of its thumbnail, one of `plots.map_images.TITLES`.
+        Picture of its thumbnail, one of `plots.pictures.map_images.TITLES`.
     invitation
         One line of text if the view is offered before there is an orbit; empty for others.
     case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, images, origins, analysis

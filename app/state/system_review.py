@@ -6,9 +6,9 @@ from functools import cache
 
 from engine import CASES, Slice, System
 from engine.jobs.job import Job, Queue
-from engine.potentials.review.potential_review import SystemReview, review_system
-from engine.potentials.system import TYPED
 from engine.slices.energies import Energy
+from engine.systems.review.potential_review import SystemReview, review_system
+from engine.systems.system import TYPED
 
 
 def is_known(system: System) -> bool:

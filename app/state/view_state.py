@@ -15,15 +15,15 @@ from app.state.compared_view import ComparedView
 from app.state.system_review import map_energy, review_catalogue_entry
 from app.state.watched_starts import DEFAULT_STARTS, WatchedStarts
 from engine import POTENTIALS, MapSpec, Orbit, Plane, Potential, Slice, System, Window, integrate_orbit, start_states
+from engine.foundations.validation import LARGEST_NUMBER
 from engine.jobs.job import Job, Queue
-from engine.potentials.catalogue.entry import EnergyRange
-from engine.potentials.catalogue.table import PAPER_ENERGIES
-from engine.potentials.review.potential_review import SystemReview
-from engine.potentials.system import TYPED
-from engine.validation import LARGEST_NUMBER
-from plots.map_images import COMPARISON_TITLES, TITLES
-from plots.palette import MOST_ORBITS, PALETTES, Palette
-from plots.time_scale import TimeScale
+from engine.systems.catalogue.entry import EnergyRange
+from engine.systems.catalogue.table import PAPER_ENERGIES
+from engine.systems.review.potential_review import SystemReview
+from engine.systems.system import TYPED
+from plots.pictures.map_images import COMPARISON_TITLES, TITLES
+from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
+from plots.pictures.time_scale import TimeScale
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:

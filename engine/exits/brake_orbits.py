@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.exits.root_finding import find_root
-from engine.potentials.compiled import kernels_of
-from engine.potentials.potential import Potential
-from engine.taylor.source.recurrence import TOLERANCE
-from engine.taylor.source.series import ORDER
+from engine.integrator.source.recurrence import TOLERANCE
+from engine.integrator.source.series import ORDER
+from engine.systems.compiled import kernels_of
+from engine.systems.potential import Potential
 
 # Lengths along the channel, in units of the distance of the saddle from the origin: where a trial orbit has left the saddle for
 # good, the first step of the bracket search, and where this search ends.

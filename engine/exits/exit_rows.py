@@ -10,11 +10,11 @@ from numpy.polynomial import chebyshev
 from engine.exits.brake_orbits import saddle_axes
 from engine.exits.exit_shapes import absent_channel, closed_channel, disc, escape_circle
 from engine.exits.lyapunov_orbits import UndefinedExitsError, find_orbits_in_well_units
-from engine.potentials.potential import Potential
-from engine.potentials.review.hill_region import check_closed_well
-from engine.potentials.review.singularity_check import check_defined
-from engine.potentials.well_units import nearest_power_of_two
-from engine.taylor.kernels import events
+from engine.integrator.kernels import events
+from engine.systems.potential import Potential
+from engine.systems.review.hill_region import check_closed_well
+from engine.systems.review.singularity_check import check_defined
+from engine.systems.well_units import nearest_power_of_two
 
 # Distance of a gate from the exit, in units of the distance of the saddle rounded to a power of 2.
 _GATE_MARGIN = 1e-3

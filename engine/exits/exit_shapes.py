@@ -1,4 +1,4 @@
-"""Exits as rows of numbers for the kernels (`engine.taylor.kernels.events`): closed channels, curves, lines, discs, a circle."""
+"""Exits as rows of numbers for the kernels of `integrator.kernels.events`: closed channels, curves, lines, discs, a circle."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.exits.brake_orbits import Axes, saddle_axes
-from engine.potentials.outcomes import Centre
-from engine.potentials.potential import Potential
-from engine.taylor.kernels import events
+from engine.integrator.kernels import events
+from engine.systems.outcomes import Centre
+from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9

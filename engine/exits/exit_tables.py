@@ -15,9 +15,9 @@ import numpy as np
 
 from engine.exits.exit_rows import exit_gates
 from engine.exits.lyapunov_orbits import exit_curve_over_chord, find_orbits_in_well_units
-from engine.potentials.potential import Potential
-from engine.results.arrays import read_only
-from engine.taylor.kernels import events
+from engine.foundations.arrays import read_only
+from engine.integrator.kernels import events
+from engine.systems.potential import Potential
 
 LARGEST_ERROR = 1e-6
 """Largest distance of an interpolated exit from the exit, in units of the well."""

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
-from engine.potentials.compiled import kernels_of
-from engine.potentials.forms.expression_form import ExpressionForm
-from engine.potentials.forms.polynomial_form import PolynomialForm
-from engine.potentials.potential import Potential
-from engine.results.arrays import read_only
-from engine.taylor.kernels import events, interior
+from engine.foundations.arrays import read_only
+from engine.integrator.kernels import events, interior
+from engine.systems.compiled import kernels_of
+from engine.systems.forms.expression_form import ExpressionForm
+from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.potential import Potential
 
 
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:

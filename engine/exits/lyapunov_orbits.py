@@ -24,13 +24,13 @@ from engine.exits.brake_orbits import (
 from engine.exits.exit_shapes import curve_along, find_reach, line_across, line_points, mirrored_curve
 from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_returns
 from engine.exits.periodic_orbits import find_periodic_orbit, monodromy_matrix, multipliers_of
-from engine.potentials.merged_channels import MergedExit, name_channels
-from engine.potentials.potential import Potential
-from engine.potentials.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
-from engine.results.arrays import read_only
-from engine.results.result import Result
-from engine.taylor.kernels import events
-from engine.validation import checked_number, checks_types, warn_of_method
+from engine.foundations.arrays import read_only
+from engine.foundations.result import Result
+from engine.foundations.validation import checked_number, checks_types, warn_of_method
+from engine.integrator.kernels import events
+from engine.systems.merged_channels import MergedExit, name_channels
+from engine.systems.potential import Potential
+from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 # Ends of two orbits closer than this, in units of the well, are the same.
 _SAME_END = 1e-6
@@ -70,7 +70,7 @@ class LyapunovOrbit(Result):
         (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
         last point are equal.
     curve
-        (columns,) the exit for the kernels; columns as in `engine.taylor.kernels.events`.
+        (columns,) the exit for the kernels; columns as in `engine.integrator.kernels.events`.
     velocity
         (2,) px and py at the first point: at rest, unless the frame rotates.
     others

@@ -11,10 +11,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from engine.exits.brake_orbits import Axes, BrakeOrbit, find_from_outside
-from engine.potentials.compiled import kernels_of
-from engine.potentials.potential import Potential
-from engine.taylor.kernels import events
-from engine.taylor.kernels.dense_output import trace_pieces
+from engine.integrator.kernels import events
+from engine.integrator.kernels.dense_output import trace_pieces
+from engine.systems.compiled import kernels_of
+from engine.systems.potential import Potential
 
 # Where the lines of starts cross that between the outermost saddles, as shares of its length.
 _LINES = (0.5, 0.25, 0.75, 0.0, 1.0)

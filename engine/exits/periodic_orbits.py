@@ -17,9 +17,9 @@ import numpy as np
 
 from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.exits.exit_shapes import ridge_bend
-from engine.potentials.compiled import kernels_of
-from engine.potentials.potential import Potential
-from engine.taylor.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
+from engine.integrator.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
+from engine.systems.compiled import kernels_of
+from engine.systems.potential import Potential
 
 # States of one period that are corrected together, and points of the path between two of them.
 _NODES = 8

@@ -13,7 +13,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
-from engine.polynomials import Powers, Terms
+from engine.expressions.polynomials import Powers, Terms
 
 
 class Expression:

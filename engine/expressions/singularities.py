@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_terms
-from engine.polynomials import Powers, degree
+from engine.expressions.polynomials import Powers, degree
 
 
 def singular_bases(expression: Expression) -> tuple[Expression, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, powers_of
-from engine.results.wording import short_fraction
+from engine.foundations.wording import short_fraction
 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 

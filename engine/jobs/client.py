@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Protocol
 
+from engine.foundations.validation import checked_count
 from engine.jobs.job import Job
 from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
-from engine.validation import checked_count
 
 MOST_REQUESTS = 32
 """Default limit on the open requests of one client; more than all controls of a page can cause together."""

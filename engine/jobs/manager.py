@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from engine.execution import Execution, count_workers, create_thread_pool
+from engine.foundations.execution import Execution, count_workers, create_thread_pool
+from engine.integrator.jit.compiled_operations import charged_to
 from engine.jobs.cache import ABSENT, ResultCache
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_priority import MapPriority
@@ -20,7 +21,6 @@ from engine.jobs.orbit_semaphore import OrbitSemaphore
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
-from engine.taylor.jit.compiled_operations import charged_to
 
 DEFAULT_CACHE_BYTES = 512 * 2**20
 """Default memory limit of cached results, in bytes."""

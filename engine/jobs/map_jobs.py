@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 from engine.jobs.cache import ResultCache
 from engine.jobs.job import Job, Queue
 from engine.maps.compute import LARGEST_RUN, run_map

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 
 SMALL_JOB = 2**16
 """Jobs of at most this many orbits, such as a map of 256 × 256, are not counted and never wait."""

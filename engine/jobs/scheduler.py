@@ -13,7 +13,7 @@ from functools import partial
 from typing import Any, NamedTuple
 from weakref import WeakSet
 
-from engine.execution import count_workers, default_executor
+from engine.foundations.execution import count_workers, default_executor
 
 # While background calls are paused, a long call of duration d is followed by a pause of 9 d: a duty cycle of 10 %.
 _PAUSE_PER_LONG_CALL = 9.0
@@ -236,7 +236,7 @@ class QueueExecutor(Executor):
 
     @property
     def _max_workers(self) -> int:
-        """Number of threads, read by `engine.execution.count_workers`."""
+        """Number of threads, read by `engine.foundations.execution.count_workers`."""
         return self._scheduler.threads
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:

@@ -12,16 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.fates import Fate
-from engine.execution import Execution, shows_progress
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import Execution, shows_progress
+from engine.foundations.validation import checks_types
 from engine.maps.parameter_map import LineStack
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.trust import compute_trust, estimate_rounded_share
-from engine.results.arrays import read_only
-from engine.validation import checks_types
+from engine.propagation.fates import Fate
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""

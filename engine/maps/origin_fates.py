@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.dynamics.fates import Fate
-from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.codes import describe_codes
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.validation import checks_types
 from engine.maps.compute import run_map
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.potentials.outcomes import OutcomeKind
-from engine.results.codes import describe_codes
-from engine.validation import checks_types
+from engine.propagation.fates import Fate
+from engine.systems.outcomes import OutcomeKind
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,14 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.batch import OrbitBatch
-from engine.dynamics.certificates import Certificate
-from engine.dynamics.fates import Fate
-from engine.execution import SERIAL_EXECUTION, Execution, count_cores
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import SERIAL_EXECUTION, Execution, count_cores
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap, representative_indices
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
-from engine.results.arrays import read_only
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.certificates import Certificate
+from engine.propagation.fates import Fate
 from engine.slices.axes import HeldParameter
 from engine.slices.energies import highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family

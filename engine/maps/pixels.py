@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from engine.foundations.arrays import read_only
+from engine.foundations.result import MapResult
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.results.arrays import read_only
-from engine.results.result import MapResult
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,16 +9,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.dynamics.certificates import Certificate
-from engine.dynamics.deviation_vectors import attach_deviations, propagate_deviations
-from engine.dynamics.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
-from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
+from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.foundations.validation import checks_types
 from engine.maps.parameter_map import Place, analyse_lines
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import MapLike, as_map
-from engine.validation import checks_types
+from engine.propagation.certificates import Certificate
+from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
+from engine.propagation.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
 
 # SALI is computed up to these times, with a test for tori after each: the SALI of strongly chaotic orbits falls early, most
 # regular orbits are found to be on a torus, and only the few remaining ones are integrated to t_max.

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.dynamics.batch import OrbitBatch
-from engine.dynamics.certificates import Certificate
-from engine.dynamics.fates import Fate, Trust, name_fate
+from engine.foundations.codes import describe_codes
+from engine.foundations.result import MapResult
+from engine.foundations.validation import checked_flag
 from engine.maps.spec import MapSpec
-from engine.potentials.outcomes import Outcome
-from engine.potentials.well_units import TIME
-from engine.results.codes import describe_codes
-from engine.results.result import MapResult
+from engine.propagation.batch import OrbitBatch
+from engine.propagation.certificates import Certificate
+from engine.propagation.fates import Fate, Trust, name_fate
 from engine.slices.window import Window
-from engine.validation import checked_flag
+from engine.systems.outcomes import Outcome
+from engine.systems.well_units import TIME
 
 if TYPE_CHECKING:
     import xarray as xr

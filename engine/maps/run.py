@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.certificates import Certificate
-from engine.dynamics.classification import Outcomes, collect_outcomes
-from engine.dynamics.fates import Fate
-from engine.execution import DEFAULT_EXECUTION, Execution, run_parts
+from engine.evidence.boundedness_certifier import BoundednessCertifier
 from engine.exits.exit_rows import closed_exits, exit_curves
-from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap, find_interior, representative_indices
 from engine.maps.spec import MapSpec
-from engine.results.arrays import read_only
+from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.certificates import Certificate
+from engine.propagation.classification import Outcomes, collect_outcomes
+from engine.propagation.fates import Fate
 
 COARSE_PIXELS = 1200
 """Largest number of pixels in the first frame."""

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from engine.potentials.outcomes import Outcome
-from engine.potentials.potential import Potential
-from engine.potentials.stored_potential import describe_potential
+from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
+from engine.integrator.source.recurrence import TOLERANCE
+from engine.integrator.source.series import ORDER
 from engine.slices.default_window import map_window
 from engine.slices.energies import Energy, common_energy, scaled_energy
 from engine.slices.parameter_family import parameter_family
@@ -20,9 +20,9 @@ from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
-from engine.taylor.source.recurrence import TOLERANCE
-from engine.taylor.source.series import ORDER
-from engine.validation import check_type, checked_flag, replace_unchecked, short_repr
+from engine.systems.outcomes import Outcome
+from engine.systems.potential import Potential
+from engine.systems.stored_potential import describe_potential
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""

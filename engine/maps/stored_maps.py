@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.dynamics.fates import Fate
+from engine.foundations.arrays import read_only
+from engine.foundations.validation import short_repr
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.spec import MapSpec
-from engine.potentials.stored_potential import read_potential
-from engine.potentials.system import System
-from engine.results.arrays import read_only
+from engine.propagation.fates import Fate
 from engine.slices.slice_text import read_slice
-from engine.validation import short_repr
+from engine.systems.stored_potential import read_potential
+from engine.systems.system import System
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,22 +10,22 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.certificates import Certificate
-from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Trust
-from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.evidence.boundedness_certifier import BoundednessCertifier
 from engine.exits.exit_rows import closed_exits, exit_curves
-from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.foundations.validation import checks_types
+from engine.integrator.kernels.dense_output import advance_states
+from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.parameter_map import Place, analyse_lines
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.run import CERTIFIED_FROM, certifies_tori, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
 from engine.maps.stored_maps import MapLike, as_map
-from engine.potentials.compiled import kernels_of
-from engine.taylor.kernels.dense_output import advance_states
-from engine.taylor.source.recurrence import TOLERANCE
-from engine.validation import checks_types
+from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.certificates import Certificate
+from engine.propagation.fates import CHAOS_THRESHOLD, Fate, Trust
+from engine.systems.compiled import kernels_of
 
 SHIFT = 1e-11
 """Shift of a start along x and along the ordinate in units of the well: far above rounding errors, far below a pixel."""

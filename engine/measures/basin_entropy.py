@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from engine.foundations.result import Result
+from engine.foundations.validation import checked_count
+from engine.foundations.wording import format_count
 from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, checked_labels
-from engine.results.result import Result
-from engine.results.wording import format_count
-from engine.validation import checked_count
 
 BOX = 5
 """Default side of a box in pixels, that is 25 starts per box, as in Daza et al. (2016)."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.dynamics.classification import Outcomes
+from engine.foundations.validation import checked_array, checked_t_max, short_repr
 from engine.maps.stored_maps import MapLike, as_map
 from engine.measures.decay_laws import (
     MIN_ESCAPES,
@@ -19,7 +19,7 @@ from engine.measures.decay_laws import (
     window_length,
 )
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
-from engine.validation import checked_array, checked_t_max, short_repr
+from engine.propagation.classification import Outcomes
 
 # Of a normal distribution, for 95 % intervals.
 _DEVIATIONS = 1.96

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from engine.results.result import Result
-from engine.results.wording import format_count, format_whole
+from engine.foundations.result import Result
+from engine.foundations.wording import format_count, format_whole
 
 MIN_ESCAPES = 100
 """Fewest escapes in a window for a fit, which determine the rate to about 20 %. Choosing a window takes twice as many."""

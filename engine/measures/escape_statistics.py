@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from engine.dynamics.classification import Outcomes
-from engine.dynamics.fates import Fate
+from engine.foundations.arrays import read_only
+from engine.foundations.proportions import wilson_interval
+from engine.foundations.result import Result
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import MapLike, as_map
-from engine.potentials.outcomes import Outcome
-from engine.results.arrays import read_only
-from engine.results.proportions import wilson_interval
-from engine.results.result import Result
+from engine.propagation.classification import Outcomes
+from engine.propagation.fates import Fate
 from engine.slices.window import GivenWindow, Window, checked_window
+from engine.systems.outcomes import Outcome
 
 MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""

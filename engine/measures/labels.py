@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.fates import Fate
+from engine.foundations.arrays import read_only
+from engine.foundations.validation import checked_array
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import as_map
-from engine.results.arrays import read_only
-from engine.validation import checked_array
+from engine.propagation.fates import Fate
 
 ENTROPY_COUNTS_BOUNDED = True
 """Whether bounded orbits are a label of the basin entropy: yes, staying bounded is one of the possible outcomes of a start."""

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from engine.potentials.well_units import LENGTH, TIME
-from engine.results.arrays import read_only
-from engine.results.proportions import wilson_interval
-from engine.results.result import Result
-from engine.results.wording import format_count, format_decimals
-from engine.validation import checked_array, checked_integers, short_repr
+from engine.foundations.arrays import read_only
+from engine.foundations.proportions import wilson_interval
+from engine.foundations.result import Result
+from engine.foundations.validation import checked_array, checked_integers, short_repr
+from engine.foundations.wording import format_count, format_decimals
+from engine.systems.well_units import LENGTH, TIME
 
 MIN_EXPECTED_PAIRS = 5.0
 """Expected number of uncertain pairs, and of certain ones, for a separation to count; χ² requires it (Cochran 1954).

@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.certificates import Certificate
-from engine.dynamics.fates import Fate
-from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.exits.exit_rows import closed_exits, exit_curves
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.foundations.validation import checked_count, checks_types, short_repr
 from engine.maps.spec import MapSpec
 from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
-from engine.results.arrays import read_only
-from engine.validation import checked_count, checks_types, short_repr
+from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.certificates import Certificate
+from engine.propagation.fates import Fate
 
 __all__ = ["HORIZON", "UncertaintyExponent", "compute_uncertainty_exponent", "fit_uncertainty"]
 

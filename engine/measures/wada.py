@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from engine.foundations.arrays import read_only
+from engine.foundations.result import Result
+from engine.foundations.wording import format_count
 from engine.measures.labels import WADA_COUNTS_BOUNDED, checked_labels
-from engine.results.arrays import read_only
-from engine.results.result import Result
-from engine.results.wording import format_count
 
 MIN_BASINS = 3
 """Fewest basins for the Wada property; two basins always share their boundary."""

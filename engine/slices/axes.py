@@ -9,11 +9,11 @@ from typing import Self
 
 import numpy as np
 
-from engine.potentials.parameters import symbol_of
-from engine.potentials.potential import Potential
-from engine.potentials.system import System
-from engine.potentials.well_units import WellUnits, nearest_power_of_two
-from engine.validation import check_type, checked_number, short_repr
+from engine.foundations.validation import check_type, checked_number, short_repr
+from engine.systems.parameters import symbol_of
+from engine.systems.potential import Potential
+from engine.systems.system import System
+from engine.systems.well_units import WellUnits, nearest_power_of_two
 
 
 class Coordinate(Enum):

@@ -8,15 +8,15 @@ import numpy as np
 
 from engine.exits.interior import find_outside_in_well_units
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
-from engine.potentials.potential import Potential
-from engine.potentials.review.potential_review import review_potential
-from engine.potentials.well_units import WellUnits
+from engine.foundations.validation import checks_types
 from engine.slices.axes import ANGLES, MOMENTA, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.energies import Energy, common_energy, highest_energy, scaled_energy
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.window import Window
-from engine.validation import checks_types
+from engine.systems.potential import Potential
+from engine.systems.review.potential_review import review_potential
+from engine.systems.well_units import WellUnits
 
 # Margin of the default window on each side, as a share of the size of the interior.
 _MARGIN = 0.03

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from engine.potentials.potential import Potential
+from engine.foundations.validation import checked_number, checks_types
 from engine.slices.energies import Energy, common_energy
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.window import GivenWindow, Window, checked_window
-from engine.validation import checked_number, checks_types
+from engine.systems.potential import Potential
 
 _CONTOUR_SAMPLES = 201
 

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.potentials.outcomes import OutcomeKind, exit_outcome
-from engine.potentials.potential import Potential
-from engine.results.arrays import read_only
+from engine.foundations.arrays import read_only
 from engine.slices.axes import ParameterAxis
+from engine.systems.outcomes import OutcomeKind, exit_outcome
+from engine.systems.potential import Potential
 
 # Nodes divide the range of the axis into this many parts, and the way from the system's own value to its farther end into at most
 # so many; where exits differ, parts are halved this many times.

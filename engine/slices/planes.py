@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from engine.potentials.potential import Potential
+from engine.foundations.validation import checked_array, checks_types, short_repr
 from engine.slices.axes import Coordinate
 from engine.slices.slice import Slice
-from engine.validation import checked_array, checks_types, short_repr
+from engine.systems.potential import Potential
 
 
 class Plane(Slice, Enum):

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from engine.exits.interior import find_outside_channels
-from engine.potentials.potential import Potential
+from engine.foundations.validation import checked_count, checked_number, checks_types
 from engine.slices.axes import Coordinate
 from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE, checked_slice
 from engine.slices.slice import Slice
 from engine.slices.window import GivenWindow, Window, checked_window
-from engine.validation import checked_count, checked_number, checks_types
+from engine.systems.potential import Potential
 
 LARGEST_SAMPLE = 10_000_000
 """Largest number of starts of one sample."""

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from engine.potentials.potential import Potential
-from engine.potentials.system import System
-from engine.potentials.well_units import WellUnits
-from engine.results.arrays import read_only
+from engine.foundations.arrays import read_only
+from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
 from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.energies import Energy
-from engine.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
+from engine.systems.potential import Potential
+from engine.systems.system import System
+from engine.systems.well_units import WellUnits
 
 
 @dataclass(frozen=True, repr=False)

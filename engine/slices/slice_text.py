@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from engine.potentials.parameters import WELL_PARAMETERS
-from engine.potentials.system import System
+from engine.foundations.validation import short_repr
 from engine.slices.axes import STATE, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.planes import Plane, checked_slice
 from engine.slices.slice import Slice
-from engine.validation import short_repr
+from engine.systems.parameters import WELL_PARAMETERS
+from engine.systems.system import System
 
 AXIS_NAMES = tuple(coordinate.key for coordinate in Coordinate if coordinate is not Coordinate.SPEED)
 """Names of the coordinates that can be axes."""

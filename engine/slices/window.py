@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.validation import checked_number, short_repr
+from engine.foundations.validation import checked_number, short_repr
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,12 @@ import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from engine.potentials.potential import Potential
 from engine.slices.axes import ParameterAxis
 from engine.slices.slice import Slice
 from engine.sweeps.measures import CURVES, QUICK_CURVES
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
+from engine.systems.potential import Potential
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.dynamics.fates import Fate
-from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.codes import describe_codes
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.maps.compute import run_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
@@ -22,8 +22,8 @@ from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.measures.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.measures.wada import compute_wada_test
-from engine.potentials.outcomes import Outcome
-from engine.results.codes import describe_codes
+from engine.propagation.fates import Fate
+from engine.systems.outcomes import Outcome
 
 if TYPE_CHECKING:
     import xarray as xr

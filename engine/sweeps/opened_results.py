@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.dynamics.classification import Outcomes
+from engine.foundations.arrays import read_only
+from engine.foundations.extras import require_package
+from engine.foundations.result import Result
+from engine.foundations.validation import checks_types
 from engine.maps.origin_fates import OriginFateMap
 from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap
@@ -18,18 +21,15 @@ from engine.maps.stored_maps import read_map, read_spec
 from engine.maps.trust import TrustMap
 from engine.measures.basin_entropy import BasinEntropy
 from engine.measures.uncertainty_exponent import UncertaintyExponent
-from engine.potentials.outcomes import read_outcomes
-from engine.potentials.stored_potential import read_potential
-from engine.results.arrays import read_only
-from engine.results.extras import require_package
-from engine.results.result import Result
+from engine.propagation.classification import Outcomes
 from engine.sweeps.sweep import Sweep
+from engine.systems.outcomes import read_outcomes
+from engine.systems.stored_potential import read_potential
 from engine.trajectories.chaos_indicators import BirkhoffDigits
 from engine.trajectories.nearest_divergent_start import DivergentStart
 from engine.trajectories.sampled_orbits import SampledOrbits
 from engine.trajectories.separation import Separation
 from engine.trajectories.trajectory import Orbit
-from engine.validation import checks_types
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.validation import checked_count, checks_types
+from engine.foundations.wording import format_count
 from engine.maps.compute import run_map
 from engine.maps.result import PIXEL_ARRAYS
 from engine.maps.spec import MapSpec
-from engine.results.wording import format_count
 from engine.sweeps.spec import SweepSpec
-from engine.validation import checked_count, checks_types
 from engine.warmup import prepare_kernels
 
 # A plan is based on maps of these sides at this many values; the small one measures the cost that does not depend on size.

@@ -9,10 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_count, short_repr
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
-from engine.potentials.outcomes import Outcome, write_outcomes
-from engine.potentials.potential import Potential
-from engine.potentials.stored_potential import describe_potential
 from engine.slices.axes import Coordinate, ParameterAxis
 from engine.slices.default_window import map_window
 from engine.slices.parameter_family import parameter_family
@@ -21,7 +19,9 @@ from engine.slices.slice import Slice
 from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow
 from engine.sweeps.measures import MEASURES, SweepPoint
-from engine.validation import LARGEST_NUMBER, check_type, checked_count, short_repr
+from engine.systems.outcomes import Outcome, write_outcomes
+from engine.systems.potential import Potential
+from engine.systems.stored_potential import describe_potential
 
 MOST_VALUES = 10_000
 """Most energies, or values of a parameter, of one sweep."""

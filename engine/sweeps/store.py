@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.results.extras import require_package
-from engine.storage.output_lock import hold_lock
+from engine.foundations.extras import require_package
+from engine.foundations.output_lock import hold_lock
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.exits.exit_rows import exit_curves
-from engine.potentials.outcomes import Outcome, read_outcomes
-from engine.results.result import Result
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.foundations.result import Result
+from engine.foundations.validation import checks_types
 from engine.sweeps.measures import SweepPoint, compute_point
 from engine.sweeps.spec import EXTENT, SweepSpec
 from engine.sweeps.store import check_same_sweep, open_store
-from engine.validation import checks_types
+from engine.systems.outcomes import Outcome, read_outcomes
 
 if TYPE_CHECKING:
     import xarray as xr

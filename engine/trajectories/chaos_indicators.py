@@ -18,18 +18,18 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, describe_fate, is_chaotic, outcome_of
-from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
 from engine.exits.exit_rows import exits_of_orbit
-from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
-from engine.potentials.potential import Potential
-from engine.potentials.well_units import TIME
-from engine.results.arrays import read_only
-from engine.results.result import Result
-from engine.results.wording import format_time
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.result import Result
+from engine.foundations.validation import checked_state, checks_types
+from engine.foundations.wording import format_time
+from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, describe_fate, is_chaotic, outcome_of
+from engine.systems.potential import Potential
+from engine.systems.well_units import TIME
 from engine.trajectories.trajectory import Orbit
-from engine.validation import checked_state, checks_types
 
 MIN_GROWTH_TIME = 100.0
 """Shortest orbit judged by the growth of a deviation vector, in units of the well.
@@ -120,7 +120,7 @@ def compute_birkhoff_digits(
 
     The number of agreeing digits rises fast with the window length on a torus and stays at 1 to 3 along a chaotic orbit (Das,
     Saiki, Sander & Yorke 2017, Nonlinearity 30, 4111; Sander & Meiss 2020, Physica D 411, 132569; Duignan & Meiss 2023, Physica D
-    449, 133749). `engine.invariant_sets.birkhoff_averages` describes the weight function. The computation runs in the calling
+    449, 133749). `engine.evidence.birkhoff_averages` describes the weight function. The computation runs in the calling
     thread and stops at the first window with `CERTIFIED_DIGITS` digits.
 
     Parameters

@@ -8,9 +8,9 @@ import numpy as np
 
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
-from engine.potentials.potential import Potential
+from engine.foundations.validation import checked_count, checked_number, checks_types
 from engine.slices.sampling import LARGEST_SAMPLE
-from engine.validation import checked_count, checked_number, checks_types
+from engine.systems.potential import Potential
 
 # Places along half a Lyapunov orbit at which the flux is added up.
 _PLACES = 2001

@@ -11,12 +11,12 @@ import numpy as np
 
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
-from engine.potentials.potential import Potential
-from engine.results.arrays import read_only
-from engine.results.result import Result
+from engine.foundations.arrays import read_only
+from engine.foundations.result import Result
+from engine.foundations.validation import checked_number, checks_types
 from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
-from engine.validation import checked_number, checks_types
+from engine.systems.potential import Potential
 
 # Rows and columns of the points between which the edge of the interior is searched, and halvings of the distance to it. Of each
 # three rows the middle one serves the estimate of the error.

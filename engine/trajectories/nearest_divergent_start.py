@@ -8,16 +8,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.dynamics.classification import classify_in_well_units
-from engine.dynamics.fates import Fate, OrbitResult, name_fate
-from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.potentials.outcomes import Outcome
-from engine.potentials.potential import Potential
-from engine.potentials.well_units import LENGTH
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.validation import checked_number, checks_types
+from engine.propagation.classification import classify_in_well_units
+from engine.propagation.fates import Fate, OrbitResult, name_fate
 from engine.slices.energies import Energy
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
-from engine.validation import checked_number, checks_types
+from engine.systems.outcomes import Outcome
+from engine.systems.potential import Potential
+from engine.systems.well_units import LENGTH
 
 # Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
 _MIN_DISTANCE = 1e-13

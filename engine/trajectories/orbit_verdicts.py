@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from engine.dynamics.certificates import Certificate, describe_certificate
-from engine.dynamics.fates import Fate, OrbitResult, describe_fate, name_fate, outcome_of
-from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS
-from engine.potentials.outcomes import Outcome
-from engine.results.wording import format_count, format_time
+from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS
+from engine.foundations.validation import checks_types
+from engine.foundations.wording import format_count, format_time
+from engine.propagation.certificates import Certificate, describe_certificate
+from engine.propagation.fates import Fate, OrbitResult, describe_fate, name_fate, outcome_of
+from engine.systems.outcomes import Outcome
 from engine.trajectories.chaos_indicators import BirkhoffDigits, IndicatorVerdict, Verdict, evaluate_indicators
 from engine.trajectories.trajectory import Orbit
-from engine.validation import checks_types
 
 
 @dataclass(frozen=True)

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from engine.dynamics.classification import Outcomes
-from engine.dynamics.fates import Fate, OrbitResult
-from engine.dynamics.orbit_steps import record_orbit
-from engine.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
 from engine.exits.exit_rows import exit_curves
-from engine.potentials.compiled import kernels_of
-from engine.potentials.outcomes import Outcome
-from engine.potentials.potential import Potential
-from engine.potentials.well_units import ENERGY, LENGTH, MOMENTUM, TIME
-from engine.results.arrays import read_only
-from engine.taylor.kernels.dense_output import sample_path
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
+from engine.foundations.validation import LARGEST_NUMBER, checked_array, checks_types, short_repr
+from engine.integrator.kernels.dense_output import sample_path
+from engine.propagation.classification import Outcomes
+from engine.propagation.fates import Fate, OrbitResult
+from engine.propagation.orbit_steps import record_orbit
+from engine.systems.compiled import kernels_of
+from engine.systems.outcomes import Outcome
+from engine.systems.potential import Potential
+from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME
 from engine.trajectories.trajectory import MAX_ORBIT_TIME
-from engine.validation import LARGEST_NUMBER, checked_array, checks_types, short_repr
 
 if TYPE_CHECKING:
     import xarray as xr

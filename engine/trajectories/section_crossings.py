@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.potentials.potential import Potential
+from engine.foundations.validation import checks_types, warn_of_method
+from engine.systems.potential import Potential
 from engine.trajectories.trajectory import Orbit
-from engine.validation import checks_types, warn_of_method
 
 
 @checks_types(potential=Potential, orbit=Orbit)

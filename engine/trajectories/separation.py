@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.potentials.compiled import kernels_of
-from engine.potentials.potential import Potential
-from engine.potentials.well_units import LENGTH, TIME
-from engine.results.arrays import read_only
-from engine.results.result import Result
-from engine.taylor.kernels.dense_output import sample_path, trace_steps
-from engine.validation import checked_state, checks_types
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.result import Result
+from engine.foundations.validation import checked_state, checks_types
+from engine.integrator.kernels.dense_output import sample_path, trace_steps
+from engine.systems.compiled import kernels_of
+from engine.systems.potential import Potential
+from engine.systems.well_units import LENGTH, TIME
 
 LONGEST_SEPARATION = 2000.0
 """Longest time over which two orbits are compared, in units of the well: neighbours in a chaotic sea separate long before."""

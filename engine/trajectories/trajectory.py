@@ -8,21 +8,21 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from engine.dynamics.certificates import Certificate
-from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
-from engine.dynamics.fates import Fate, OrbitResult
-from engine.dynamics.orbit_steps import OrbitSteps, record_orbit
-from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.evidence.birkhoff_averages import compare_halves
 from engine.exits.exit_rows import exits_of_orbit
-from engine.invariant_sets.birkhoff_averages import compare_halves
-from engine.potentials.compiled import kernels_of
-from engine.potentials.outcomes import Outcome
-from engine.potentials.potential import Potential
-from engine.potentials.stored_potential import describe_potential
-from engine.potentials.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
-from engine.results.arrays import read_only
-from engine.taylor.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
-from engine.validation import checked_state, checks_types
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.validation import checked_state, checks_types
+from engine.integrator.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
+from engine.propagation.certificates import Certificate
+from engine.propagation.deviation_vectors import DEVIATION_VECTORS
+from engine.propagation.fates import Fate, OrbitResult
+from engine.propagation.orbit_steps import OrbitSteps, record_orbit
+from engine.systems.compiled import kernels_of
+from engine.systems.outcomes import Outcome
+from engine.systems.potential import Potential
+from engine.systems.stored_potential import describe_potential
+from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 
 if TYPE_CHECKING:
     import xarray as xr

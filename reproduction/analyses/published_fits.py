@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.results.wording import format_number
+from engine.foundations.wording import format_number
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine import EscapeMap, Fate, MapSpec, Regularity, RegularityMap, classify_orbits
-from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.maps.pixels import MirrorPixels
 
 

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from matplotlib.figure import Figure
 
 from engine import CASES, Plane
-from plots.figure_axes import save_figure
-from plots.figure_style import FigureFormat
+from plots.printed.figure_axes import save_figure
+from plots.printed.figure_style import FigureFormat
 from reproduction.figures.map_figures import draw_energy_plane, draw_nine_maps
 from reproduction.figures.potential_figures import draw_potential
 from reproduction.figures.statistics_figures import draw_percentages, draw_statistics, draw_survival

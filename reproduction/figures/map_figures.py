@@ -11,13 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import CASES, EscapeMap, Fate, Plane, Window
-from plots.figure_axes import add_figure_legend, label_axes, name_panel, new_figure, patches
-from plots.figure_style import SCREEN
-from plots.map_analyses import NO_ANALYSES, MapAnalyses
-from plots.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
-from plots.map_images import picture_pixels
-from plots.palette import PAPER
-from plots.time_scale import TimeScale, common_scale
+from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.pictures.map_images import picture_pixels
+from plots.pictures.palette import PAPER
+from plots.pictures.time_scale import TimeScale, common_scale
+from plots.printed.figure_axes import add_figure_legend, label_axes, name_panel, new_figure, patches
+from plots.printed.figure_style import SCREEN
+from plots.printed.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import axis_label, plane_label
 from reproduction.paper_ranges import nine_energies, plane_energies
@@ -79,7 +79,7 @@ def draw_map_panel(
     frame
         A complete map.
     picture
-        One of `plots.map_images.TITLES`.
+        One of `plots.pictures.map_images.TITLES`.
     shown
         Window of the panel.
     times

@@ -19,10 +19,10 @@ from engine import (
     integrate_orbit,
     trace_zero_velocity_curve,
 )
-from plots.figure_axes import label_axes, name_panels, new_figure, style_axes
-from plots.figure_style import SCREEN
-from plots.palette import LIGHT, PAPER
-from plots.potential_figure import draw_equipotentials, draw_pieces, enlarge
+from plots.pictures.palette import LIGHT, PAPER
+from plots.printed.figure_axes import label_axes, name_panels, new_figure, style_axes
+from plots.printed.figure_style import SCREEN
+from plots.printed.potential_figure import draw_equipotentials, draw_pieces, enlarge
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import axis_label
 from reproduction.paper_ranges import CHANNEL_ENERGIES

@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import EscapeStatistics, Plane, compute_statistics, fit_decay_laws
-from plots.curve_figures import draw_decay_laws, draw_shares
-from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
-from plots.figure_style import SCREEN
-from plots.palette import LIGHT, MEASURED, PAPER, THRESHOLD
+from plots.pictures.palette import LIGHT, MEASURED, PAPER, THRESHOLD
+from plots.printed.curve_figures import draw_decay_laws, draw_shares
+from plots.printed.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
+from plots.printed.figure_style import SCREEN
 from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
 from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares
 from reproduction.map_shelf import MapShelf

@@ -10,7 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import Plane, find_lyapunov_orbits, sample_orbits
-from plots.figure_axes import (
+from plots.pictures.map_analyses import MapAnalyses
+from plots.pictures.palette import MEASURED, PAPER, THRESHOLD
+from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
     label_axes,
@@ -19,9 +21,7 @@ from plots.figure_axes import (
     patches,
     style_axes,
 )
-from plots.figure_style import SCREEN
-from plots.map_analyses import MapAnalyses
-from plots.palette import MEASURED, PAPER, THRESHOLD
+from plots.printed.figure_style import SCREEN
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.map_figures import draw_map_panel
 from reproduction.map_shelf import MapShelf

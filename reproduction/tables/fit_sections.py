@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from engine import CASES, Plane, compute_statistics, fit_decay_laws
-from engine.results.wording import format_number
+from engine.foundations.wording import format_number
 from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
 from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from reproduction.map_shelf import MapShelf

@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, compute_map
-from plots.image_columns import difference_column, map_columns
-from plots.palette import PAPER, rgba
+from plots.pictures.image_columns import difference_column, map_columns
+from plots.pictures.palette import PAPER, rgba
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 

@@ -14,7 +14,7 @@ from PIL import Image
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, compute_map
-from plots.figure_style import FigureStyle
+from plots.printed.figure_style import FigureStyle
 from tests.browser.explorer_page import ExplorerPage
 
 SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&orbits=0.1,0.2;0.1,-0.3"

@@ -8,7 +8,7 @@ import numpy as np
 from playwright.sync_api import Locator, expect
 
 from engine import CASES, Fate, MapSpec, Plane, compute_map
-from plots.palette import OUTCOMES
+from plots.pictures.palette import OUTCOMES
 from tests.browser.explorer_page import ExplorerPage
 
 # Counts messages to the server.

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity
-from engine.dynamics.certificates import describe_certificate
+from engine.propagation.certificates import describe_certificate
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]

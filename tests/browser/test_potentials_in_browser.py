@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, expect
 
-from plots.palette import OUTCOMES
+from plots.pictures.palette import OUTCOMES
 from tests.browser.explorer_page import ExplorerPage
 
 pytestmark = pytest.mark.browser

@@ -19,8 +19,8 @@ from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS
 from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
 from engine.jobs.job import Job
-from plots.image_columns import map_columns
-from plots.time_scale import fitted_scale
+from plots.pictures.image_columns import map_columns
+from plots.pictures.time_scale import fitted_scale
 from tests.app.state.opened_link import open_link
 from tests.browser.explorer_page import ExplorerPage
 

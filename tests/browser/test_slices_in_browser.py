@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, Coordinate, MapSpec, Slice, compute_map
-from plots.image_columns import map_columns
+from plots.pictures.image_columns import map_columns
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 

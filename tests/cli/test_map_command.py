@@ -27,10 +27,10 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
-from plots.figure_files import map_figure_bytes
-from plots.figure_style import FigureFormat, FigureStyle
-from plots.map_analyses import MapAnalyses
-from plots.palette import COLOUR_BLIND_SAFE
+from plots.pictures.map_analyses import MapAnalyses
+from plots.pictures.palette import COLOUR_BLIND_SAFE
+from plots.printed.figure_files import map_figure_bytes
+from plots.printed.figure_style import FigureFormat, FigureStyle
 
 C = Coordinate
 Run = Callable[..., tuple[int, str, str]]

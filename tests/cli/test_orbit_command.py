@@ -19,8 +19,8 @@ from engine import (
     judge_orbit,
     start_states,
 )
-from plots.exports import orbits_csv
-from plots.palette import COLOUR_BLIND_SAFE
+from plots.pictures.palette import COLOUR_BLIND_SAFE
+from plots.texts.exports import orbits_csv
 
 Run = Callable[..., tuple[int, str, str]]
 

@@ -9,7 +9,7 @@ import pytest
 
 from cli.main import FAILED
 from cli.system_errors import describe_system_error
-from engine.storage.output_lock import hold_lock
+from engine.foundations.output_lock import hold_lock
 
 Run = Callable[..., tuple[int, str, str]]
 

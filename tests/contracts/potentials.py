@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from engine.potentials.forms.polynomial_form import PolynomialForm
-from engine.potentials.formulas.formula_parser import parse_formula
-from engine.potentials.known_potentials import POTENTIALS
+from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.known_potentials import POTENTIALS
 
 # Compiling kernels takes long, so normal runs do it for one potential of the catalogue, and exhaustive runs for all. The three
 # cases of the paper are covered by other tests.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine import Plane, Potential, Window
-from engine.potentials.well_units import WellUnits
+from engine.systems.well_units import WellUnits
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine import classify_orbits
-from engine.potentials.potential import Potential
+from engine.systems.potential import Potential
 from tests.contracts.potentials import each_compiled
 from tests.peers import taylor_heyoka
 from tests.peers.exit_lines import exit_lines

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.potentials.potential import Potential
-from engine.potentials.review.potential_review import PointKind, review_potential
+from engine.systems.potential import Potential
+from engine.systems.review.potential_review import PointKind, review_potential
 from tests.contracts.potentials import each_potential
 
 PLACES = np.random.default_rng(3).uniform(-1.2, 1.2, (2, 5))

@@ -8,9 +8,9 @@ import time
 import pytest
 import sympy
 
-from engine.potentials.formulas.formula_parser import parse_formula
-from engine.potentials.formulas.formula_tokens import FormulaError
-from engine.potentials.potential import Potential
+from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.formulas.formula_tokens import FormulaError
+from engine.systems.potential import Potential
 
 X, Y = sympy.symbols("x y")
 LONGEST_SECONDS = 1.0

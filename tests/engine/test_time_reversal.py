@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engine import MapSpec, Plane, System, classify_orbits, compute_map, sample_starts
-from engine.potentials.catalogue.rotating_systems import ROTATING_ENTRIES
+from engine.systems.catalogue.rotating_systems import ROTATING_ENTRIES
 
 ENERGIES = {
     "Copenhagen": -1.6,

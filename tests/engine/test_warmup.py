@@ -7,9 +7,9 @@ import threading
 import pytest
 
 from engine import Potential
-from engine.taylor import bound_kernels
-from engine.taylor.bound_kernels import load_kernels
-from engine.taylor.jit.compiled_operations import CompiledOperations
+from engine.integrator import bound_kernels
+from engine.integrator.bound_kernels import load_kernels
+from engine.integrator.jit.compiled_operations import CompiledOperations
 from engine.warmup import (
     _Compilations,
     is_ready_for_maps,

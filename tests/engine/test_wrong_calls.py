@@ -32,7 +32,7 @@ from engine import (
     sample_orbits,
     start_states,
 )
-from engine.potentials.outcomes import Centre
+from engine.systems.outcomes import Centre
 
 LONGEST = 400
 

@@ -15,11 +15,11 @@ from typing import Any
 import pytest
 from numba.core.codegen import JITCPUCodegen
 
-import engine.taylor
-from engine.storage import cache_files
-from engine.storage.cache_files import CACHE_VARIABLE, SUFFIX
-from engine.taylor.jit import disk_cache
-from engine.taylor.jit.decorator import kernel
+import engine.integrator
+from engine.foundations import cache_files
+from engine.foundations.cache_files import CACHE_VARIABLE, SUFFIX
+from engine.integrator.jit import disk_cache
+from engine.integrator.jit.decorator import kernel
 from tests.forked import Finished, fork_context, run
 
 
@@ -254,4 +254,4 @@ def test_a_change_anywhere_in_the_package_gives_another_file(
 
 
 def test_the_package_is_all_of_engine_taylor() -> None:
-    assert Path(engine.taylor.__file__).parent == disk_cache._PACKAGE
+    assert Path(engine.integrator.__file__).parent == disk_cache._PACKAGE

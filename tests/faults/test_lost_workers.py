@@ -19,8 +19,8 @@ import engine
 from cli.clusters import _describing_losses
 from cli.main import FAILED, main
 from engine import CASES, Plane, SweepSpec, compute_sweep
-from engine.dynamics.fixed_step_batches import map_tiles
-from engine.execution import Execution
+from engine.foundations.execution import Execution
+from engine.propagation.fixed_step_batches import map_tiles
 from tests.forgetful_pool import ForgetfulPool
 from tests.forked import Finished, run
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Mapping
 
-from engine.potentials.formulas.formula_parser import DEEPEST_NESTING, LONGEST_TEXT
+from engine.systems.formulas.formula_parser import DEEPEST_NESTING, LONGEST_TEXT
 
 Link = dict[str, str]
 """Parameters of a link, without its case."""

@@ -17,7 +17,7 @@ from app.state.link_summary import summary_of
 from app.state.permalink import LINKED, read_link, write_link
 from app.state.view_state import SYSTEM, ViewState
 from engine import CASES
-from engine.potentials.system import TYPED
+from engine.systems.system import TYPED
 from tests.app.state.opened_link import open_link
 from tests.fuzz.hostile import LONGEST_MESSAGE, STRINGS, floats, formulas, result_or_error, texts
 from tests.fuzz.random_formulas import random_link

@@ -14,10 +14,10 @@ from app.state.permalink import linked_system, read_link, write_link
 from app.state.view_state import ViewState
 from cli.potential_argument import file_name_part, find_potential
 from engine import Potential, PotentialReview, System, parse_formula, review_potential, write_formula
-from engine.potentials.parameters import WELL_PARAMETERS
-from engine.potentials.review.potential_review import review_system
-from engine.potentials.system import TYPED
-from plots.accepted_potentials import refusal
+from engine.systems.parameters import WELL_PARAMETERS
+from engine.systems.review.potential_review import review_system
+from engine.systems.system import TYPED
+from plots.texts.accepted_potentials import refusal
 from tests.app.state.opened_link import open_link
 from tests.contracts.potentials import WELLS
 from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error

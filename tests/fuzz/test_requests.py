@@ -36,9 +36,9 @@ from engine import (
     start_states,
     trace_zero_velocity_curve,
 )
+from engine.foundations.validation import LONGEST_TIME
 from engine.measures.uncertainty_exponent import fit_uncertainty
 from engine.slices.limiting_curves import trace_equipotentials
-from engine.validation import LONGEST_TIME
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
 CASE = CASES["I"]

@@ -13,7 +13,7 @@ import heyoka as hy
 import numpy as np
 
 from engine import Potential, classify_orbits, find_lyapunov_orbits
-from engine.taylor.kernels import events
+from engine.integrator.kernels import events
 from tests.peers.taylor_heyoka import START_TIME, coordinates, equations
 
 TOLERANCES = (1e-18, 1e-16)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine import Potential, parse_formula, review_potential
-from engine.potentials.outcomes import Centre
+from engine.systems.outcomes import Centre
 from tests.contracts.scaling import Scaling
 
 HIGHEST_DEGREE = 10

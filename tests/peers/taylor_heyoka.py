@@ -11,8 +11,8 @@ import numpy as np
 
 from engine import Potential
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
-from engine.potentials.forms.expression_form import ExpressionForm
-from engine.potentials.forms.polynomial_form import PolynomialForm
+from engine.systems.forms.expression_form import ExpressionForm
+from engine.systems.forms.polynomial_form import PolynomialForm
 from tests.peers.exit_lines import ExitLine
 
 _DEGREE = 12

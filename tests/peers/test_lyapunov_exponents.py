@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Plane, Verdict, integrate_orbit, judge_orbit, start_states
-from engine.dynamics.fates import is_chaotic
+from engine.propagation.fates import is_chaotic
 from tests.peers import taylor_heyoka
 
 T_MAX, INTERVAL, DISTANCE = 3000.0, 10.0, 1e-8

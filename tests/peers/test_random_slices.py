@@ -22,7 +22,7 @@ from engine import (
     compute_map,
     compute_trust,
 )
-from engine.potentials.system import TYPED
+from engine.systems.system import TYPED
 from tests.peers.exit_lines import exit_lines
 from tests.peers.taylor_heyoka import classifier
 

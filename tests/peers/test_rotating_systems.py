@@ -8,8 +8,8 @@ from numpy.polynomial import chebyshev
 
 from engine import Potential, System, classify_orbits, find_lyapunov_orbits, sample_starts
 from engine.exits.interior import find_outside_channels
-from engine.potentials.catalogue.rotating_systems import ROTATING_ENTRIES
-from engine.taylor.kernels import events
+from engine.integrator.kernels import events
+from engine.systems.catalogue.rotating_systems import ROTATING_ENTRIES
 from tests.peers import taylor_heyoka
 from tests.peers.exits_by_heyoka import compare
 

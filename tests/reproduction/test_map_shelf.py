@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, compute_regularity
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import curve_energies, nine_energies
 from reproduction.quality import Quality

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * How pixels are written as codes; the server sends it, see `plots/image_columns.py`.
+ * How pixels are written as codes; the server sends it, see `plots/pictures/image_columns.py`.
  *
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are no escapes

@@ -3,7 +3,7 @@
  * Exits at one energy: over saddles, interpolated in the tables of a system, discs around centres, and the escape circle. In
  * coordinates u outward and q across (90° counterclockwise from u) an exit over a saddle is the graph u = f(s), s = (q − middle) /
  * halfWidth ∈ [−1, 1], f a Chebyshev series; straight lines continue it beyond its ends. A disc or a circle has its centre as
- * origin and its radius as half width. See `engine/taylor/kernels/events.py`.
+ * origin and its radius as half width. See `engine/integrator/kernels/events.py`.
  *
  * @typedef {object} ExitCurve
  * @property {boolean} open

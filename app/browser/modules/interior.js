@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * Which starts lie inside the exits: connected to the origin below the energy without crossing an exit. The path downhill from
- * the point is that of `engine/taylor/kernels/interior.py`. With an escape circle all points within it lie inside; discs around
+ * the point is that of `engine/integrator/kernels/interior.py`. With an escape circle all points within it lie inside; discs around
  * centres belong to no interior.
  */
 

@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * The loop over steps that propagates orbits until they escape or pass a horizon, with the logic of
- * `engine/taylor/kernels/propagate.py`: a lane whose orbit ends takes the next one, and steps with events are collected until
+ * `engine/integrator/kernels/propagate.py`: a lane whose orbit ends takes the next one, and steps with events are collected until
  * their series can be computed together.
  */
 

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * Events of y = 0 within a step, as `engine/taylor/kernels/events.py` has them. The coefficients of lane i of a series are
+ * Events of y = 0 within a step, as `engine/integrator/kernels/events.py` has them. The coefficients of lane i of a series are
  * `jet[first + k * stride + i]`.
  *
  * @typedef {object} Jet

@@ -19,7 +19,7 @@ from app.views.components.widgets import COUNT_WHOLE, button, copy_button, numbe
 from engine import DecayLaws, EscapeFlux, Result, UncertaintyExponent, Window
 from engine.jobs.map_jobs import BasinMeasures
 from engine.measures.decay_laws import LawFit
-from plots.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
+from plots.pictures.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
 _LAW_POINTS = 200
 _PAIRS_TEXT = (

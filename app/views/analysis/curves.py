@@ -17,9 +17,9 @@ from app.views.components.plots import FigurePane, chart_hover, set_decades, set
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Outcome, Sweep, System
-from engine.potentials.parameters import symbol_of
-from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
-from plots.sweep_panels import CURVE_PANELS, SHARES_TITLE, CurvePanel
+from engine.systems.parameters import symbol_of
+from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
+from plots.pictures.sweep_panels import CURVE_PANELS, SHARES_TITLE, CurvePanel
 
 START, STOP = "Compute the curves", "Stop"
 SWEPT_VALUES, REFINED_VALUES = 25, 8

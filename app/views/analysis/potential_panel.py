@@ -14,14 +14,14 @@ from app.browser.parameter_slider import ParameterSlider
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import button, flex_row
 from engine import PotentialReview, System
-from engine.potentials.catalogue.table import CATALOGUE
-from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
-from engine.potentials.parameters import WELL_PARAMETERS
-from engine.potentials.review.potential_review import SystemReview
-from engine.potentials.system import TYPED
-from plots.accepted_potentials import refusal
-from plots.mathml import potential_formula, potential_symbol
-from plots.palette import MOST_CHANNELS
+from engine.systems.catalogue.table import CATALOGUE
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
+from engine.systems.parameters import WELL_PARAMETERS
+from engine.systems.review.potential_review import SystemReview
+from engine.systems.system import TYPED
+from plots.pictures.palette import MOST_CHANNELS
+from plots.texts.accepted_potentials import refusal
+from plots.texts.mathml import potential_formula, potential_symbol
 
 # Ends of the sliders; their boxes, links and the command line allow wider ranges.
 _LOW, _HIGH = 0.2, 2.0

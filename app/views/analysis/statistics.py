@@ -18,9 +18,9 @@ from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
-from engine.dynamics.fates import UNRESOLVED
-from plots.palette import PAPER, Palette
-from plots.statistics_charts import BINS, MOST_CROSSINGS
+from engine.propagation.fates import UNRESOLVED
+from plots.pictures.palette import PAPER, Palette
+from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
 
 CROSSINGS, PROBABILITY = "n", "p"
 """Columns of the second chart."""

@@ -11,10 +11,10 @@ from bokeh.plotting import figure
 
 from app.views.components.plots import batched_additions
 from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits, trace_zero_velocity_curve
-from engine.potentials.review.energy_ranges import depth_levels
-from engine.potentials.review.potential_review import critical_energies
 from engine.slices.limiting_curves import trace_equipotentials
-from plots.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
+from engine.systems.review.energy_ranges import depth_levels
+from engine.systems.review.potential_review import critical_energies
+from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 from engine import Outcome
-from plots.palette import Entry, Palette, end_places, short_label
+from plots.pictures.palette import Entry, Palette, end_places, short_label
 
 
 def patch(colour: str, label: str = "") -> str:

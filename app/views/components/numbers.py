@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.results.wording import format_whole
+from engine.foundations.wording import format_whole
 
 
 def grouped(value: float) -> str:

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from bokeh.models import ColumnDataSource, LinearColorMapper
 
-from plots.histories import ENVELOPE_ALPHA
-from plots.orbit_curves import OrbitCurves
-from plots.palette import MOST_ORBITS
+from plots.pictures.histories import ENVELOPE_ALPHA
+from plots.pictures.orbit_curves import OrbitCurves
+from plots.pictures.palette import MOST_ORBITS
 
 Curve = tuple[np.ndarray, np.ndarray]
 """Abscissas and ordinates."""

@@ -18,7 +18,7 @@ from bokeh.plotting import figure
 from app.browser.callbacks import callback_code
 from app.state.help_texts import title_with_help
 from engine import Window
-from plots.axis_labels import find_offset
+from plots.pictures.axis_labels import find_offset
 
 _OFFSET_LABEL = callback_code("offset_ticks.js", "offsetLabel(tick, base, unit)")
 

@@ -16,9 +16,9 @@ from app.views.components.numbers import grouped, percent
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import Certificate, EscapeMap, Fate
-from engine.dynamics.fates import UNRESOLVED
-from engine.potentials.outcomes import OutcomeKind
-from engine.results.wording import format_number
+from engine.foundations.wording import format_number
+from engine.propagation.fates import UNRESOLVED
+from engine.systems.outcomes import OutcomeKind
 
 STOP, CONTINUE, TEST = "Stop", "Continue", LAYER_LABELS["trust"]
 

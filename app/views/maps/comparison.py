@@ -12,8 +12,8 @@ from app.views.maps.hover import fate_hover
 from app.views.maps.map_legend import OtherView
 from app.views.maps.map_ranges import MapRanges
 from engine import EscapeMap, Slice
-from plots.image_columns import NO_LAYER, difference_column, map_columns
-from plots.palette import Palette
+from plots.pictures.image_columns import NO_LAYER, difference_column, map_columns
+from plots.pictures.palette import Palette
 
 Columns = dict[str, list[Any]]
 """Columns of a data source of images."""

@@ -6,8 +6,8 @@ from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
 from app.browser.callbacks import callback_code
 from engine import Certificate, Fate, Regularity, Trust
-from engine.dynamics.certificates import describe_certificate
-from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
+from engine.propagation.certificates import describe_certificate
+from plots.pictures.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
 
 TRUST = {
     Trust.LIKE_NEIGHBOURS: "not tested: like all its neighbours",
@@ -44,7 +44,7 @@ def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> Hover
     """A tool that says how the orbit under the mouse ends; the caller adds images of the codes of fates to its renderers.
 
     source
-        Columns ``fate`` and ``ends`` of `plots.image_columns.map_columns`.
+        Columns ``fate`` and ``ends`` of `plots.pictures.image_columns.map_columns`.
     """
     formatters = _fate_and_place(source, x, ordinate)
     return HoverTool(
@@ -70,7 +70,7 @@ def pixel_hover(
     Parameters
     ----------
     source
-        Columns of `plots.image_columns.map_columns`.
+        Columns of `plots.pictures.image_columns.map_columns`.
     doubts
         Column ``trust`` of `Trust` codes; empty while that layer is off.
     compared

@@ -9,8 +9,8 @@ from html import escape
 from app.views.components.legends import chips, legend_items, passage_legend
 from app.views.components.numbers import grouped
 from engine import MapSpec, Outcome
-from plots.palette import Entry, Palette
-from plots.time_scale import TimeScale
+from plots.pictures.palette import Entry, Palette
+from plots.pictures.time_scale import TimeScale
 
 _STEPS = 12
 

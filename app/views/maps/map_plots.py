@@ -39,11 +39,11 @@ from app.views.maps.overlays import Overlays
 from app.views.maps.picture_grid import PictureGrid
 from app.views.maps.well import WellView
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
-from engine.results.wording import format_number
-from plots.image_columns import NO_LAYER, character_column, passage_column
-from plots.map_images import COMPARISON_TITLES, CROSSED_BY_MANIFOLDS, DOUBTED, PAINTED, TITLES
-from plots.palette import PAPER, Palette
-from plots.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
+from engine.foundations.wording import format_number
+from plots.pictures.image_columns import NO_LAYER, character_column, passage_column
+from plots.pictures.map_images import COMPARISON_TITLES, CROSSED_BY_MANIFOLDS, DOUBTED, PAINTED, TITLES
+from plots.pictures.palette import PAPER, Palette
+from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
 
 MAPS = tuple(name for name in PICTURES if name != "well")
 """The maps of starts; beside them stands the well."""

@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 
 from app.views.components.plots import batched_additions
 from engine import Window
-from plots.palette import LIGHT, MARK_EDGE, PAPER, Palette
+from plots.pictures.palette import LIGHT, MARK_EDGE, PAPER, Palette
 
 MOST_SECTION_POINTS = 2000
 """Of each orbit at most this many section points are drawn."""

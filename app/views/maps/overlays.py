@@ -10,9 +10,9 @@ from bokeh.plotting import figure
 
 from app.views.components.plots import batched_additions
 from engine import MapSpec, StableManifolds, TrustMap
-from plots.image_columns import doubt_tones
-from plots.manifold_strokes import manifold_strokes
-from plots.palette import DOUBT, LIGHT, PAPER, Entry, Palette
+from plots.pictures.image_columns import doubt_tones
+from plots.pictures.manifold_strokes import manifold_strokes
+from plots.pictures.palette import DOUBT, LIGHT, PAPER, Entry, Palette
 
 _CLEAR = "#00000000"
 # The tones as a CSS background.

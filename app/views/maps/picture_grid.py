@@ -9,7 +9,7 @@ from bokeh.plotting import figure
 
 from app.views.components.plots import FigurePane, set_thumbnail
 from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
-from plots.map_images import ON_DEMAND
+from plots.pictures.map_images import ON_DEMAND
 
 SHORT_TITLES = {
     "well": "Well",

@@ -14,8 +14,8 @@ from app.views.components.plots import FigurePane, annotate_picture, batched_add
 from engine import MapSpec, Window
 from engine.slices.energies import highest_energy
 from engine.slices.planes import SPACE
-from plots.orbit_curves import OrbitCurves, find_well_window, moment
-from plots.palette import LIGHT, MARK_EDGE, PAPER, Palette
+from plots.pictures.orbit_curves import OrbitCurves, find_well_window, moment
+from plots.pictures.palette import LIGHT, MARK_EDGE, PAPER, Palette
 
 TITLE = "The well in (x, y)"
 

@@ -18,8 +18,8 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, copy_button, flex_row, number_rows
 from engine import Coordinate, IndicatorVerdict, Orbit, Slice
 from engine.slices.section import SECTION
-from plots.orbit_curves import initial_state
-from plots.palette import Palette
+from plots.pictures.orbit_curves import initial_state
+from plots.pictures.palette import Palette
 
 HINT = "Click a map to see the orbit of the pixel, its SALI and R²; up to five orbits."
 _BOX = 180

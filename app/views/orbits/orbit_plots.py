@@ -21,11 +21,11 @@ from bokeh.plotting import figure
 from app.views.components.orbit_lines import band_columns, band_style, in_front, line_columns, line_style, lines, opacities
 from app.views.components.plots import HISTORY_ASPECT, FigurePane, set_decades, set_range, square_figure
 from engine import CASES, CHAOS_THRESHOLD, integrate_orbit, start_states
-from engine.results.wording import format_number
+from engine.foundations.wording import format_number
 from engine.slices.section import SECTION
-from plots.histories import History
-from plots.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves
-from plots.palette import MARK_EDGE, PAPER, THRESHOLD, Palette
+from plots.pictures.histories import History
+from plots.pictures.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves
+from plots.pictures.palette import MARK_EDGE, PAPER, THRESHOLD, Palette
 
 TITLES = {
     "sali": f"SALI (chaotic at or below {format_number(CHAOS_THRESHOLD)})",

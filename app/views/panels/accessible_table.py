@@ -12,8 +12,8 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.numbers import grouped, percent
 from app.views.components.texts import TextPane
 from engine import EscapeMap, Fate, compute_statistics
-from engine.dynamics.fates import UNRESOLVED
-from engine.results.wording import format_time
+from engine.foundations.wording import format_time
+from engine.propagation.fates import UNRESOLVED
 
 
 class AccessibleTable:

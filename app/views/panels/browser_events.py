@@ -14,7 +14,7 @@ from panel.custom import JSComponent
 
 from app.browser.callbacks import module_path
 from app.state.view_state import PICTURES
-from plots.map_images import TITLES
+from plots.pictures.map_images import TITLES
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
 """The picture that a key enlarges, or reduces again."""

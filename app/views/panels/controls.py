@@ -18,8 +18,8 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
 from engine import CASES, Plane, Potential, Slice
-from engine.potentials.catalogue.entry import EnergyRange
-from plots.palette import PALETTES
+from engine.systems.catalogue.entry import EnergyRange
+from plots.pictures.palette import PALETTES
 
 LOCK = "Lock colour scale"
 AXES = "Axes …"

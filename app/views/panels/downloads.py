@@ -18,8 +18,8 @@ from app.views.panels.embedding import NOT_ALLOWED
 from app.views.panels.figure_choices import Shown
 from app.views.panels.figure_form import FigureForm
 from engine import EscapeMap, Sweep
-from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
-from plots.map_analyses import MapAnalyses
+from plots.pictures.map_analyses import MapAnalyses
+from plots.texts.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 
 File = tuple[str, Callable[[], bytes]]
 """Name and content of a file; the content is made by a call that may take seconds."""

@@ -8,7 +8,7 @@ import panel as pn
 
 from app.state.view_state import SYSTEM, ViewState
 from app.views.components.texts import TextPane
-from plots.mathml import equations
+from plots.texts.mathml import equations
 
 
 def equations_pane(state: ViewState) -> pn.viewable.Viewable:

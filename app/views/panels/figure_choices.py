@@ -10,16 +10,16 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from engine import EscapeMap, Sweep
 from engine.slices.energies import highest_energy
-from plots.figure_files import (
+from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.pictures.map_images import ON_DEMAND, TITLES
+from plots.printed.figure_files import (
     curves_figure_bytes,
     map_figure_bytes,
     orbits_figure_bytes,
     statistics_figure_bytes,
     well_figure_bytes,
 )
-from plots.figure_style import FigureFormat, FigureStyle
-from plots.map_analyses import NO_ANALYSES, MapAnalyses
-from plots.map_images import ON_DEMAND, TITLES
+from plots.printed.figure_style import FigureFormat, FigureStyle
 
 Make = Callable[[FigureFormat, FigureStyle], bytes]
 """Makes a file of a figure; takes seconds."""

@@ -17,7 +17,7 @@ from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane
 from app.views.components.widgets import SegmentedControl, Switches, button
 from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, Shown, figure_choices
-from plots.figure_style import FigureFormat, FigureStyle
+from plots.printed.figure_style import FigureFormat, FigureStyle
 
 _TITLES = "Titles"
 _NUMBERS = {"width": ("Width in cm", 0.5), "dpi": ("Pixels per inch", 50.0), "font_size": ("Letters in points", 0.5)}

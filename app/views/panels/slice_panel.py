@@ -15,8 +15,8 @@ from app.state.view_state import SYSTEM, ViewState
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import flex_row
 from engine import Coordinate, ParameterAxis, Slice
-from engine.potentials.parameters import symbol_of
 from engine.slices.slice_text import AXIS_NAMES, default_range
+from engine.systems.parameters import symbol_of
 
 _HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
 _ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}

@@ -25,9 +25,9 @@ from engine import (
     compute_trust,
     default_window,
 )
-from engine.dynamics.portable_system import make_portable_system
-from engine.potentials.review.potential_review import review_system
-from engine.potentials.system import TYPED
+from engine.propagation.portable_system import make_portable_system
+from engine.systems.review.potential_review import review_system
+from engine.systems.system import TYPED
 from tests.node import needs_node, run_node
 
 SYSTEMS = (

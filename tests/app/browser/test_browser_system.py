@@ -8,9 +8,9 @@ import numpy as np
 
 from app.browser.browser_system import make_browser_system, system_key
 from engine import CASES, Plane, Potential, System, default_window
-from engine.dynamics.portable_system import make_portable_system
-from engine.execution import Execution
-from engine.potentials.outcomes import Centre
+from engine.foundations.execution import Execution
+from engine.propagation.portable_system import make_portable_system
+from engine.systems.outcomes import Centre
 
 
 def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None:

@@ -23,9 +23,9 @@ from engine import (
     sample_orbits,
     sample_starts,
 )
-from engine.dynamics.portable_system import make_portable_system
 from engine.exits.interior import find_outside_channels
-from engine.potentials.review.potential_review import review_system
+from engine.propagation.portable_system import make_portable_system
+from engine.systems.review.potential_review import review_system
 from tests.node import needs_node, run_node
 from tests.peers.taylor_heyoka import equations
 

@@ -25,9 +25,9 @@ from engine import (
     parse_formula,
     sample_orbits,
 )
-from engine.dynamics.portable_system import make_portable_system
 from engine.exits.interior import find_outside_channels
-from engine.potentials.outcomes import SMALLEST_RADIUS, Centre
+from engine.propagation.portable_system import make_portable_system
+from engine.systems.outcomes import SMALLEST_RADIUS, Centre
 from tests.app.browser.test_agreement import HORIZON as VIEW_HORIZON
 from tests.app.browser.test_agreement import LEAST_SHARE, SIDE, as_view, expected_fate
 from tests.node import needs_node, run_node

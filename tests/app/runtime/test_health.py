@@ -9,7 +9,7 @@ import pytest
 from app.runtime.health import not_ready_reason, refusal_reason, resident_bytes
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import Settings
-from engine.taylor.jit.compiled_operations import LARGEST_CODE, compiled_operations
+from engine.integrator.jit.compiled_operations import LARGEST_CODE, compiled_operations
 
 HERE, ELSEWHERE = "192.0.2.1", "192.0.2.2"
 

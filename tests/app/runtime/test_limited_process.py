@@ -14,8 +14,8 @@ import pytest
 
 from app.runtime.limited_process import LimitedProcess, LimitError
 from engine import System, parse_formula
-from engine.potentials.formulas.formula_tokens import FormulaError
-from engine.potentials.review.potential_review import review_system
+from engine.systems.formulas.formula_tokens import FormulaError
+from engine.systems.review.potential_review import review_system
 from tests import forked
 
 

@@ -17,7 +17,7 @@ from app.state.view_state import Analysis, ViewState
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES
 from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map, compute_uncertainty_exponent
 from engine.jobs.manager import Jobs
-from plots.map_analyses import MapAnalyses
+from plots.pictures.map_analyses import MapAnalyses
 from tests.app.map_actions import make_maps
 from tests.app.session.session_lock import locked_by
 

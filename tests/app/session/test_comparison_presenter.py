@@ -13,8 +13,8 @@ from app.state.compared_view import ComparedView
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, System, compute_map
 from engine.jobs.manager import Jobs
-from engine.potentials.system import TYPED
-from plots.image_columns import map_columns
+from engine.systems.system import TYPED
+from plots.pictures.image_columns import map_columns
 from tests.app.map_actions import make_maps
 from tests.app.session.session_lock import locked_by
 

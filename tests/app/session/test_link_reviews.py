@@ -11,10 +11,10 @@ import pytest
 from app.session.explorer import Explorer
 from app.state import system_review as review_module
 from engine import CASES, Plane, System, Window
-from engine.potentials import system as system_module
-from engine.potentials import well as well_module
-from engine.potentials.forms import polynomial_form as polynomial_module
-from engine.potentials.system import TYPED
+from engine.systems import system as system_module
+from engine.systems import well as well_module
+from engine.systems.forms import polynomial_form as polynomial_module
+from engine.systems.system import TYPED
 from tests.app.other_loop import run_on_new_loop
 from tests.app.session.opened_page import opened_page, settle, wait_for
 

@@ -13,8 +13,8 @@ from app.state.history import History
 from app.state.view_state import ViewState
 from engine import CASES, System
 from engine.jobs.manager import Jobs
-from engine.potentials.review.potential_review import review_system
-from engine.potentials.system import TYPED
+from engine.systems.review.potential_review import review_system
+from engine.systems.system import TYPED
 from engine.warmup import prepare_for_maps
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import locked_by

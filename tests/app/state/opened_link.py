@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from app.state.permalink import fit_to_system, linked_system, read_link, refused_link, without_system
 from app.state.view_state import ViewState
-from engine.potentials.review.potential_review import review_system
-from plots.accepted_potentials import refusal
+from engine.systems.review.potential_review import review_system
+from plots.texts.accepted_potentials import refusal
 
 
 def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:

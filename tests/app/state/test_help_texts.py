@@ -9,7 +9,7 @@ import pytest
 from app.state.help_texts import HELP_TEXTS, title_with_help
 from app.views.maps.map_plots import MAPS
 from app.views.orbits.orbit_plots import TITLES as ORBITS
-from plots.sweep_panels import CURVE_PANELS
+from plots.pictures.sweep_panels import CURVE_PANELS
 
 
 def test_every_picture_plot_and_measure_has_a_help_text() -> None:

@@ -13,9 +13,9 @@ from app.state.permalink import LONGEST_VALUE, linked_system, read_link, without
 from app.state.view_state import IMAGE_CHOICES, LAYERS, PICTURES, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
 from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
 from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window
-from engine.potentials.system import TYPED
-from plots.palette import MOST_ORBITS, PALETTES
-from plots.time_scale import TimeScale
+from engine.systems.system import TYPED
+from plots.pictures.palette import MOST_ORBITS, PALETTES
+from plots.pictures.time_scale import TimeScale
 from tests.app.state.opened_link import open_link
 from tests.engine.slices.test_slice import slices
 

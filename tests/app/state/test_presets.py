@@ -28,8 +28,8 @@ from engine import (
     sample_starts,
     start_states,
 )
-from plots.map_images import TITLES
-from plots.palette import MOST_ORBITS
+from plots.pictures.map_images import TITLES
+from plots.pictures.palette import MOST_ORBITS
 
 THUMBNAILS = Path(app.__file__).parent / "static" / "gallery"
 LARGEST_THUMBNAIL = 15_000

@@ -7,8 +7,8 @@ import pytest
 
 from app.state.view_state import ViewState
 from engine import CASES, Plane
-from engine.potentials.catalogue.table import PAPER_ENERGIES
-from plots.palette import MOST_ORBITS
+from engine.systems.catalogue.table import PAPER_ENERGIES
+from plots.pictures.palette import MOST_ORBITS
 
 
 @pytest.mark.parametrize("case", list(CASES))

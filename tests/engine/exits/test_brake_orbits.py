@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 from engine import LyapunovOrbit, Potential, find_lyapunov_orbits
 from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.potentials.known_potentials import POTENTIALS
-from engine.taylor.kernels.events import exit_distance
+from engine.integrator.kernels.events import exit_distance
+from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 
 # The line across the saddle at the start of the search lies beyond the zero-velocity curve, which bends away.

@@ -9,8 +9,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import CASES, POTENTIALS, Potential, find_lyapunov_orbits, parse_formula
-from engine.dynamics.portable_system import make_portable_system
 from engine.exits.exit_tables import LARGEST_ERROR, tabulate_exits
+from engine.propagation.portable_system import make_portable_system
 from tests.node import needs_node, run_node
 
 HIGHEST = {"I": 0.5, "II": 0.5, "III": 1.0, "C5": 1.2, "HH": 0.6}

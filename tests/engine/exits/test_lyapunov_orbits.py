@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, parse_formula
 from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.potentials.known_potentials import POTENTIALS
-from engine.taylor.kernels.events import REACH, exit_distance
+from engine.integrator.kernels.events import REACH, exit_distance
+from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 
 ENERGIES = [

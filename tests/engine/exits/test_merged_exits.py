@@ -16,8 +16,8 @@ from engine import (
 )
 from engine.exits.exit_rows import exit_curves
 from engine.exits.interior import find_outside_channels
-from engine.potentials.known_potentials import POTENTIALS
-from engine.taylor.kernels.events import crossed_exit, exit_distance
+from engine.integrator.kernels.events import crossed_exit, exit_distance
+from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 
 # Even in x and y. The maxima lie on the y axis, between channels 1 and 2, and between 3 and 4.

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
 from engine.exits.periodic_orbits import PeriodicOrbit, find_periodic_orbit
-from engine.potentials.known_potentials import POTENTIALS
+from engine.systems.known_potentials import POTENTIALS
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 from tests.engine.exits.test_lyapunov_orbits import ENERGIES
 from tests.peers.random_systems import random_well

@@ -8,7 +8,7 @@ import pytest
 from engine.expressions.evaluation import evaluate
 from engine.expressions.graph import make_graph
 from engine.expressions.intervals import Interval, enclose
-from engine.potentials.formulas.formula_parser import parse_formula
+from engine.systems.formulas.formula_parser import parse_formula
 
 FORMULAS = [
     "x² − 3x y + y³ + 0.1exp(y)",

@@ -24,7 +24,7 @@ from engine import (
     find_divergent_start,
     integrate_orbit,
 )
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 from engine.jobs import manager as manager_module
 from engine.jobs import map_priority, scheduler
 from engine.jobs.job import Job, Queue

@@ -7,7 +7,7 @@ from concurrent.futures import CancelledError, ThreadPoolExecutor
 
 import pytest
 
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 from engine.jobs.orbit_semaphore import SMALL_JOB, OrbitSemaphore
 
 LARGE = 4 * SMALL_JOB

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, OriginFateMap, Plane, classify_orbits, compute_map, compute_origin_fates, start_states
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 from engine.maps.origin_fates import join_origin_fates
 
 # Channel numbers under y → −y; 0 is bounded.

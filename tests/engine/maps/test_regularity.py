@@ -23,8 +23,8 @@ from engine import (
     integrate_orbit,
     start_states,
 )
-from engine.dynamics.fates import is_chaotic
-from engine.execution import Execution
+from engine.foundations.execution import Execution
+from engine.propagation.fates import is_chaotic
 
 
 def map_and_regularity(name: str, energy: float, side: int = 9, t_max: float = 1e4) -> tuple[EscapeMap, RegularityMap]:

@@ -20,7 +20,7 @@ from engine import (
     compute_map,
     start_states,
 )
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
 # Has bounded, escaping, forbidden and outside pixels, and more pixels than the first frame.

@@ -22,7 +22,7 @@ from engine import (
     System,
     compute_map,
 )
-from engine.execution import SerialExecutor
+from engine.foundations.execution import SerialExecutor
 from engine.maps.result import PIXEL_ARRAYS
 from tests.forgetful_pool import ForgetfulPool
 

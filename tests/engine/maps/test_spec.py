@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from engine import CASES, Coordinate, MapSpec, Plane, Potential, Slice, Window, default_window
+from engine.foundations.validation import LONGEST_TIME
 from engine.maps.spec import LARGEST_SIDE
 from engine.slices.energies import Energy
-from engine.validation import LONGEST_TIME
 
 I = CASES["I"]  # noqa: E741  # named like the case
 WINDOW = (-1.0, 1.0, -1.0, 1.0)

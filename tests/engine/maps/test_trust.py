@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map, default_window
-from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.execution import Execution, SerialExecutor
 from engine.exits.exit_rows import exit_curves
+from engine.foundations.execution import Execution, SerialExecutor
+from engine.integrator.kernels.dense_output import advance_states
+from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.spec import FINEST_PIXEL
 from engine.maps.trust import (
     APART,
@@ -22,9 +23,8 @@ from engine.maps.trust import (
     compute_trust,
     shifted_starts,
 )
-from engine.potentials.compiled import kernels_of
-from engine.taylor.kernels.dense_output import advance_states
-from engine.taylor.source.recurrence import TOLERANCE
+from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.systems.compiled import kernels_of
 
 SAMPLE = 60
 ZOOM = Window(0.25739561116 - 5e-10, 0.25739561116 + 5e-10, 0.13079102903 - 5e-10, 0.13079102903 + 5e-10)

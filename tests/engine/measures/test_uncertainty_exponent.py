@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from engine import CASES
-from engine.dynamics.classification import classify_orbits
-from engine.execution import Execution, SerialExecutor
+from engine.foundations.execution import Execution, SerialExecutor
 from engine.maps.spec import MapSpec
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
-from engine.potentials.potential import Potential
+from engine.propagation.classification import classify_orbits
 from engine.slices.planes import Plane
 from engine.slices.window import Window
+from engine.systems.potential import Potential
 
 # x and y are uncoupled and y alone decides about an escape (upward if its energy exceeds 1/4), so all boundaries are smooth.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (0, 2, 0.5), (0, 4, -0.25)))

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from engine import CASES, ParameterAxis, Potential, System
-from engine.potentials.known_potentials import POTENTIALS
 from engine.slices import parameter_family
 from engine.slices.parameter_family import ManyExitsError, ParameterFamily, find_members
+from engine.systems.known_potentials import POTENTIALS
 
 EPSILON = ParameterAxis("epsilon", 0.5, 2.0, System("III"))
 # The saddles at x = 1/2 are exits everywhere; for b < 0 there is a third one at the left, at x = 1 / (3 b), V = 1 / (54 b²).

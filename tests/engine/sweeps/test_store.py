@@ -19,7 +19,7 @@ import pytest
 import xarray as xr
 
 from engine import CASES, Plane, SweepSpec, Window, compute_sweep
-from engine.execution import Execution, count_workers
+from engine.foundations.execution import Execution, count_workers
 from tests.forked import Finished, run
 
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.3, 0.5), (12, 10), t_max=300.0, measures=("maps", "shares"))

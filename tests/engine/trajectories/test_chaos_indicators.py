@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from engine import CASES, Orbit, Plane, Potential, classify_orbits, integrate_orbit, start_states
-from engine.execution import Execution
-from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS
-from engine.results.wording import format_time
+from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS
+from engine.foundations.execution import Execution
+from engine.foundations.wording import format_time
 from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, compute_birkhoff_digits, evaluate_indicators
 
 # Hénon & Heiles at or below E = 1/8, with their y as x: an orbit in an island and one in the chaotic sea.

@@ -21,7 +21,7 @@ from engine import (
     open_result,
     parse_formula,
 )
-from plots.orbit_curves import compute_orbit_curves
+from plots.pictures.orbit_curves import compute_orbit_curves
 
 HILL = POTENTIALS["Hill"]
 # On a distant retrograde orbit, high above the necks.

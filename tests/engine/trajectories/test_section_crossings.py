@@ -18,7 +18,7 @@ from engine import (
     sample_starts,
     start_states,
 )
-from engine.dynamics.section_points import find_section_points
+from engine.propagation.section_points import find_section_points
 
 POTENTIAL, ENERGY = CASES["III"], 0.24
 # An energy of each case at which some orbits escape and others are regular.

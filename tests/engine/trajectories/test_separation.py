@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, Plane, compute_separation, start_states
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 from engine.trajectories.separation import LONGEST_SEPARATION
 
 

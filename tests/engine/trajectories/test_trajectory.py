@@ -20,7 +20,7 @@ from engine import (
     sample_starts,
     start_states,
 )
-from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
+from engine.propagation.deviation_vectors import DEVIATION_VECTORS
 from tests.peers.dop853 import equations, variational_equations
 from tests.peers.exit_lines import exit_lines
 

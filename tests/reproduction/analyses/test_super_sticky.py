@@ -20,7 +20,7 @@ from engine import (
     compute_map,
     compute_regularity,
 )
-from engine.execution import Execution
+from engine.foundations.execution import Execution
 from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 
 LONG = 2e4

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageColor
 
 from engine import CASES, Fate, Plane, classify_orbits
-from plots.palette import PAPER
+from plots.pictures.palette import PAPER
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.all_figures import FIGURES
 from reproduction.figures.sticky_figures import LONGEST_DRAWN, find_shown

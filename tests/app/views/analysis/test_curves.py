@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.views.analysis.curves import CurvesView
 from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.sweeps.measures import CURVES
-from plots.sweep_panels import CURVE_PANELS
+from plots.pictures.sweep_panels import CURVE_PANELS
 
 
 def test_there_are_no_axes_before_the_first_curves() -> None:

@@ -21,7 +21,7 @@ from engine import (
     integrate_orbit,
 )
 from engine.jobs.map_jobs import BasinMeasures
-from plots.orbit_curves import compute_orbit_curves
+from plots.pictures.orbit_curves import compute_orbit_curves
 
 
 def test_rows_are_lines_and_cells_are_separated_by_tabs() -> None:

@@ -9,9 +9,9 @@ import pytest
 
 from app.views.maps.map_legend import Described, map_legend
 from engine import CASES, Fate, MapSpec, Plane, parse_formula
-from engine.potentials.outcomes import Centre
-from plots.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
-from plots.time_scale import TimeScale
+from engine.systems.outcomes import Centre
+from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
+from plots.pictures.time_scale import TimeScale
 from tests.disc import DISC
 
 PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]*)")

@@ -12,8 +12,8 @@ from bokeh.models import BasicTickFormatter, BoxSelectTool, BoxZoomTool, CustomJ
 from app.views.maps.map_plots import MAPS, PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from app.views.maps.map_toolbar import Drag
 from engine import CASES, MapSpec, Plane, compute_map
-from plots.image_columns import map_columns
-from plots.map_images import ON_DEMAND
+from plots.pictures.image_columns import map_columns
+from plots.pictures.map_images import ON_DEMAND
 from tests.app.map_actions import make_maps
 
 

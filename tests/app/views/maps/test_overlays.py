@@ -7,7 +7,7 @@ import pytest
 
 from app.views.maps.overlays import Overlays
 from engine import CASES, MapSpec, Plane, StableManifolds, Trust, TrustMap, compute_map, compute_trust, find_stable_manifolds
-from plots.palette import COLOUR_BLIND_SAFE, PAPER
+from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER
 
 
 @pytest.fixture(scope="module")

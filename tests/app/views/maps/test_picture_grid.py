@@ -8,7 +8,7 @@ from app.state.view_state import PICTURES
 from app.views.components.plots import FigurePane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED
 from app.views.maps.picture_grid import SHORT_TITLES, PictureGrid
-from plots.map_images import ON_DEMAND
+from plots.pictures.map_images import ON_DEMAND
 from tests.app.map_actions import make_maps
 
 ALWAYS = [*PICTURES_ALONE]

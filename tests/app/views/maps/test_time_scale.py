@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from app.views.maps.map_plots import PICTURES_ALONE
 from engine import CASES, MapSpec, Plane, compute_map
-from plots.image_columns import map_columns
-from plots.time_scale import TimeScale, fitted_scale
+from plots.pictures.image_columns import map_columns
+from plots.pictures.time_scale import TimeScale, fitted_scale
 from tests.app.map_actions import make_maps
 
 

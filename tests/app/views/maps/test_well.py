@@ -20,7 +20,7 @@ from engine import (
     integrate_orbit,
     start_states,
 )
-from plots.orbit_curves import OrbitCurves, compute_orbit_curves
+from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 
 def curves_of(case: str, energy: float, x: float = 0.1) -> OrbitCurves:

@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 
 from app.views.orbits.orbit_plots import OrbitPlots
 from engine import CASES, integrate_orbit
-from plots.orbit_curves import OrbitCurves, compute_orbit_curves, restrict_curves
+from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves, restrict_curves
 
 NAMES = ("sali", "exponent", "r2")
 

@@ -10,9 +10,9 @@ from app.state.view_state import ViewState
 from app.views.components.widgets import Switches
 from app.views.panels.controls import LOCK, ControlActions, Controls
 from engine import Plane, System
-from engine.potentials.review.potential_review import review_system
-from engine.potentials.system import TYPED
-from plots.time_scale import TimeScale
+from engine.systems.review.potential_review import review_system
+from engine.systems.system import TYPED
+from plots.pictures.time_scale import TimeScale
 from tests.app.browser_messages import send
 
 

@@ -14,7 +14,7 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from app.views.panels.downloads import Downloads
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, integrate_orbit
-from plots.orbit_curves import compute_orbit_curves
+from plots.pictures.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
 
 STATE = (0.1, 0.0, 0.05, 0.6)

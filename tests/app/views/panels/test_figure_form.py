@@ -24,9 +24,9 @@ from engine import (
     compute_sweep,
     integrate_orbit,
 )
-from plots.figure_style import FigureFormat, FigureStyle
-from plots.map_analyses import MapAnalyses
-from plots.orbit_curves import compute_orbit_curves
+from plots.pictures.map_analyses import MapAnalyses
+from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.printed.figure_style import FigureFormat, FigureStyle
 from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
 

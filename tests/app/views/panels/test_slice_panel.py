@@ -10,8 +10,8 @@ from app.browser.number_box import NumberBox
 from app.state.view_state import ViewState
 from app.views.panels.slice_panel import SlicePanel
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
-from engine.potentials.review.potential_review import review_system
-from engine.potentials.system import TYPED
+from engine.systems.review.potential_review import review_system
+from engine.systems.system import TYPED
 from tests.app.browser_messages import send
 
 C = Coordinate

@@ -1,0 +1,187 @@
+"""From the definition of a potential to its compiled kernels.
+
+Generated functions (`engine.integrator.source`) are shared by all potentials of the same structure, and the kernels that call
+them (`engine.integrator.kernels`) by all potentials. For each potential there are callables that pass its coefficients and the
+addresses of its generated functions.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import linecache
+import sys
+import threading
+from collections.abc import Hashable
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numba.core.dispatcher import Dispatcher
+
+from engine.expressions.graph import make_graph
+from engine.expressions.nodes import Expression
+from engine.integrator.jit.compiled_operations import compiled_operations
+from engine.integrator.jit.decorator import kernel
+from engine.integrator.jit.function_pointers import SIGNATURES
+from engine.integrator.jit.llvm_emitter import straight_line, table_reader
+from engine.integrator.kernels import fixed_step, interior, periodic_shooting, propagate, section_passages
+from engine.integrator.source.recurrence import Definition, GeneratedCode, generate_code
+from engine.integrator.source.series import REACH, Setting
+
+_KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, section_passages, interior)
+# Cached potentials; binding the coefficients of one more of a known structure takes milliseconds.
+_BOUND_POTENTIALS = 256
+_lock = threading.Lock()
+# The potentials whose functions are generated, see `_outline`.
+_generated: set[tuple[Hashable, Setting]] = set()
+
+
+def load_kernels(
+    definition: Definition,
+    channels: int,
+    reach: float = REACH,
+    *,
+    discs: int = 0,
+    ring: bool = False,
+    rotation: float = 0.0,
+) -> ModuleType:
+    """The kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
+
+    Parameters
+    ----------
+    definition
+        ((i, j, c), …) of V = Σ c x^i y^j, or an expression.
+    channels
+        Number of exit channels, 0 or more.
+    reach
+        Radius about the origin, above 0, that contains all orbits.
+    discs
+        Number of centres, at whose discs orbits end; 0 or more.
+    ring
+        Whether orbits end at a circle around the origin.
+    rotation
+        Ω of the frame, finite, dimensionless.
+
+    Returns
+    -------
+    A module with these functions, to be called without their leading addresses and without `coefficients`. At the first use by
+    any potential of the same structure the generated functions that a kernel needs are compiled, which takes some seconds, or
+    loaded from the cache.
+    """
+    with _lock:
+        return _load(definition, Setting(channels, discs, ring, rotation != 0.0), rotation, reach)
+
+
+def is_generated(definition: Definition, setting: Setting) -> bool:
+    """Whether functions were generated for a potential of the same form and setting; to generate them takes 0.3 s."""
+    return (_outline(definition), setting) in _generated
+
+
+class GeneratedKernel:
+    """A generated function, compiled at its first use for its types in `SIGNATURES` only.
+
+    Attributes
+    ----------
+    operations
+        Number of operations of its program; the time to compile it is proportional to this.
+    """
+
+    def __init__(self, dispatcher: Any, operations: int) -> None:
+        self.operations = operations
+        self._dispatcher = dispatcher
+        self._signature = SIGNATURES[dispatcher.__name__]
+        self._address: int | None = None
+        self._compiling = threading.Lock()
+
+    @property
+    def signatures(self) -> list[Any]:
+        """Argument types compiled so far."""
+        return list(self._dispatcher.signatures)
+
+    @property
+    def address(self) -> int:
+        """Address of the machine code, for calls from other kernels."""
+        if self._address is None:
+            with self._compiling:
+                if self._address is None:
+                    self._address = self._compile()
+        return self._address
+
+    def _compile(self) -> int:
+        self._dispatcher.compile(self._signature)
+        self._dispatcher.disable_compile()
+        compiled = self._dispatcher.get_compile_result(self._signature)
+        address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+        return address
+
+    @property
+    def py_func(self) -> Any:
+        """The Python function; compiled anew, it can be inspected, unlike code from the cache."""
+        return self._dispatcher.py_func
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call with arguments that can be cast to the types of the signature; TypeError for others."""
+        assert self.address
+        return self._dispatcher(*arguments)
+
+
+class _BoundKernel:
+    """A kernel together with the addresses and coefficients of one potential."""
+
+    def __init__(self, function: Any, needed: tuple[GeneratedKernel, ...], coefficients: np.ndarray) -> None:
+        self.function = function
+        self._needed = needed
+        self._coefficients = coefficients
+
+    @property
+    def signatures(self) -> list[Any]:
+        """Argument types compiled so far."""
+        return list(self.function.signatures)
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.function(*(generated.address for generated in self._needed), self._coefficients, *arguments)
+
+
+@functools.lru_cache(maxsize=_BOUND_POTENTIALS)
+def _load(definition: Definition, setting: Setting, rotation: float, reach: float) -> ModuleType:
+    code = generate_code(definition, reach=reach, **setting._asdict())
+    name, generated = _define_module(code)
+    _generated.add((_outline(definition), setting))
+    coefficients = code.tabulate(definition, rotation)
+    bound = ModuleType(name)
+    for each, function in generated.items():
+        setattr(bound, each, _BoundKernel(function, (), coefficients))
+    for module in _KERNEL_MODULES:
+        for each, function in vars(module).items():
+            if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
+                # The parameters for addresses are named after the generated functions.
+                names = inspect.signature(function.py_func).parameters
+                needed = tuple(generated[parameter] for parameter in names if parameter in generated)
+                if needed:
+                    setattr(bound, each, _BoundKernel(function, needed, coefficients))
+    return bound
+
+
+def _outline(definition: Definition) -> Hashable:
+    """Powers of x and y, or the graph of an expression."""
+    return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
+
+
+@functools.cache
+def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]]:
+    """Execute generated source as a module named after a hash of it; returns its name and its kernels, not yet compiled."""
+    compiled_operations.add(code.digest, code.operations)
+    name = f"kernels_{code.digest[:16]}"
+    module = ModuleType(name)
+    # Numba looks here for the module of a kernel that it loads from the cache.
+    sys.modules[name] = module
+    source = "\n\n".join(function.kernel for function in code.functions)
+    linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")
+    programs = {function.program.name: straight_line(function.program) for function in code.functions}
+    vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
+    exec(compile(source, f"<{name}>", "exec"), vars(module))
+    return name, {
+        function.name: GeneratedKernel(getattr(module, function.name), len(function.program.operations))
+        for function in code.functions
+    }

@@ -1,0 +1,128 @@
+"""Straight-line programs written directly as LLVM instructions: a tenth of a second where Numba's front end takes seconds.
+
+Numba infers a type for every variable of a function and lowers each operation with all of Python's semantics. A generated program
+is a few thousand operations on doubles and integers without branches, of which each is one or two instructions. The same
+instructions on vectors make the functions of `engine.integrator.jit.webassembly`.
+"""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba import types
+from numba.core.typing.templates import Signature
+from numba.extending import intrinsic
+
+from engine.integrator.source.straight_line import TABLE, StraightLine
+
+_FLOAT, _INT = ir.DoubleType(), ir.IntType(64)
+_NUMBA_TYPES = {_FLOAT: types.float64, _INT: types.int64}
+# As in `engine.integrator.jit.decorator`: a·b + c may become one multiply-add, nothing else.
+_FLAGS = ("contract",)
+_FLOAT_OPERATIONS = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
+_INTRINSICS = {"abs": "llvm.fabs", "sqrt": "llvm.sqrt"}
+_INT_OPERATIONS = {"+": "add", "-": "sub", "*": "mul", ">>": "ashr"}
+
+
+def straight_line(program: StraightLine) -> Any:
+    """The program as a function for use in kernels.
+
+    It takes the program's parameters in order: doubles, 64-bit integers, and the table as returned by `table_reader`. It returns
+    a tuple of doubles and integers.
+    """
+
+    @functools.cache
+    def result_type(given: tuple[Any, ...]) -> Any:
+        """Found by writing the program once into a module that is thrown away."""
+        block = ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "trial").append_basic_block()
+        results = write_program(program, ir.IRBuilder(block), [ir.Constant(_llvm_type(each), None) for each in given])
+        return types.Tuple([_NUMBA_TYPES[result.type] for result in results])  # type: ignore[no-untyped-call]
+
+    @intrinsic
+    def call(_: Any, *arguments: Any) -> Any:
+        given = tuple(map(types.unliteral, arguments))
+
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            passed = [builder.extract_value(values[0], i) for i in range(len(given))]
+            return context.make_tuple(builder, signature.return_type, write_program(program, builder, passed))
+
+        return Signature(result_type(given), (types.StarArgTuple(given),), None), generate  # type: ignore[no-untyped-call]
+
+    return call
+
+
+def table_reader(size: int) -> Any:
+    """A function for use in kernels that turns an array of `size` doubles into the table of a straight-line program."""
+
+    @intrinsic
+    def read(_: Any, array: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            data = context.make_array(array)(context, builder, values[0]).data
+            entries = [builder.load(builder.gep(data, [ir.Constant(_INT, i)])) for i in range(size)]
+            return context.make_tuple(builder, signature.return_type, entries)
+
+        return Signature(types.UniTuple(types.float64, size), (array,), None), generate  # type: ignore[no-untyped-call]
+
+    return read
+
+
+def _llvm_type(given: Any) -> Any:
+    if isinstance(given, types.UniTuple):
+        return ir.ArrayType(_FLOAT, len(given))
+    return _INT if given == types.int64 else _FLOAT
+
+
+def write_program(program: StraightLine, builder: ir.IRBuilder, passed: list[Any], lanes: int = 1) -> list[Any]:
+    """Append the instructions of a program; returns its results.
+
+    passed: the program's parameters; the table may be any sequence of values. With two or more `lanes` all values are vectors.
+    """
+    parameters = dict(zip(program.parameters, passed, strict=True))
+    table = parameters[TABLE]
+    floats, ints = (_FLOAT, _INT) if lanes == 1 else (ir.VectorType(_FLOAT, lanes), ir.VectorType(_INT, lanes))
+    values: list[Any] = []
+    for symbol, operands in program.operations:
+        match symbol, operands:
+            case "input", (name,):
+                values.append(parameters[name])
+            case "constant", (number,):
+                values.append(_constant(ints if isinstance(number, int) else floats, number))
+            case "entry", (index,):
+                values.append(table[index] if isinstance(table, list) else builder.extract_value(table, index))
+            case _:
+                values.append(_operate(symbol, builder, floats, ints, [values[index] for index in operands]))
+    return [values[index] for index in program.results]
+
+
+def _constant(kind: Any, number: float) -> Any:
+    return ir.Constant(kind, [number] * kind.count if isinstance(kind, ir.VectorType) else number)
+
+
+def _find_intrinsic(name: str, module: ir.Module, floats: Any) -> Any:
+    """An intrinsic function of doubles or of vectors, which `declare_intrinsic` does not know; one instruction, never a call."""
+    if not isinstance(floats, ir.VectorType):
+        return module.declare_intrinsic(name, [floats])
+    name = f"{name}.v{floats.count}f64"
+    return module.globals.get(name) or ir.Function(module, ir.FunctionType(floats, [floats]), name)
+
+
+def _operate(symbol: str, builder: ir.IRBuilder, floats: Any, ints: Any, operands: list[Any]) -> Any:
+    is_float = operands[0].type == floats
+    match symbol:
+        case "abs" | "sqrt":
+            return builder.call(_find_intrinsic(_INTRINSICS[symbol], builder.module, floats), operands)
+        case "bits_of":
+            return builder.bitcast(*operands, ints)
+        case "double_of":
+            return builder.bitcast(*operands, floats)
+        case "where":
+            return builder.select(*operands)
+        case "&":
+            return builder.and_(*operands)
+        case "<" | "<=" | ">" | ">=" | "==":
+            return builder.fcmp_ordered(symbol, *operands, flags=_FLAGS) if is_float else builder.icmp_signed(symbol, *operands)
+        case _ if is_float:
+            return getattr(builder, _FLOAT_OPERATIONS[symbol])(*operands, flags=_FLAGS)
+    return getattr(builder, _INT_OPERATIONS[symbol])(*operands)

@@ -1,0 +1,197 @@
+"""Single orbits: the path from dense output, and deviation vectors from the linearised recurrence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from types import ModuleType
+
+import numpy as np
+
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.integrator.jit.decorator import kernel
+from engine.integrator.kernels.events import BOUNDED, CURVE_COLUMNS, NOT_COMPUTED, append_crossings
+from engine.integrator.kernels.propagate import VECTOR, Exits, Orbits
+from engine.integrator.source.recurrence import TOLERANCE
+from engine.integrator.source.series import ORDER
+
+_CHUNK = 8192
+
+
+def trace_orbit(
+    kernels: ModuleType,
+    exits: Exits,
+    orbits: Orbits,
+    t_max: float,
+    execution: Execution = DEFAULT_EXECUTION,
+    tolerance: float = TOLERANCE,
+) -> Iterator[tuple[np.ndarray, float]]:
+    """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of limited length.
+
+    orbits: arrays of length 1, changed in place. Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time
+    at which the piece ends: before `t_max` also for a bounded orbit that rounding carries over the saddle of a closed channel, on
+    which it rests. Raises CancelledError when cancelled.
+    """
+    while orbits.pending[0]:
+        execution.raise_if_cancelled()
+        steps = np.empty((_CHUNK, 5))
+        count = kernels.propagate(np.zeros(1, np.int64), t_max, True, tolerance, VECTOR * _CHUNK, 0, exits, orbits, steps)
+        goes_on = orbits.fate[0] == BOUNDED and orbits.t[0] == steps[count - 1, 4]
+        yield steps[:count], t_max if goes_on else float(orbits.t[0])
+
+
+def trace_pieces(
+    kernels: ModuleType,
+    state: np.ndarray,
+    t_end: float,
+    channels: int,
+    execution: Execution = DEFAULT_EXECUTION,
+    tolerance: float = TOLERANCE,
+) -> Iterator[tuple[np.ndarray, float]]:
+    """As `trace_orbit` from t = 0 to `t_end`, exits ignored."""
+    # No step is past these gates.
+    gates = np.full((channels, 3), np.inf)
+    gates[:, :2] = 0.0
+    exits = Exits(gates, np.zeros((1, channels, CURVE_COLUMNS)), np.zeros(1, np.int64))
+    fate = np.full(1, NOT_COMPUTED, np.int8)
+    crossings, last_crossings = np.zeros((2, 1), np.int64)
+    orbits = Orbits(state[None].copy(), np.zeros(1), crossings, last_crossings, fate, np.ones(1, np.uint8), np.zeros((1, 2)))
+    return trace_orbit(kernels, exits, orbits, t_end, execution, tolerance)
+
+
+def trace_steps(
+    kernels: ModuleType,
+    state: np.ndarray,
+    t_end: float,
+    channels: int,
+    execution: Execution = DEFAULT_EXECUTION,
+    tolerance: float = TOLERANCE,
+) -> np.ndarray:
+    """(m, 5) x, y, px, py, t at the start of every step up to `t_end`, exits ignored."""
+    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, execution, tolerance)])
+
+
+def sample_path(
+    kernels: ModuleType, steps: np.ndarray, times: np.ndarray, execution: Execution = DEFAULT_EXECUTION
+) -> np.ndarray:
+    """(4, n) x, y, px, py at increasing `times`, from the series of the steps (m, 5) that contain them."""
+    row = np.searchsorted(steps[:, 4], times, side="right") - 1
+    path = np.empty((4, times.size))
+    for begin in range(0, len(steps), _CHUNK):
+        execution.raise_if_cancelled()
+        part = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
+        jets = np.empty((2, ORDER + 1, part.shape[1]))
+        kernels.jets(part.shape[1], *part[:4], *jets)
+        inside = slice(*np.searchsorted(row, [begin, begin + part.shape[1]]))
+        local = row[inside] - begin
+        path[:, inside] = _evaluate(jets, local, times[inside] - part[4, local])
+    return path
+
+
+def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarray) -> np.ndarray:
+    """(n, 4) states at `durations` (n,) after `states` (n, 4), from one series each; at most one step of the integrator later."""
+    jets = np.empty((2, ORDER + 1, len(states)))
+    kernels.jets(len(states), *(np.ascontiguousarray(column) for column in states.T), *jets)
+    later: np.ndarray = _evaluate(jets, np.arange(len(states)), durations).T
+    return later
+
+
+@kernel
+def _evaluate(jets, row, tau):
+    """(4, n) x, y, px, py at times tau (n,) after the start of the steps `row` (n,)."""
+    order = jets.shape[1] - 1
+    out = np.empty((4, row.size))
+    for n in range(row.size):
+        for axis in range(2):
+            value = jets[axis, order, row[n]]
+            slope = 0.0
+            for k in range(order - 1, -1, -1):
+                slope = slope * tau[n] + value
+                value = value * tau[n] + jets[axis, k, row[n]]
+            out[axis, n] = value
+            out[axis + 2, n] = slope
+    return out
+
+
+def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """(m, 2) x and px of the upward crossings of y = 0 between the samples of a path (4, n), at most one step apart."""
+    y, py = path[1], path[3]
+    rises = (y[:-1] < 0.0) & (y[1:] >= 0.0)
+    turns = (y[:-1] * y[1:] > 0.0) & (y[:-1] * py[:-1] < 0.0) & (y[1:] * py[1:] > 0.0)
+    before = np.flatnonzero(rises | turns)
+    jets = np.empty((2, ORDER + 1, before.size))
+    kernels.jets(before.size, *(np.ascontiguousarray(row[before]) for row in path), *jets)
+    points: np.ndarray = _crossings(jets, times[before + 1] - times[before])
+    return points
+
+
+@kernel
+def _crossings(jets, durations):
+    """(m, 2) x and px of the upward crossings within `durations` (n,) of the starts of n series."""
+    x_jet, y_jet = jets[0], jets[1]
+    # Two in one interval are rare, three do not occur.
+    points = np.empty((1, 2 * durations.size, 3))
+    found = np.zeros(1, np.int64)
+    for i in range(durations.size):
+        append_crossings(x_jet, y_jet, i, 1.0, 0.0, durations[i], points, found, 0)
+    return points[0, : found[0], :2].copy()
+
+
+def sample_deviations(
+    kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, execution: Execution = DEFAULT_EXECUTION
+) -> tuple[np.ndarray, np.ndarray]:
+    """SALI (n,) and the growth ln(|w1(t)|/|w1(0)|) (n,) of the first of two deviation vectors, at `times` along a path (4, n).
+
+    vectors (2, 4): δx, δy, δpx, δpy at the start of the path. The transition matrices of all intervals are computed together,
+    then applied in turn, with the vectors normalised after each. `times` must be at most one step of the integrator apart.
+    """
+    sali = np.empty(times.size)
+    stretch = np.ones(times.size)
+    w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
+    sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
+    for begin in range(0, times.size - 1, _CHUNK):
+        execution.raise_if_cancelled()
+        end = min(begin + _CHUNK, times.size - 1)
+        matrices = transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
+        _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
+    return sali, 0.5 * np.cumsum(np.log(stretch))
+
+
+def transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
+    """(4, 4, n): row, column and interval of the linearised flow over each interval."""
+    n = durations.size
+    state = [np.ascontiguousarray(row) for row in path]
+    matrices = np.zeros((4, 4, n))
+    for column in range(4):
+        w = np.zeros((4, n))
+        w[column] = 1.0
+        kernels.tangent(n, durations, *state, *w)
+        matrices[:, column] = w
+    return matrices
+
+
+@kernel
+def _apply(matrices, w, sali, stretch):
+    """Apply the matrices in turn to w (2, 4), normalised after each.
+
+    sali (n,): SALI after each matrix; stretch (n,): squared growth of the first vector by each matrix.
+    """
+    moved = np.empty((2, 4))
+    for n in range(sali.size):
+        for v in range(2):
+            square = 0.0
+            for row in range(4):
+                total = 0.0
+                for column in range(4):
+                    total += matrices[row, column, n] * w[v, column]
+                moved[v, row] = total
+                square += total * total
+            for row in range(4):
+                w[v, row] = moved[v, row] / np.sqrt(square)
+            if v == 0:
+                stretch[n] = square
+        difference = 0.0
+        sum_ = 0.0
+        for row in range(4):
+            difference += (w[0, row] - w[1, row]) ** 2
+            sum_ += (w[0, row] + w[1, row]) ** 2
+        sali[n] = np.sqrt(min(difference, sum_))

@@ -1,0 +1,290 @@
+"""Events within one step, located in its dense output: exits and crossings of the section y = 0.
+
+An exit is where an orbit ends: the curve or line across a channel, the edge of the disc around a centre, or the escape circle.
+It is a row of numbers, the first of which are the same for all shapes. A disc has its centre as origin and its radius as half
+width, the escape circle its radius as half width.
+
+In a well that does not rotate an exit is the path of a Lyapunov orbit. In coordinates u outward and q across (90°
+counterclockwise from u), from the saddle along its unstable direction or from the chord of the orbit along its normal, it is
+the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond its ends, which lie on the zero-velocity
+curve, it is continued by straight lines through the forbidden region, up to |s| = reach. A closed channel is a short straight
+line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame an exit is a line u = c + a q²,
+parallel to the ridge of V at the saddle.
+
+An orbit that has crossed the path of a Lyapunov orbit does not return. All other exits can be passed and left again within a
+step, which is examined as a whole.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.integrator.jit.decorator import subroutine
+
+# Columns of an exit.
+ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, SHAPE = range(8)
+MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
+
+# Values of the column SHAPE; orbits cannot return from a CURVE.
+CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
+
+# Fates of an orbit other than the number, 1 or more, of the channel through which it escaped.
+BOUNDED, NOT_COMPUTED, FAILED = 0, -3, -4
+
+# Degree of the polynomial f, a sum of Chebyshev polynomials.
+CURVE_DEGREE = 40
+CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
+
+# Parts of a step that are examined in turn; within one, ẏ is taken to change its sign at most once.
+_PARTS = 8
+_ROOT_ITERATIONS = 80
+_ROOT_ACCURACY = 1e-15
+
+
+@subroutine
+def position_across(x, y, curve):
+    """s of a point, −1 and 1 at the ends of the exit."""
+    q = curve[OUTWARD_X] * (y - curve[ORIGIN_Y]) - curve[OUTWARD_Y] * (x - curve[ORIGIN_X])
+    return (q - curve[MIDDLE]) / curve[HALF_WIDTH]
+
+
+@subroutine
+def exit_distance(x, y, curve):
+    """Distance of (x, y) from an exit, along the channel or the radius: positive beyond, negative inside."""
+    if curve[SHAPE] >= DISC:
+        radius = np.sqrt((x - curve[ORIGIN_X]) ** 2 + (y - curve[ORIGIN_Y]) ** 2)
+        return curve[HALF_WIDTH] - radius if curve[SHAPE] == DISC else radius - curve[HALF_WIDTH]
+    u = curve[OUTWARD_X] * (x - curve[ORIGIN_X]) + curve[OUTWARD_Y] * (y - curve[ORIGIN_Y])
+    s = position_across(x, y, curve)
+    beyond = 0.0
+    if s < -1.0:
+        beyond = curve[SLOPE_LOW] * (s + 1.0)
+        s = -1.0
+    elif s > 1.0:
+        beyond = curve[SLOPE_HIGH] * (s - 1.0)
+        s = 1.0
+    # Clenshaw's recurrence.
+    f = 0.0
+    last = 0.0
+    for k in range(CURVE_DEGREE, 0, -1):
+        f, last = 2.0 * s * f - last + curve[COEFFICIENTS + k], f
+    return u - (s * f - last + curve[COEFFICIENTS] + beyond)
+
+
+@subroutine
+def crossed_exit(x0, y0, x1, y1, curves, gates):
+    """The number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1), 0 for none."""
+    for k in range(curves.shape[0]):
+        curve = curves[k]
+        if curve[SHAPE] < DISC and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
+            continue
+        after = exit_distance(x1, y1, curve)
+        if not after > 0.0:
+            continue
+        before = exit_distance(x0, y0, curve)
+        if before > 0.0:
+            continue
+        if curve[SHAPE] >= DISC:
+            return k + 1
+        s0 = position_across(x0, y0, curve)
+        s1 = position_across(x1, y1, curve)
+        if abs(s0 + (s1 - s0) * before / (before - after)) <= curve[REACH]:
+            return k + 1
+    return 0
+
+
+@subroutine
+def series_value(jet, i, tau):
+    """A series at time tau after the start of its step."""
+    value = jet[jet.shape[0] - 1, i]
+    for k in range(jet.shape[0] - 2, -1, -1):
+        value = value * tau + jet[k, i]
+    return value
+
+
+@subroutine
+def series_slope(jet, i, tau):
+    """The time derivative of a series at time tau after the start of its step."""
+    order = jet.shape[0] - 1
+    slope = order * jet[order, i]
+    for k in range(order - 1, 0, -1):
+        slope = slope * tau + k * jet[k, i]
+    return slope
+
+
+@subroutine
+def find_extremum(jet, i, low, high):
+    """The time between `low` and `high` at which the slope of a series changes its sign, by bisection."""
+    rising = series_slope(jet, i, low) > 0.0
+    for _ in range(_ROOT_ITERATIONS):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if (series_slope(jet, i, middle) > 0.0) == rising:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@subroutine
+def find_zero(jet, i, low, high):
+    """The zero of a series between two times at which its signs differ: Newton's method, safeguarded by bisection."""
+    positive = series_value(jet, i, low) > 0.0
+    tau = 0.5 * (low + high)
+    for _ in range(_ROOT_ITERATIONS):
+        value = series_value(jet, i, tau)
+        if (value > 0.0) == positive:
+            low = tau
+        else:
+            high = tau
+        slope = series_slope(jet, i, tau)
+        newton = tau - value / slope if slope != 0.0 else low
+        if abs(newton - tau) < _ROOT_ACCURACY or high - low < _ROOT_ACCURACY:
+            break
+        tau = newton if low < newton < high else 0.5 * (low + high)
+    return tau
+
+
+@subroutine
+def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slope_high):
+    """Times before and after a crossing of the section in a part of a step, pairs of zeros included; equal times: none.
+
+    jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for those from y > 0 to y ≤ 0; low, high: the ends of the
+    part; y_…, slope_…: the values there of y and ẏ times `direction`.
+    """
+    # An orbit that starts on the section against the direction is before it from then on.
+    before = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
+    if before and y_high >= 0.0:
+        return low, high
+    if y_low * y_high > 0.0 and y_low * slope_low < 0.0 and y_high * slope_high > 0.0:
+        turning = find_extremum(jet, i, low, high)
+        turning_before = direction * series_value(jet, i, turning) < 0.0
+        if turning_before and y_low > 0.0:
+            return turning, high
+        if not turning_before and y_low < 0.0:
+            return low, turning
+    return low, low
+
+
+@subroutine
+def count_upward_crossings(y_jet, i, duration):
+    """Number of upward crossings of y = 0 within `duration` of the start of a step."""
+    count = 0
+    low = 0.0
+    y_low, slope_low = series_value(y_jet, i, low), series_slope(y_jet, i, low)
+    for part in range(1, _PARTS + 1):
+        high = duration * part / _PARTS
+        y_high, slope_high = series_value(y_jet, i, high), series_slope(y_jet, i, high)
+        begin, end = crossing_between(y_jet, i, 1.0, low, y_low, slope_low, high, y_high, slope_high)
+        if end > begin:
+            count += 1
+        low, y_low, slope_low = high, y_high, slope_high
+    return count
+
+
+@subroutine
+def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, found, orbit):
+    """Append x, px and the time of each crossing of y = 0 within `duration` of the start of a step.
+
+    direction: as in `crossing_between`; begin: time at the start of the step; crossings (n, m, 3), of which those of `orbit` are
+    filled from index found[orbit] on, until there are m.
+    """
+    low = 0.0
+    y_low, slope_low = direction * series_value(y_jet, i, low), direction * series_slope(y_jet, i, low)
+    for part in range(1, _PARTS + 1):
+        high = duration * part / _PARTS
+        y_high, slope_high = direction * series_value(y_jet, i, high), direction * series_slope(y_jet, i, high)
+        before, after = crossing_between(y_jet, i, direction, low, y_low, slope_low, high, y_high, slope_high)
+        if after > before and found[orbit] < crossings.shape[1]:
+            tau = find_zero(y_jet, i, before, after)
+            crossings[orbit, found[orbit], 0] = series_value(x_jet, i, tau)
+            crossings[orbit, found[orbit], 1] = series_slope(x_jet, i, tau)
+            crossings[orbit, found[orbit], 2] = begin + tau
+            found[orbit] += 1
+        low, y_low, slope_low = high, y_high, slope_high
+
+
+@subroutine
+def _exit_rate(x_jet, y_jet, i, tau, curve):
+    """What has the sign of the time derivative of the distance from a line, a disc or the escape circle."""
+    vx = series_slope(x_jet, i, tau)
+    vy = series_slope(y_jet, i, tau)
+    if curve[SHAPE] == LINE:
+        s = min(max(position_across(series_value(x_jet, i, tau), series_value(y_jet, i, tau), curve), -1.0), 1.0)
+        slope = (curve[COEFFICIENTS + 1] + 4.0 * s * curve[COEFFICIENTS + 2]) / curve[HALF_WIDTH]
+        along = curve[OUTWARD_X] * vx + curve[OUTWARD_Y] * vy
+        return along - slope * (curve[OUTWARD_X] * vy - curve[OUTWARD_Y] * vx)
+    rate = (series_value(x_jet, i, tau) - curve[ORIGIN_X]) * vx + (series_value(y_jet, i, tau) - curve[ORIGIN_Y]) * vy
+    return -rate if curve[SHAPE] == DISC else rate
+
+
+@subroutine
+def _find_excursion(x_jet, y_jet, i, duration, curve):
+    """When, within `duration` of the start of a step, an orbit is furthest beyond an exit to which it returns; −1 for never."""
+    low = 0.0
+    rate_low = _exit_rate(x_jet, y_jet, i, low, curve)
+    for part in range(1, _PARTS + 1):
+        high = duration * part / _PARTS
+        rate_high = _exit_rate(x_jet, y_jet, i, high, curve)
+        if rate_low > 0.0 and rate_high <= 0.0:
+            before, after = low, high
+            for _ in range(_ROOT_ITERATIONS):
+                middle = 0.5 * (before + after)
+                if middle <= before or middle >= after:
+                    break
+                if _exit_rate(x_jet, y_jet, i, middle, curve) > 0.0:
+                    before = middle
+                else:
+                    after = middle
+            if _is_beyond(series_value(x_jet, i, before), series_value(y_jet, i, before), curve):
+                return before
+        low, rate_low = high, rate_high
+    return -1.0
+
+
+@subroutine
+def _is_beyond(x, y, curve):
+    """Whether a point is beyond an exit, and within the reach of a line."""
+    return exit_distance(x, y, curve) > 0.0 and (curve[SHAPE] >= DISC or abs(position_across(x, y, curve)) <= curve[REACH])
+
+
+@subroutine
+def passed_exit(x_jet, y_jet, i, duration, curves):
+    """The number of the exit that an orbit passes and leaves again within `duration` of the start of a step, 0 for none."""
+    for k in range(curves.shape[0]):
+        if curves[k, SHAPE] >= LINE and _find_excursion(x_jet, y_jet, i, duration, curves[k]) >= 0.0:
+            return k + 1
+    return 0
+
+
+@subroutine
+def find_exit_time(x_jet, y_jet, i, duration, curve):
+    """Time from the start of a step to the crossing of an exit in it, by the Illinois method."""
+    low, high = 0.0, duration
+    if curve[SHAPE] >= LINE:
+        excursion = _find_excursion(x_jet, y_jet, i, duration, curve)
+        high = excursion if excursion >= 0.0 else duration
+    at_low = exit_distance(series_value(x_jet, i, low), series_value(y_jet, i, low), curve)
+    at_high = exit_distance(series_value(x_jet, i, high), series_value(y_jet, i, high), curve)
+    if at_low >= 0.0:
+        return low
+    side = 0
+    for _ in range(_ROOT_ITERATIONS):
+        tau = (low * at_high - high * at_low) / (at_high - at_low)
+        if not (low < tau < high) or high - low < _ROOT_ACCURACY:
+            break
+        value = exit_distance(series_value(x_jet, i, tau), series_value(y_jet, i, tau), curve)
+        if abs(value) < _ROOT_ACCURACY:
+            return tau
+        if value > 0.0:
+            high, at_high = tau, value
+            if side > 0:
+                at_low *= 0.5
+            side = 1
+        else:
+            low, at_low = tau, value
+            if side < 0:
+                at_high *= 0.5
+            side = -1
+    return high

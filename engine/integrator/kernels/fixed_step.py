@@ -1,0 +1,163 @@
+"""Many orbits at one fixed step, exits ignored: weighted Birkhoff averages, section points and SALI.
+
+Compiled once for all potentials, as `engine.integrator.kernels.propagate`. All lanes have the same time, so none takes a new
+orbit; an orbit that escapes goes to infinity or NaN.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel, subroutine
+from engine.integrator.jit.function_pointers import call_fixed_step, call_jets, call_tangent
+from engine.integrator.kernels.events import append_crossings
+from engine.integrator.source.recurrence import LANES
+from engine.integrator.source.series import ORDER
+
+_STEPS_TO_RENORMALISATION = 8
+_STEPS_BETWEEN_CHECKS = 16
+
+
+@kernel
+def birkhoff_averages(fixed_step, coefficients, h, weights, state, averages):
+    """Weighted averages of x² and y² over two consecutive windows, and over a third one that overlaps half of each.
+
+    weights (m,): of the samples of a window, h apart; state (4, lanes), changed in place; averages (3, 2, lanes), written.
+    """
+    lanes = state.shape[1]
+    current = _load_lanes(state)
+    sums = np.zeros((3, 2, LANES))
+    m = weights.shape[0]
+    for sample in range(2 * m):
+        call_fixed_step(fixed_step, coefficients, lanes, h, weights[sample % m], current, sums[sample // m])
+        if m // 2 <= sample < m // 2 + m:
+            weight = weights[sample - m // 2]
+            for i in range(lanes):
+                sums[2, 0, i] += weight * current[0, i] * current[0, i]
+                sums[2, 1, i] += weight * current[1, i] * current[1, i]
+    _store_lanes(current, state)
+    for window in range(3):
+        for c in range(2):
+            for i in range(lanes):
+                averages[window, c, i] = sums[window, c, i]
+
+
+@subroutine
+def _load_lanes(state):
+    """A (4, LANES) array with the states (4, lanes) in its first columns."""
+    current = np.zeros((4, LANES))
+    for c in range(4):
+        for i in range(state.shape[1]):
+            current[c, i] = state[c, i]
+    return current
+
+
+@subroutine
+def _store_lanes(current, state):
+    """Copy the first columns of `current` (4, LANES) to `state` (4, lanes)."""
+    for c in range(4):
+        for i in range(state.shape[1]):
+            state[c, i] = current[c, i]
+
+
+@kernel
+def find_section_points(fixed_step, jets, coefficients, h, steps, state, points, found):
+    """The next points (x, px) at which orbits cross y = 0 upward, until each has m points or `steps` are taken.
+
+    state (4, lanes), changed in place; points (lanes, m, 3), filled from index found (lanes,) on: x, px and
+    the time since the start of the step.
+    """
+    lanes = state.shape[1]
+    current = _load_lanes(state)
+    before = np.zeros((4, lanes))
+    ignored_sums = np.zeros((2, LANES))
+    # Steps with a crossing are collected, so that their series are computed together.
+    start = np.zeros((4, lanes))
+    step_lane = np.zeros(lanes, np.int64)
+    buffered = 0
+    for taken in range(steps):
+        for c in range(4):
+            for i in range(lanes):
+                before[c, i] = current[c, i]
+        call_fixed_step(fixed_step, coefficients, lanes, h, 0.0, current, ignored_sums)
+        for i in range(lanes):
+            if not (before[1, i] < 0.0 and current[1, i] >= 0.0 and found[i] < points.shape[1]):
+                continue
+            for c in range(4):
+                start[c, buffered] = before[c, i]
+            step_lane[buffered] = i
+            buffered += 1
+            if buffered == lanes:
+                _locate_crossings(jets, coefficients, h, buffered, start, step_lane, points, found)
+                buffered = 0
+        if taken % _STEPS_BETWEEN_CHECKS == 0 and _count_below(found, points.shape[1]) == 0:
+            break
+    if buffered > 0:
+        _locate_crossings(jets, coefficients, h, buffered, start, step_lane, points, found)
+    _store_lanes(current, state)
+
+
+@subroutine
+def _count_below(found, most):
+    count = 0
+    for each in found:
+        if each < most:
+            count += 1
+    return count
+
+
+@subroutine
+def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found):
+    """Append the upward crossing in each of the first `n` steps of the buffer to the points of the step's lane."""
+    x_jet = np.empty((ORDER + 1, start.shape[1]))
+    y_jet = np.empty((ORDER + 1, start.shape[1]))
+    call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    for i in range(n):
+        append_crossings(x_jet, y_jet, i, 1.0, 0.0, h, points, found, step_lane[i])
+
+
+@kernel
+def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, second, sali):
+    """The smallest SALI of orbits over `steps`: min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, eq. 9 of Zotos (2014).
+
+    state, first, second (4, lanes): orbits and their two deviation vectors, changed in place; sali (lanes,): lowered in place,
+    NaN for an orbit that has gone to infinity.
+    """
+    lanes = state.shape[1]
+    duration = np.zeros(lanes)
+    for i in range(lanes):
+        duration[i] = h
+    current = _load_lanes(state)
+    ignored_sums = np.zeros((2, LANES))
+    for taken in range(1, steps + 1):
+        for w in (first, second):
+            call_tangent(
+                tangent, coefficients, lanes, duration, current[0], current[1], current[2], current[3], w[0], w[1], w[2], w[3]
+            )
+        call_fixed_step(fixed_step, coefficients, lanes, h, 0.0, current, ignored_sums)
+        if taken % _STEPS_TO_RENORMALISATION == 0 or taken == steps:
+            _normalise(first)
+            _normalise(second)
+            _lower_sali(first, second, sali)
+    _store_lanes(current, state)
+
+
+@subroutine
+def _normalise(w):
+    for i in range(w.shape[1]):
+        norm = math.sqrt(w[0, i] ** 2 + w[1, i] ** 2 + w[2, i] ** 2 + w[3, i] ** 2)
+        for c in range(4):
+            w[c, i] /= norm
+
+
+@subroutine
+def _lower_sali(first, second, sali):
+    for i in range(sali.shape[0]):
+        difference = 0.0
+        sum_ = 0.0
+        for c in range(4):
+            difference += (first[c, i] - second[c, i]) ** 2
+            sum_ += (first[c, i] + second[c, i]) ** 2
+        sali[i] = min(sali[i], math.sqrt(min(difference, sum_)))

@@ -1,0 +1,208 @@
+"""Which points of the Hill region lie inside the exits: connected to the origin below the energy without crossing an exit.
+
+A path leads downhill from the point. As soon as the straight line to the origin is below the energy as well, it is complete,
+and the point is inside if the path crosses the exits an even number of times. A path to another minimum, or to a value of V below
+that at the origin, ends outside, and the point is inside if the path crosses the exits an odd number of times.
+
+The two kernels differ in how they evaluate V: polynomials from their terms, with a proof that V on a line is below a level;
+expressions by a generated function, with V on a line between neighbouring points replaced by the cubic of its values and slopes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel, subroutine
+from engine.integrator.jit.function_pointers import call_potential_slopes
+from engine.integrator.kernels.events import BEARING_X, BEARING_Y, CLOSED, SHAPE, exit_distance, position_across
+
+# Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
+_LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
+_MOST_STEPS = 10_000
+# Far from the exits steps grow with the distance, by this factor.
+_FAR_SHARE = 0.25
+# The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
+_COS, _SIN = np.cos(0.1), np.sin(0.1)
+# Smallest decrease of V in a step, relative to that along the gradient.
+_DECREASE = 0.25
+# Lines to the origin stay below the energy by this, so that they do not pass over a saddle of the same energy.
+_ENERGY_MARGIN = 1e-12
+# Largest slope at a critical point.
+_NO_SLOPE = 1e-9
+# Parts of a line to the origin.
+_PIECES = 32
+# Points at the edge of a disc at the origin.
+_EDGE_POINTS = 64
+
+
+@subroutine
+def _polynomial_slopes(polynomial, x, y):
+    """V, V_x and V_y; row 2 of `work` becomes the series of V(t x, t y) in t."""
+    powers, coefficients, _, work = polynomial
+    x_power = 1.0
+    y_power = 1.0
+    for k in range(work.shape[1]):
+        work[0, k] = x_power
+        work[1, k] = y_power
+        work[2, k] = 0.0
+        x_power *= x
+        y_power *= y
+    value = 0.0
+    slope_x = 0.0
+    slope_y = 0.0
+    for m in range(coefficients.shape[0]):
+        i = powers[m, 0]
+        j = powers[m, 1]
+        term = coefficients[m] * work[0, i] * work[1, j]
+        value += term
+        work[2, i + j] += term
+        if i > 0:
+            slope_x += coefficients[m] * i * work[0, i - 1] * work[1, j]
+        if j > 0:
+            slope_y += coefficients[m] * j * work[0, i] * work[1, j - 1]
+    return value, slope_x, slope_y
+
+
+@subroutine
+def _polynomial_is_below(polynomial, x, y, level):
+    """Whether all Bernstein coefficients of the series on [0, 1] at the last point expanded, (x, y), are at most a level."""
+    _, _, bernstein, work = polynomial
+    for i in range(bernstein.shape[0]):
+        b = 0.0
+        for k in range(i + 1):
+            b += bernstein[i, k] * work[2, k]
+        if b > level:
+            return False
+    return True
+
+
+@subroutine
+def _expression_slopes(generated, x, y):
+    """V, V_x and V_y."""
+    address, coefficients, _ = generated
+    return call_potential_slopes(address, coefficients, x, y)
+
+
+@subroutine
+def _expression_is_below(generated, x, y, level):
+    """Whether V on the line from the well to (x, y) is at most a level: all Bernstein coefficients of a cubic on each part.
+
+    The line begins at the origin, or at the edge of the disc around a centre at the origin.
+    """
+    _, _, hole = generated
+    first = hole / max(hole, np.sqrt(x * x + y * y)) if hole > 0.0 else 0.0
+    part = (1.0 - first) / _PIECES
+    value, slope_x, slope_y = _expression_slopes(generated, first * x, first * y)
+    end = value + (slope_x * x + slope_y * y) * part / 3.0
+    if not (value <= level and end <= level):
+        return False
+    for piece in range(1, _PIECES + 1):
+        t = first + piece * part
+        value, slope_x, slope_y = _expression_slopes(generated, t * x, t * y)
+        rise = (slope_x * x + slope_y * y) * part / 3.0
+        if not (value <= level and value - rise <= level and (piece == _PIECES or value + rise <= level)):
+            return False
+    return True
+
+
+@subroutine
+def _crosses_exits(x0, y0, x1, y1, curves):
+    """Whether the line from (x0, y0) to (x1, y1) crosses the open exits an odd number of times."""
+    odd = False
+    for k in range(curves.shape[0]):
+        curve = curves[k]
+        if curve[SHAPE] == CLOSED:
+            continue
+        s0 = position_across(x0, y0, curve)
+        s1 = position_across(x1, y1, curve)
+        # The part of the line with −1 ≤ s ≤ 1.
+        low = 0.0
+        high = 1.0
+        if s0 != s1:
+            one = (-1.0 - s0) / (s1 - s0)
+            other = (1.0 - s0) / (s1 - s0)
+            low = max(low, min(one, other))
+            high = min(high, max(one, other))
+        elif abs(s0) > 1.0:
+            continue
+        if low < high:
+            at_low = exit_distance((1.0 - low) * x0 + low * x1, (1.0 - low) * y0 + low * y1, curve)
+            at_high = exit_distance((1.0 - high) * x0 + high * x1, (1.0 - high) * y0 + high * y1, curve)
+            odd ^= (at_low > 0.0) != (at_high > 0.0)
+    return odd
+
+
+@subroutine
+def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
+    """Whether a point is outside; slopes, is_below: two of the functions above; potential: their first argument."""
+    level = energy - _ENERGY_MARGIN
+    odd = False
+    step = _LONGEST_STEP
+    for _ in range(_MOST_STEPS):
+        value, slope_x, slope_y = slopes(potential, x, y)
+        slope = np.sqrt(slope_x * slope_x + slope_y * slope_y)
+        if value < bottom:
+            break
+        if slope < _NO_SLOPE and value >= level:
+            # A saddle of this energy belongs to the well.
+            return False
+        if is_below(potential, x, y, level):
+            return odd ^ _crosses_exits(x, y, 0.0, 0.0, curves)
+        direction_x = -(_COS * slope_x - _SIN * slope_y) / slope
+        direction_y = -(_SIN * slope_x + _COS * slope_y) / slope
+        step = min(2.0 * step, _LONGEST_STEP * max(1.0, _FAR_SHARE * (abs(x) + abs(y))))
+        while step > _SHORTEST_STEP:
+            below, _, _ = slopes(potential, x + step * direction_x, y + step * direction_y)
+            if below < value - _DECREASE * step * slope:
+                break
+            step *= 0.5
+        if step <= _SHORTEST_STEP:
+            break
+        odd ^= _crosses_exits(x, y, x + step * direction_x, y + step * direction_y, curves)
+        x += step * direction_x
+        y += step * direction_y
+    return not odd
+
+
+@subroutine
+def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, bottom):
+    """(n,) the channel whose saddle is nearest in direction for each point outside, 0 inside and in the forbidden region."""
+    channels = np.zeros(x.shape[0], np.int8)
+    for i in range(x.shape[0]):
+        row = curves[curve_row[i]]
+        value, _, _ = slopes(potential, x[i], y[i])
+        forbidden = not value <= energy[i] + _ENERGY_MARGIN
+        if forbidden or not _is_outside(slopes, is_below, potential, x[i], y[i], energy[i], row, bottom):
+            continue
+        largest = -np.inf
+        for k in range(row.shape[0]):
+            towards = row[k, BEARING_X] * x[i] + row[k, BEARING_Y] * y[i]
+            if towards > largest:
+                largest = towards
+                channels[i] = k + 1
+    return channels
+
+
+@kernel
+def find_outside_polynomial(powers, coefficients, bernstein, x, y, energy, curves, curve_row):
+    """`_find_outside` for a polynomial.
+
+    powers (terms, 2), coefficients (terms,): of V; bernstein: matrix from `bernstein_matrix`; x, y, energy (n,);
+    curves (rows, channels, columns); curve_row (n,).
+    """
+    polynomial = (powers, coefficients, bernstein, np.zeros((3, bernstein.shape[0])))
+    bottom, _, _ = _polynomial_slopes(polynomial, 0.0, 0.0)
+    return _find_outside(_polynomial_slopes, _polynomial_is_below, polynomial, x, y, energy, curves, curve_row, bottom)
+
+
+@kernel
+def find_outside(potential_slopes, coefficients, x, y, energy, curves, curve_row, hole):
+    """`_find_outside` for an expression; hole: radius of the disc around a centre at the origin, 0.0 for a well there."""
+    generated = (potential_slopes, coefficients, hole)
+    # A path that is below all of the edge of the disc does not lead to it any more.
+    bottom = np.inf
+    for k in range(_EDGE_POINTS):
+        angle = 2.0 * np.pi * k / _EDGE_POINTS
+        value, _, _ = _expression_slopes(generated, hole * np.cos(angle), hole * np.sin(angle))
+        bottom = min(bottom, value)
+    return _find_outside(_expression_slopes, _expression_is_below, generated, x, y, energy, curves, curve_row, bottom)

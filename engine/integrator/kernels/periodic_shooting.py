@@ -1,0 +1,103 @@
+"""Shooting for Lyapunov orbits: half a period of motion across a channel, from one zero-velocity curve to the other.
+
+Compiled once for all potentials, as `engine.integrator.kernels.propagate`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel, subroutine
+from engine.integrator.jit.function_pointers import call_jets, call_potential_value, call_step
+from engine.integrator.kernels.events import series_slope
+from engine.integrator.source.recurrence import LANES, ROWS
+from engine.integrator.source.series import ORDER
+
+_WALL_STRIDE = 0.02
+_FURTHEST_WALL = 20.0
+_BISECTIONS = 80
+_MOST_STEPS = 400
+# At least the number of saddles of any potential of the highest degree that is supported.
+_MOST_CHANNELS = 128
+
+
+@subroutine
+def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
+    """The q < 0 at which V = energy on the line across the channel at u, on the zero-velocity curve; NaN where there is none.
+
+    (u, q) are coordinates from the saddle along `outward` and 90° counterclockwise from it.
+    """
+    x = saddle_x + u * outward_x
+    y = saddle_y + u * outward_y
+    high = 0.0
+    if call_potential_value(potential_value, coefficients, x, y) >= energy:
+        return np.nan
+    while call_potential_value(potential_value, coefficients, x + high * outward_y, y - high * outward_x) < energy:
+        high += _WALL_STRIDE
+        if high > _FURTHEST_WALL:
+            return np.nan
+    low = high - _WALL_STRIDE
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if call_potential_value(potential_value, coefficients, x + middle * outward_y, y - middle * outward_x) < energy:
+            low = middle
+        else:
+            high = middle
+    return -0.5 * (low + high)
+
+
+@kernel
+def shoot(
+    step, jets, potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy, reach, tolerance, steps
+):
+    """Start at rest on the zero-velocity curve at u, q < 0, and follow the orbit until its motion across the channel turns back.
+
+    Returns (u̇ at the turning point, its time, number of steps): u̇ < 0 for a start too far in, > 0 for one too far out, 0 for the
+    Lyapunov orbit. For an orbit that moves further than `reach` along the channel before it turns, returns ∓1 and NaN.
+    steps (m, 5): x, y, px, py, t at the start of each step, written in place.
+    """
+    now = np.zeros((ROWS, LANES))
+    new = np.zeros((ROWS, LANES))
+    flag = np.zeros(LANES, np.int64)
+    crossed = np.zeros(LANES, np.int64)
+    # No step is past these gates: exits are ignored.
+    gates = np.zeros((_MOST_CHANNELS, 3))
+    gates[:, 2] = np.inf
+    q = find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy)
+    if np.isnan(q):
+        return np.nan, np.nan, 0
+    now[0, 0] = saddle_x + u * outward_x - q * outward_y
+    now[1, 0] = saddle_y + u * outward_y + q * outward_x
+    for count in range(min(steps.shape[0], _MOST_STEPS)):
+        for c in range(5):
+            steps[count, c] = now[c, 0]
+        call_step(step, coefficients, 1, tolerance, np.inf, gates, now, new, flag, crossed)
+        if outward_x * new[3, 0] - outward_y * new[2, 0] <= 0.0:
+            return _turning_point(jets, coefficients, now, new[5, 0], outward_x, outward_y, count)
+        moved = outward_x * (new[0, 0] - saddle_x) + outward_y * (new[1, 0] - saddle_y) - u
+        if not abs(moved) < reach:
+            return (1.0 if moved > 0.0 else -1.0), np.nan, count + 1
+        now, new = new, now
+    return np.nan, np.nan, 0
+
+
+@subroutine
+def _turning_point(jets, coefficients, now, h, outward_x, outward_y, count):
+    """What `shoot` returns for an orbit whose motion across the channel turns back within the step from `now`."""
+    x_jet = np.empty((ORDER + 1, 1))
+    y_jet = np.empty((ORDER + 1, 1))
+    call_jets(jets, coefficients, 1, now[0], now[1], now[2], now[3], x_jet, y_jet)
+    low, high = 0.0, h
+    for _ in range(_BISECTIONS):
+        tau = 0.5 * (low + high)
+        if tau <= low or tau >= high:
+            break
+        if outward_x * series_slope(y_jet, 0, tau) - outward_y * series_slope(x_jet, 0, tau) > 0.0:
+            low = tau
+        else:
+            high = tau
+    tau = 0.5 * (low + high)
+    along = outward_x * series_slope(x_jet, 0, tau) + outward_y * series_slope(y_jet, 0, tau)
+    return along, now[4, 0] + tau, count + 1

@@ -1,0 +1,284 @@
+"""The loop over steps that propagates many orbits until they escape, reach a horizon or use up a budget of steps.
+
+Compiled once for all potentials: `step` and `jets` are the addresses of one potential's functions, see
+`engine.integrator.jit.function_pointers`. A fixed number of lanes is stepped together in vector code, and a lane whose orbit ends
+takes the next orbit. Flags set by the vector step tell which lanes need scalar code. Steps that contain an exit, the horizon or
+possibly hidden crossings are collected in a buffer, and the series of a full buffer are computed together. No orbit's arithmetic
+depends on the other lanes, so results do not depend on the order, the budget or threads.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel, subroutine
+from engine.integrator.jit.function_pointers import call_jets, call_step
+from engine.integrator.kernels.events import (
+    BOUNDED,
+    CLOSED,
+    FAILED,
+    NOT_COMPUTED,
+    SHAPE,
+    count_upward_crossings,
+    crossed_exit,
+    find_exit_time,
+    passed_exit,
+    series_slope,
+    series_value,
+)
+from engine.integrator.source.recurrence import LANES, ROWS
+from engine.integrator.source.series import ORDER
+from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
+
+VECTOR = 8
+"""The number of active lanes is rounded up to a multiple of this, so that none is computed by the scalar remainder of a loop."""
+
+
+NO_TRACE = np.empty((0, 5))
+"""The argument `trace` of `propagate` for orbits whose steps are not recorded."""
+
+GOES_ON = -1
+"""In the buffer of steps, instead of a channel: the orbit does not end in the step."""
+
+
+class Exits(NamedTuple):
+    """Exits at one or more energies.
+
+    Attributes
+    ----------
+    gates
+        (exits, 3) g_x, g_y, g, the same for all energies: beyond the line g_x x + g_y y = g an orbit may be outside; of a disc or
+        the escape circle its centre and its radius.
+    curves
+        (energies, exits, columns) exits, see `engine.integrator.kernels.events`.
+    curve_row
+        (n,) the row of `curves` for each orbit.
+    """
+
+    gates: np.ndarray
+    curves: np.ndarray
+    curve_row: np.ndarray
+
+
+class Orbits(NamedTuple):
+    """Arrays of n orbits, changed in place by `propagate`.
+
+    Attributes
+    ----------
+    state
+        (n, 4) x, y, px, py at time `t`.
+    t
+        (n,) time reached: the escape time, or the start of the next step.
+    crossings
+        (n,) upward crossings of y = 0 until `t`.
+    last_crossings
+        (n,) those between `t` and t_max, for bounded orbits.
+    fate
+        (n,) int8: the number of the exit at which an orbit ended, BOUNDED, NOT_COMPUTED or FAILED.
+    pending
+        (n,) uint8: set to 0 when an orbit has escaped, failed or reached the horizon.
+    remainder
+        (n, 2) what rounding has dropped from x and y at time `t`; 0 where steps do not carry it.
+    """
+
+    state: np.ndarray
+    t: np.ndarray
+    crossings: np.ndarray
+    last_crossings: np.ndarray
+    fate: np.ndarray
+    pending: np.ndarray
+    remainder: np.ndarray
+
+
+class _StepBuffer(NamedTuple):
+    """Steps whose events are still to be located.
+
+    start (4, lanes): state; h, orbit, channel (lanes,): size of the step, number of the orbit, and the channel through which it
+    escapes, 0 where the step passes the horizon, or GOES_ON.
+    """
+
+    start: np.ndarray
+    h: np.ndarray
+    orbit: np.ndarray
+    channel: np.ndarray
+
+
+@kernel
+def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits, trace):
+    """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
+
+    It also ends when fewer than `least` orbits are left, as these would not fill the lanes. exits: `Exits`; orbits: `Orbits`.
+    With `final` the horizon is t_max: events of the last, partial step are located and an orbit still inside is BOUNDED; without,
+    it stays NOT_COMPUTED. trace (m, 5): x, y, px, py, t at the start of each step of the first lane, written until it is full;
+    `NO_TRACE` for more than one orbit. Returns the number of steps of orbits.
+    """
+    # Only `np.zeros`: Numba compiles each function that makes arrays, and for each type of array, in about 0.1 s.
+    now = np.zeros((ROWS, LANES))
+    new = np.zeros((ROWS, LANES))
+    # Lanes without an orbit take harmless steps that never reach the horizon.
+    now[0] = 0.01
+    now[4] = -np.inf
+    flag = np.zeros(LANES, np.int64)
+    crossed = np.zeros(LANES, np.int64)
+    lane_orbit = np.zeros(LANES, np.int64)
+    buffer = _StepBuffer(np.zeros((4, LANES)), np.zeros(LANES), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64))
+    buffered = 0
+    active = min(LANES, todo.shape[0])
+    next_orbit = active
+    taken = 0
+    traced = 0
+    left = budget
+    for i in range(active):
+        _load_orbit(orbits, todo[i], now, i, lane_orbit, crossed)
+    while active > 0 and left > 0 and (active >= least or next_orbit < todo.shape[0]):
+        if traced < trace.shape[0]:
+            for c in range(5):
+                trace[traced, c] = now[c, 0]
+            traced += 1
+        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        call_step(step, coefficients, width, tolerance, horizon, exits.gates, now, new, flag, crossed)
+        taken += active
+        left -= width
+        # Downward, since the last active lane replaces one whose orbit has ended.
+        for i in range(active - 1, -1, -1):
+            if flag[i] == 0:
+                continue
+            j = lane_orbit[i]
+            ends, channel, failed, has_events = _judge_step(flag[i], now, new, i, final, exits, j)
+            if flag[i] & NEAR != 0 and not ends:
+                channel = _passes_exit(jets, coefficients, now, i, new[5, i], exits.curves[exits.curve_row[j]])
+                ends = channel > 0
+                has_events = has_events or ends
+            if ends:
+                _store_orbit(now, i, crossed, orbits, j)
+                orbits.pending[j] = 0
+                orbits.fate[j] = FAILED if failed else NOT_COMPUTED
+            if has_events:
+                _buffer_step(now, new, i, j, channel if ends else GOES_ON, buffer, buffered)
+                buffered += 1
+                if buffered == LANES:
+                    _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
+                    buffered = 0
+            elif not ends and now[1, i] < 0.0 and new[1, i] >= 0.0:
+                crossed[i] += 1
+            if ends and next_orbit < todo.shape[0]:
+                _load_orbit(orbits, todo[next_orbit], new, i, lane_orbit, crossed)
+                next_orbit += 1
+            elif ends:
+                active -= 1
+                _move_lane(new, active, i, lane_orbit, crossed)
+        now, new = new, now
+    if buffered > 0:
+        _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
+    for i in range(active):
+        _store_orbit(now, i, crossed, orbits, lane_orbit[i])
+    return taken
+
+
+@subroutine
+def _judge_step(flags, now, new, i, final, exits, orbit):
+    """What happens in a flagged step: (the orbit ends, channel of the exit it crosses or 0, it fails, events are to be located).
+
+    now, new: lanes at the start and the end of the step; i: lane of the orbit.
+    """
+    failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[5, i] > 0.0)
+    late = flags & OVERSHOOT != 0
+    channel = 0
+    if not late and flags & (GATE | NEAR) != 0:
+        channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], exits.curves[exits.curve_row[orbit]], exits.gates)
+    ends = late or channel > 0 or failed
+    has_events = channel > 0 or (late and final) or (not late and flags & HIDDEN != 0)
+    return ends, channel, failed, has_events and not failed
+
+
+@subroutine
+def _passes_exit(jets, coefficients, now, i, h, curves):
+    """The number of the exit that the orbit of lane i passes and leaves again within the step of size h, 0 for none."""
+    start = np.zeros((4, 1))
+    for c in range(4):
+        start[c, 0] = now[c, i]
+    x_jet = np.zeros((ORDER + 1, 1))
+    y_jet = np.zeros((ORDER + 1, 1))
+    call_jets(jets, coefficients, 1, start[0], start[1], start[2], start[3], x_jet, y_jet)
+    return passed_exit(x_jet, y_jet, 0, h, curves)
+
+
+@subroutine
+def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
+    """Put an orbit into lane i of the (ROWS, LANES) array `lanes`."""
+    for c in range(4):
+        lanes[c, i] = orbits.state[orbit, c]
+    lanes[4, i] = orbits.t[orbit]
+    for c in range(2):
+        lanes[6 + c, i] = orbits.remainder[orbit, c]
+    lane_orbit[i] = orbit
+    crossed[i] = 0
+
+
+@subroutine
+def _store_orbit(lanes, i, crossed, orbits, orbit):
+    """Write lane i of the (ROWS, LANES) array `lanes` back to its orbit."""
+    for c in range(4):
+        orbits.state[orbit, c] = lanes[c, i]
+    orbits.t[orbit] = lanes[4, i]
+    for c in range(2):
+        orbits.remainder[orbit, c] = lanes[6 + c, i]
+    orbits.crossings[orbit] += crossed[i]
+
+
+@subroutine
+def _move_lane(lanes, source, target, lane_orbit, crossed):
+    for c in range(ROWS):
+        lanes[c, target] = lanes[c, source]
+    lane_orbit[target] = lane_orbit[source]
+    crossed[target] = crossed[source]
+
+
+@subroutine
+def _buffer_step(now, new, i, orbit, channel, buffer, k):
+    """Put the step of lane i into place k of the buffer."""
+    for c in range(4):
+        buffer.start[c, k] = now[c, i]
+    buffer.h[k] = new[5, i]
+    buffer.orbit[k] = orbit
+    buffer.channel[k] = channel
+
+
+@subroutine
+def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
+    """Locate the events in the first `n` buffered steps: upward crossings and, for orbits that end, the exit and its time."""
+    x_jet = np.empty((ORDER + 1, buffer.start.shape[1]))
+    y_jet = np.empty((ORDER + 1, buffer.start.shape[1]))
+    start = buffer.start
+    call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    for i in range(n):
+        j = buffer.orbit[i]
+        h = buffer.h[i]
+        channel = buffer.channel[i]
+        if channel == GOES_ON:
+            orbits.crossings[j] += count_upward_crossings(y_jet, i, h)
+            continue
+        curves = exits.curves[exits.curve_row[j]]
+        if channel == 0:
+            x_end, y_end = series_value(x_jet, i, h), series_value(y_jet, i, h)
+            channel = crossed_exit(start[0, i], start[1, i], x_end, y_end, curves, exits.gates)
+            if channel == 0:
+                channel = passed_exit(x_jet, y_jet, i, h, curves)
+        # The whole step decides, so that the escape time is the same to the bit for every horizon.
+        tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1]) if channel > 0 else h
+        if channel == 0 or orbits.t[j] + tau > horizon:
+            # The state stays at the start of the step that would pass t_max, so that the orbit can be continued.
+            orbits.last_crossings[j] = count_upward_crossings(y_jet, i, horizon - orbits.t[j])
+            orbits.fate[j] = BOUNDED
+            continue
+        orbits.crossings[j] += count_upward_crossings(y_jet, i, tau)
+        orbits.t[j] += tau
+        orbits.state[j, 0] = series_value(x_jet, i, tau)
+        orbits.state[j, 1] = series_value(y_jet, i, tau)
+        orbits.state[j, 2] = series_slope(x_jet, i, tau)
+        orbits.state[j, 3] = series_slope(y_jet, i, tau)
+        orbits.remainder[j] = 0.0
+        # Only rounding errors make an orbit leave over the saddle of a closed channel, on which it is at rest.
+        orbits.fate[j] = BOUNDED if curves[channel - 1, SHAPE] == CLOSED else channel

@@ -1,0 +1,294 @@
+"""From an expression to straight-line programs for its Taylor kernels: the recurrence of each node of its graph.
+
+The derivatives of V are expressions, too. Along an orbit each node is a power series in time. Coefficient k of a sum or a product
+follows from coefficients 0 … k of its operands; that of w = u^a, exp u, log u, sin u or cos u from those of u and from the lower
+ones of w, because w' is a product of u' and known series (Jorba & Zou 2005, Experimental Mathematics 14, 99, section 2; Haro et
+al. 2016, The Parameterization Method for Invariant Manifolds, chapter 2). Coefficient 0 is the function itself, see
+`engine.integrator.source.elementary`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import reduce
+from itertools import islice
+from operator import add
+from typing import NamedTuple
+
+from engine.expressions.calculus import derivative
+from engine.expressions.graph import Graph, Node, make_graph
+from engine.expressions.nodes import Expression
+from engine.integrator.source.elementary import FUNCTIONS, power_of
+from engine.integrator.source.series import (
+    NO_REMAINDERS,
+    ORDER,
+    Hessian,
+    PointFunctions,
+    Series,
+    Setting,
+    add_coriolis,
+    cauchy,
+    half_square,
+    sum_of_products,
+    total,
+)
+from engine.integrator.source.straight_line import StraightLine, Value
+
+_ROOT = 0.5
+
+_HESSIAN = ((0, 0), (0, 1), (1, 1))
+
+# Norms of the last coefficients above this would give steps too short to change t.
+_LARGEST_NORM = 1e180
+
+Entry = tuple[str, int]
+"""(graph, place): an entry of the table with a number of one of the graphs of a structure."""
+
+
+class ExpressionStructure(NamedTuple):
+    """The graphs of V, of its gradient, of gradient and Hessian, and of V and its gradient."""
+
+    setting: Setting
+    value: Graph
+    motion: Graph
+    variations: Graph
+    slopes: Graph
+    zero: tuple[bool, ...]
+
+    @property
+    def can_hide(self) -> bool:
+        """No bound on the frequency of y is known."""
+        return True
+
+    @property
+    def has_many_scales(self) -> bool:
+        """As near singularities."""
+        return True
+
+    @property
+    def largest_norm(self) -> float:
+        """A step of 1e-12, as near centres."""
+        return _LARGEST_NORM
+
+    @property
+    def carries_remainders(self) -> bool:
+        """Around centres."""
+        return self.setting.discs > 0
+
+    def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
+        """The recurrence of the gradient."""
+        recurrence = _Recurrence(program, "motion", self.motion, self.setting.rotates, remainders)
+        for k in range(ORDER - 1):
+            recurrence.advance(k)
+        return recurrence.x, recurrence.y
+
+    def hessian(self, program: StraightLine) -> Hessian:
+        """The recurrence of gradient and Hessian, of which the latter enters the variational equations."""
+        recurrence = _Recurrence(program, "variations", self.variations, self.setting.rotates)
+
+        def entry(index: int) -> Callable[[int], Value]:
+            def coefficient(k: int) -> Value:
+                recurrence.advance_to(k)
+                return -1.0 * recurrence.series[index][k]
+
+            return coefficient
+
+        indices = self.variations.results[2:]
+        return {axes: (entry(index), not zero) for axes, index, zero in zip(_HESSIAN, indices, self.zero, strict=True)}
+
+    def point_functions(self) -> PointFunctions:
+        """V, and V with its gradient."""
+        names = ("value", "slope_x", "slope_y")
+        return {
+            "potential_value": lambda program: {"value": _values(program, "value", self.value)[0]},
+            "potential_slopes": lambda program: dict(zip(names, _values(program, "slopes", self.slopes), strict=True)),
+        }
+
+    def tabulate(self, expression: Expression, entries: Sequence[Entry]) -> list[float]:
+        """The numbers of the graphs."""
+        numbers = {name: values for name, (_, values) in _graphs(expression).items()}
+        return [numbers[graph][place] for graph, place in entries]
+
+
+def structure_of_expression(expression: Expression, setting: Setting) -> ExpressionStructure:
+    """The structure of a potential that is an expression."""
+    zero = tuple(not _second(expression, axes).key[1] for axes in _HESSIAN)
+    return ExpressionStructure(setting, zero=zero, **{name: graph for name, (graph, _) in _graphs(expression).items()})
+
+
+def _second(expression: Expression, axes: tuple[int, int]) -> Expression:
+    return derivative(derivative(expression, axes[0]), axes[1])
+
+
+def _graphs(expression: Expression) -> dict[str, tuple[Graph, tuple[float, ...]]]:
+    gradient = tuple(derivative(expression, axis) for axis in (0, 1))
+    return {
+        "value": make_graph((expression,)),
+        "motion": make_graph(gradient),
+        "variations": make_graph((*gradient, *(_second(expression, axes) for axes in _HESSIAN))),
+        "slopes": make_graph((expression, *gradient)),
+    }
+
+
+class _Recurrence:
+    """The series of all nodes of a graph along an orbit."""
+
+    def __init__(
+        self,
+        program: StraightLine,
+        name: str,
+        graph: Graph,
+        rotates: bool,
+        remainders: Mapping[str, Value] = NO_REMAINDERS,
+    ) -> None:
+        self.program, self.name, self.graph, self.rotates, self.remainders = program, name, graph, rotates, remainders
+        self.x, self.y = ([program.input(f"{axis}{k}") for k in (0, 1)] for axis in "xy")
+        self.series: list[list[Value]] = [{"x": self.x, "y": self.y}.get(node.kind, []) for node in graph.nodes]
+        # k u_k of the arguments of functions, and 1 / u_0 of those of powers and logarithms.
+        self._slopes: dict[int, list[Value]] = {}
+        self._reciprocals: dict[int, Value] = {}
+        self._orders = 0
+
+    def advance_to(self, k: int) -> None:
+        """Find coefficients k of all nodes, unless they are known."""
+        if k >= self._orders:
+            self.advance(k)
+
+    def advance(self, k: int) -> None:
+        """Find coefficients k of all nodes, and with them coefficient k + 2 of x and y."""
+        self._orders = k + 1
+        for index, node in enumerate(self.graph.nodes):
+            if node.kind not in ("x", "y"):
+                self.series[index].append(self._first(node) if k == 0 else _RULES[node.kind](self, index, node, k))
+        for axis, slope in zip((self.x, self.y), self.graph.results, strict=False):
+            axis.append(self.series[slope][k] * (-1.0 / ((k + 1) * (k + 2))))
+        if self.rotates:
+            add_coriolis(self.program, self.x, self.y)
+
+    def _first(self, node: Node) -> Value:
+        value = _value_of(self.program, self.name, node, {index: series[0] for index, series in enumerate(self.series) if series})
+        return reduce(add, self._remainders(node), value)
+
+    def _remainders(self, node: Node) -> Iterator[Value]:
+        """What is to be added to a sum with x or y, such as the distance from a body; elsewhere the remainders do not count."""
+        for operand, place in zip(node.operands, node.numbers, strict=False):
+            remainder = self.remainders.get(self.graph.nodes[operand].kind)
+            if remainder is not None and node.kind in ("sum", "shift"):
+                yield remainder if node.kind == "shift" else self.program.entry((self.name, place)) * remainder
+
+    def slopes(self, index: int, k: int) -> list[Value]:
+        """j u_j of a node for j = 0 … k; the first is not used."""
+        known, series = self._slopes.setdefault(index, [self.series[index][0]]), self.series[index]
+        known += [float(j) * series[j] if j > 1 else series[j] for j in range(len(known), k + 1)]
+        return known
+
+    def reciprocal(self, index: int) -> Value:
+        """1 / u_0 of a node."""
+        if index not in self._reciprocals:
+            self._reciprocals[index] = 1.0 / self.series[index][0]
+        return self._reciprocals[index]
+
+    def add(self, _index: int, node: Node, k: int) -> Value:
+        """(Σ c u)_k = Σ c u_k."""
+        pairs = zip(node.operands, node.numbers, strict=False)
+        return total(self.program, (self.program.entry((self.name, place)) * self.series[each][k] for each, place in pairs))
+
+    def shift(self, _index: int, node: Node, k: int) -> Value:
+        """(u + c)_k = u_k for k > 0."""
+        return self.series[node.operands[0]][k]
+
+    def product(self, _index: int, node: Node, k: int) -> Value:
+        """(u v)_k = Σ u_j v_(k − j)."""
+        left, right = (self.series[operand] for operand in node.operands)
+        coefficient = cauchy(left, right, k)
+        return coefficient + coefficient if left is right else coefficient
+
+    def power(self, index: int, node: Node, k: int) -> Value:
+        """k u_0 (u^a)_k = Σ (a (k − j) − j) u_(k − j) w_j over j = 0 … k − 1, from u w' = a u' w."""
+        (argument, *higher), a = node.operands, node.exponent
+        if a == _ROOT:
+            return self._root(index, argument, k)
+        if higher or a == -1.0:
+            return self._quotient(index, higher, argument, k)
+        u, w = self.series[argument], self.series[index]
+        pairs = [((a * (k - j) - j) * u[k - j], w[j]) for j in range(k) if a * (k - j) != j]
+        return total(self.program, iter([sum_of_products(pairs)] if pairs else [])) * (1.0 / k) * self.reciprocal(argument)
+
+    def _root(self, index: int, argument: int, k: int) -> Value:
+        """2 w_0 w_k = u_k − Σ w_j w_(k − j) over j = 1 … k − 1, from w² = u; a quarter of the work for other powers."""
+        half, lower = 0.5 * self.series[argument][k], list(islice(half_square(self.series[index], k), k // 2))
+        return (half - sum_of_products(lower) if lower else half) * self.reciprocal(index)
+
+    def _quotient(self, index: int, numerator: list[int], argument: int, k: int) -> Value:
+        """u_0 w_k = v_k − Σ u_(k − j) w_j over j = 0 … k − 1, from u w = v, which is 1 if it is not given; half the work."""
+        u, w = self.series[argument], self.series[index]
+        lower = sum_of_products((u[k - j], w[j]) for j in range(k))
+        return (self.series[numerator[0]][k] - lower if numerator else -1.0 * lower) * self.reciprocal(argument)
+
+    def exponential(self, index: int, node: Node, k: int) -> Value:
+        """k (exp u)_k = Σ j u_j w_(k − j) over j = 1 … k."""
+        return _weighted(self.slopes(node.operands[0], k), self.series[index], k) * (1.0 / k)
+
+    def logarithm(self, index: int, node: Node, k: int) -> Value:
+        """u_0 (log u)_k = u_k − (1/k) Σ j w_j u_(k − j) over j = 1 … k − 1."""
+        (argument,) = node.operands
+        u = self.series[argument]
+        if k == 1:
+            return u[1] * self.reciprocal(argument)
+        lower = sum_of_products((slope, u[k - j]) for j, slope in enumerate(self.slopes(index, k - 1)) if j)
+        return (u[k] - lower * (1.0 / k)) * self.reciprocal(argument)
+
+    def sine(self, _index: int, node: Node, k: int) -> Value:
+        """k (sin u)_k = Σ j u_j (cos u)_(k − j) over j = 1 … k."""
+        argument, cosine = node.operands
+        return _weighted(self.slopes(argument, k), self.series[cosine], k) * (1.0 / k)
+
+    def cosine(self, _index: int, node: Node, k: int) -> Value:
+        """k (cos u)_k = −Σ j u_j (sin u)_(k − j) over j = 1 … k."""
+        argument, sine = node.operands
+        return _weighted(self.slopes(argument, k), self.series[sine], k) * (-1.0 / k)
+
+
+_RULES: Mapping[str, Callable[[_Recurrence, int, Node, int], Value]] = {
+    "sum": _Recurrence.add,
+    "shift": _Recurrence.shift,
+    "product": _Recurrence.product,
+    "power": _Recurrence.power,
+    "exp": _Recurrence.exponential,
+    "log": _Recurrence.logarithm,
+    "sin": _Recurrence.sine,
+    "cos": _Recurrence.cosine,
+}
+
+
+def _weighted(slopes: Series, other: Series, k: int) -> Value:
+    """Σ j u_j v_(k − j) over j = 1 … k, the newest last."""
+    pairs: Iterable[tuple[Value, Value]] = ((slopes[j], other[k - j]) for j in range(1, k + 1))
+    return sum_of_products(pairs)
+
+
+def _value_of(program: StraightLine, name: str, node: Node, values: Mapping[int, Value]) -> Value:
+    """The value of a node from those of its operands."""
+    match node.kind:
+        case "sum":
+            places = iter(node.numbers)
+            parts = (program.entry((name, place)) * values[each] for each, place in zip(node.operands, places, strict=False))
+            constant = [program.entry((name, place)) for place in node.numbers[len(node.operands) :]]
+            return total(program, iter([*constant, *parts]))
+        case "shift":
+            return values[node.operands[0]] + program.entry((name, node.numbers[0]))
+        case "product":
+            left, right = node.operands
+            return values[left] * values[right]
+        case "power":
+            return power_of(values[node.operands[0]], node.exponent)
+    return FUNCTIONS[node.kind](values[node.operands[0]])
+
+
+def _values(program: StraightLine, name: str, graph: Graph) -> list[Value]:
+    """The values of the expressions of a graph at the inputs x and y."""
+    values: dict[int, Value] = {}
+    for index, node in enumerate(graph.nodes):
+        is_axis = node.kind in ("x", "y")
+        values[index] = program.input(node.kind) if is_axis else _value_of(program, name, node, values)
+    return [values[index] for index in graph.results]

@@ -1,0 +1,223 @@
+"""From a polynomial V to the recurrence of its orbits.
+
+Along an orbit every quantity is a power series in time, and the series of a product is a Cauchy product. Coefficient k + 2 of x
+and y follows from coefficients 0 … k of the monomials in V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import operator
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from engine.expressions.polynomials import derivative
+from engine.integrator.source.cauchy_products import (
+    Monomial,
+    Polynomial,
+    Product,
+    X,
+    Y,
+    find_difference,
+    find_scales,
+    plan_products,
+)
+from engine.integrator.source.series import (
+    LONGEST_STEP,
+    NO_REMAINDERS,
+    ORDER,
+    REACH,
+    Hessian,
+    PointFunctions,
+    Series,
+    Setting,
+    add_coriolis,
+    cauchy,
+    half_square,
+    total,
+)
+from engine.integrator.source.straight_line import StraightLine, Value
+
+# Cached plans, two for each structure.
+_PLANS = 64
+
+# Norms of the last coefficients above this would give steps too short to change t.
+_LARGEST_NORM = 1e90
+
+Terms = tuple[tuple[int, int, float], ...]
+
+Entry = tuple[Monomial, float, int]
+"""(term, multiple, divisor): an entry of the table with the value −multiple · (the coefficient of a term of V) / divisor."""
+
+# A derivative of V: for each of its monomials the term of V that it comes from, and the factor from differentiating it.
+_Derivative = Mapping[Monomial, tuple[Monomial, float]]
+
+# Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and in the variational equations too.
+_GRADIENT, _HESSIAN = ((0,), (1,)), ((0, 0), (0, 1), (1, 1))
+_GRADIENT_AND_HESSIAN = (*_GRADIENT, *_HESSIAN)
+
+_Difference = tuple[Product, Product] | None
+
+
+class PolynomialStructure(NamedTuple):
+    """What generated code depends on; the differences are those of `_find_difference` without and with the Hessian."""
+
+    monomials: tuple[Monomial, ...]
+    setting: Setting
+    can_hide: bool
+    difference: _Difference
+    tangent_difference: _Difference
+
+    @property
+    def has_many_scales(self) -> bool:
+        """The well sets the scale."""
+        return False
+
+    @property
+    def largest_norm(self) -> float:
+        """A step of 3e-7."""
+        return _LARGEST_NORM
+
+    @property
+    def carries_remainders(self) -> bool:
+        """V of a polynomial is smooth everywhere."""
+        return False
+
+    def orbit(self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
+        """The recurrence with the products for the equations of motion only."""
+        products = _plan(self.monomials, _GRADIENT)
+        series = _recurrence(program, self.monomials, products, self.difference, self.setting.rotates)
+        return series[X], series[Y]
+
+    def hessian(self, program: StraightLine) -> Hessian:
+        """Each entry from the products for the variational equations, too."""
+        products = _plan(self.monomials, _GRADIENT_AND_HESSIAN)
+        scales = find_scales(products)
+        series = _recurrence(program, self.monomials, products, self.tangent_difference, self.setting.rotates)
+
+        def entry(axes: tuple[int, int]) -> Callable[[int], Value]:
+            derived = _formed_derivative(self.monomials, axes, self.tangent_difference)
+            return lambda k: _linear_combination(program, derived, series, scales, k, 1)
+
+        return {axes: (entry(axes), bool(_derivative(self.monomials, axes))) for axes in _HESSIAN}
+
+    def point_functions(self) -> PointFunctions:
+        """V alone."""
+        return {"potential_value": lambda program: {"value": self._value(program)}}
+
+    def _value(self, program: StraightLine) -> Value:
+        x, y = program.input("x"), program.input("y")
+        parts = (functools.reduce(operator.mul, [x] * i + [y] * j, program.entry(((i, j), 1.0, -1))) for i, j in self.monomials)
+        return total(program, parts)
+
+    def tabulate(self, terms: Any, entries: Sequence[Entry]) -> list[float]:
+        """Multiples of the coefficients."""
+        polynomial = _sorted(terms)
+        return [-1.0 / divisor * (polynomial[term] * multiple) for term, multiple, divisor in entries]
+
+
+def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivative:
+    """The derivative of V with respect to each of `axes` in turn."""
+    factors: Polynomial = dict.fromkeys(monomials, 1)
+    for axis in axes:
+        factors = derivative(factors, axis)
+    return {(i, j): ((i + axes.count(0), j + axes.count(1)), factor) for (i, j), factor in factors.items()}
+
+
+@functools.lru_cache(maxsize=_PLANS)
+def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], ...]) -> tuple[Product, ...]:
+    """The products from which the series of some derivatives of V are formed."""
+    return tuple(plan_products(frozenset(m for axes in derivatives for m in _derivative(monomials, axes))))
+
+
+def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...], ...]) -> _Difference:
+    """Two squares of which only the difference enters some derivatives of V."""
+    derived = [_derivative(polynomial, axes) for axes in derivatives]
+    values = [{m: factor * polynomial[term] for m, (term, factor) in each.items()} for each in derived]
+    return find_difference(_plan(tuple(polynomial), derivatives), values)
+
+
+def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
+    """A derivative of V as a sum over the series that are formed: that of a difference stands for both squares."""
+    contained = difference[1].monomial if difference is not None else None
+    return {m: origin for m, origin in _derivative(monomials, axes).items() if m != contained}
+
+
+def _linear_combination(
+    program: StraightLine,
+    derived: _Derivative,
+    series: Mapping[Monomial, Series],
+    scales: Mapping[Monomial, float],
+    k: int,
+    divisor: int,
+) -> Value:
+    """−(coefficient k of the series of a derivative of V) / divisor.
+
+    Low degrees last: a sum of two products contracts into the product that comes first, and the linear term is known earliest.
+    """
+
+    def part(m: Monomial) -> Value:
+        term, multiple = derived[m]
+        entry = program.entry((term, multiple / scales[m], divisor))
+        return entry * series[m][k] if sum(m) > 0 else entry
+
+    return total(program, (part(m) for m in reversed(list(derived)) if sum(m) > 0 or k == 0))
+
+
+def _recurrence(
+    program: StraightLine,
+    monomials: tuple[Monomial, ...],
+    products: Sequence[Product],
+    difference: _Difference,
+    rotates: bool,
+) -> dict[Monomial, list[Value]]:
+    """The series of x and y and of `products`, where a difference of two squares is stored as the first of them."""
+    series: dict[Monomial, list[Value]] = {
+        X: [program.input("x0"), program.input("x1")],
+        Y: [program.input("y0"), program.input("y1")],
+        **{p.monomial: [] for p in products},
+    }
+    forces = {axis: _formed_derivative(monomials, axes, difference) for axis, axes in zip((X, Y), _GRADIENT, strict=True)}
+    scales = find_scales(products)
+    if difference is not None:
+        one, other = difference
+        products = [p for p in products if p not in difference]
+    for k in range(ORDER - 1):
+        for p in products:
+            series[p.monomial].append(cauchy(series[p.left], series[p.right], k))
+        if difference is not None:
+            subtracted = (left * right for left, right in half_square(series[other.left], k))
+            square = cauchy(series[one.left], series[one.left], k)
+            series[one.monomial].append(functools.reduce(operator.sub, subtracted, square))
+        for axis, force in forces.items():
+            series[axis].append(_linear_combination(program, force, series, scales, k, (k + 1) * (k + 2)))
+        if rotates:
+            add_coriolis(program, series[X], series[Y])
+    return series
+
+
+def structure_of_polynomial(terms: Terms, setting: Setting, reach: float = REACH) -> PolynomialStructure:
+    """The structure of a potential that is a polynomial."""
+    polynomial = _sorted(terms)
+    differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
+    can_hide = setting.rotates or crossings_can_hide(polynomial, reach)
+    return PolynomialStructure(tuple(polynomial), setting, can_hide, *differences)
+
+
+def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
+    """Whether a step can contain two crossings of y = 0 that the signs of y at its ends do not show, without rotation.
+
+    Where V is even in y, ÿ = −g(x, y) y. With g below (π/h)² two zeros of y are further than h apart, by Sturm's comparison
+    with the oscillator of that frequency. Terms of g that are nowhere positive cannot raise it.
+    """
+    force = derivative(terms, 1)
+    if any(j % 2 == 0 for _, j in force):
+        return True
+    bound = sum(abs(c) * reach ** (i + j - 1) for (i, j), c in force.items() if c > 0 or i % 2 == 1)
+    return bound >= (math.pi / LONGEST_STEP) ** 2
+
+
+def _sorted(terms: Terms) -> dict[Monomial, float]:
+    """The terms by degree, so that the order in which they are given does not matter."""
+    return {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}

@@ -1,0 +1,363 @@
+"""From a potential to straight-line programs for its Taylor kernels.
+
+Along an orbit every quantity is a power series in time, and the series of a product is a Cauchy product. With
+ẍ = −V_x, ÿ = −V_y and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in
+V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside
+one loop over orbits, this recurrence has neither branches nor calls, so the compiler vectorises all of it. Formulas with other
+functions have the recurrences of `engine.integrator.source.expression_recurrence`; the functions below are the same for both.
+
+For each potential there are four functions with a loop over lanes `i`, and one for a single point:
+
+``step``             one step of each orbit with a size chosen from the last coefficients, and flags for steps that may
+                     contain an event;
+``fixed_step``       one step of a given size, which also adds weighted x² and y² to sums;
+``jets``             the coefficients of x and y: the dense output of a step;
+``tangent``          propagates a deviation vector over a given time by the linearised recurrence;
+``potential_value``  V at one point; for expressions there is ``potential_slopes`` with V and its gradient, too.
+
+The code depends on the structure of V only, that is on the graph of an expression, or on the exponents of a polynomial and on a
+few facts about the coefficients that save work (`find_difference`, `crossings_can_hide`). The numbers are passed at run time in a
+table, every function's first argument, so that potentials of the same structure share compiled code.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from engine.expressions.nodes import Expression
+from engine.foundations.arrays import read_only
+from engine.integrator.source.expression_recurrence import structure_of_expression
+from engine.integrator.source.polynomial_recurrence import Terms, structure_of_polynomial
+from engine.integrator.source.series import (
+    LONGEST_STEP,
+    ORDER,
+    REACH,
+    ROTATION,
+    Series,
+    Setting,
+    Structure,
+    add_coriolis,
+    cauchy,
+    total,
+)
+from engine.integrator.source.step_flags import OVERSHOOT, flag_gates, flag_hidden_crossings
+from engine.integrator.source.straight_line import TABLE, StraightLine, Value, where
+
+TOLERANCE = 3e-15
+"""Norm of the last coefficients of a step's series times the 16th power of the step size."""
+
+# Weight of the third coefficient from the end in the step size, found together with ORDER and TOLERANCE by `benchmarks/steps.py`.
+_EARLIER_WEIGHT = 0.3
+# Steps for which it was found; and by what the norm is multiplied where frequencies differ, as coefficients of functions with
+# singularities fall more slowly than those of polynomials: the largest power of 10 with which energies are held to 1e-11.
+_USUAL_STEP, _CAUTION = 0.35, 10.0
+# Added to the speed that limits a step.
+_LEAST_SPEED = 1.0 / 16.0
+_ORDERS_OF_NORM = 3
+
+LANES = 64
+"""Length of the rows of arrays with one column per orbit, of which a step computes the first ones."""
+
+ROWS = 8
+"""Rows of the arrays of lanes ``now`` and ``new``: x, y, px, py, t, the size of the last step, and the remainders of x and
+y, which rounding has dropped; they are 0 for structures whose steps do not carry them."""
+
+# Cached structures, 3 MB each with eight terms of degree 8.
+_STRUCTURES = 32
+
+Definition = Terms | Expression
+"""What V is: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
+
+
+class GeneratedFunction(NamedTuple):
+    """A kernel as Python source, and the straight-line program that it calls by the program's name.
+
+    lane_inputs: the inputs of the program that differ from lane to lane, in order; the others are the same for all lanes.
+    """
+
+    name: str
+    program: StraightLine
+    kernel: str
+    lane_inputs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class GeneratedCode:
+    """The generated functions of all potentials of one structure; equal if all programs and kernels are.
+
+    Attributes
+    ----------
+    functions
+        ``step``, ``fixed_step``, ``jets``, ``tangent`` and ``potential_value``. Besides the programs, their kernels refer to
+        ``kernel`` and ``read_table``.
+    entries
+        The entries of the table, as its structure knows them.
+    structure
+        The structure of the potentials.
+    """
+
+    functions: tuple[GeneratedFunction, ...]
+    entries: tuple[Any, ...]
+    structure: Structure
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """A hash of all programs and kernels as text."""
+        text = "\n\n".join(f"{function.program}\n\n{function.kernel}" for function in self.functions)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @property
+    def operations(self) -> int:
+        """Number of operations of all programs."""
+        return sum(len(function.program.operations) for function in self.functions)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, GeneratedCode) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    def tabulate(self, definition: Definition, rotation: float = 0.0) -> np.ndarray:
+        """(m,) the table of a potential, which every function takes as its first argument; read-only."""
+        own = [entry for entry in self.entries if entry != ROTATION]
+        values = {**dict(zip(own, self.structure.tabulate(definition, own), strict=True)), ROTATION: 2.0 * rotation}
+        return read_only(np.array([values[entry] for entry in self.entries], dtype=float))
+
+
+def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure) -> Value:
+    """The h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
+
+    The norm contains three orders of both coordinates, so that a step is not too long when one coefficient happens to vanish.
+    This suits a well of one frequency. Where frequencies differ from place to place, a first step h sets units of time and
+    length in which the second is found: h is 0.35, and the orbit moves by 1 or so in a unit of time. So steps and their errors
+    shrink near bodies. NaN marks an orbit that has broken down.
+    """
+    last, before, earlier = (abs(x[-k]) + abs(y[-k]) for k in range(1, _ORDERS_OF_NORM + 1))
+    norm = last + before + _EARLIER_WEIGHT * earlier
+    h = _root_of_tolerance(program, norm)
+    longest: Value | float = LONGEST_STEP
+    if structure.has_many_scales:
+        unit = h * (1.0 / _USUAL_STEP)
+        scaled = _EARLIER_WEIGHT * earlier + unit * (before + unit * last)
+        speed, force = abs(x[1]) + abs(y[1]), abs(x[2]) + abs(y[2])
+        h = _root_of_tolerance(program, _CAUTION * program.apply("/", scaled, speed + unit * force))
+        longest = 1.0 / (speed + program.apply("sqrt", force) + _LEAST_SPEED)
+    h = where(h < longest, h, longest)
+    return where(norm < structure.largest_norm, h, math.nan)
+
+
+def _root_of_tolerance(program: StraightLine, norm: Value) -> Value:
+    """(tolerance / norm)^(1/16), up to 6 % too large, the same on every machine.
+
+    The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa, and a shift by four
+    divides that by 16.
+    """
+    one = 1023 << 52
+    bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
+    return program.apply("double_of", (one + one // 16) - (bits >> 4))
+
+
+def _horner(series: Series, h: Value) -> tuple[Value, Value]:
+    """The value and the time derivative of a series at h."""
+    slope = series[-1]
+    value = slope * h + series[-2]
+    for coefficient in reversed(series[:-2]):
+        slope = slope * h + value
+        value = value * h + coefficient
+    return value, slope
+
+
+def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
+    """As `_horner`, and with a remainder, which is added to the first coefficient, the remainder of the value.
+
+    It is what the last sum drops, found without error (Knuth's TwoSum).
+    """
+    if remainder is None:
+        return *_horner(series, h), []
+    change, slope = _horner([remainder, *series[1:]], h)
+    end = series[0] + change
+    rounded = end - series[0]
+    return end, slope, [(series[0] - (end - rounded)) + (change - rounded)]
+
+
+def _lane_loop(
+    program: StraightLine,
+    arguments: str,
+    reads: Mapping[str, str],
+    writes: Mapping[str, Value | str],
+    constants: Mapping[str, str] | None = None,
+    rows: Sequence[str] = (),
+) -> GeneratedFunction:
+    """A kernel with a loop over lanes that reads inputs from arrays, runs a straight-line program and writes its results.
+
+    reads, constants: {input: source}; writes: {left-hand side with its operator: value or source}. Constants are read before the
+    loop: read in it, each would be checked for overlap with every array that the loop writes, and beyond some 100 checks nothing
+    is vectorised. rows: the arrays whose rows have the length `LANES`. As this is a constant, the compiler knows that the rows do
+    not overlap; the checks of separate arrays take as long as 16 lanes.
+    """
+    program.results = [value.index for value in writes.values() if isinstance(value, Value)]
+    sources = {target: f"r{value.index}" if isinstance(value, Value) else value for target, value in writes.items()}
+    name = program.name.removeprefix("_")
+    lines = [
+        "@kernel",
+        f"def {name}(coefficients, n, {arguments}):",
+        *(f"    if {each}.shape[1] != {LANES}: raise ValueError('{each}: must have {LANES} columns')" for each in rows),
+        *(f"    {each} = {source}" for each, source in {TABLE: "read_table(coefficients)", **(constants or {})}.items()),
+        "    for i in range(n):",
+        *(f"        {each} = {source}" for each, source in reads.items()),
+        f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
+        *(f"        {target} {source}" for target, source in sources.items()),
+    ]
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n", tuple(reads))
+
+
+_START = {"x0": "x[i]", "y0": "y[i]", "x1": "px[i]", "y1": "py[i]"}
+
+
+def _start_in(lanes: str) -> dict[str, str]:
+    """The inputs of the recurrence, read from the first rows of an array of lanes."""
+    return {name: f"{lanes}[{row}, i]" for row, name in enumerate(_START)}
+
+
+def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
+    program = StraightLine("_step", table)
+    remainders = {axis: program.input(f"{axis}_remainder") for axis in "xy"} if structure.carries_remainders else {}
+    x, y = structure.orbit(program, remainders)
+    h = _step_size(program, x, y, structure)
+    x_end, px_end, x_remainder = _end_of_step(x, h, remainders.get("x"))
+    y_end, py_end, y_remainder = _end_of_step(y, h, remainders.get("y"))
+    hidden = flag_hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
+    gates, gate = flag_gates(structure.setting, program, (x, y), (x_end, y_end), h)
+    t_end = program.input("t0") + h
+    end = x_end, y_end, px_end, py_end
+    flags = hidden + gate + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
+    writes = {
+        "crossed[i] +=": where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
+        "flag[i] =": flags,
+        **{f"new[{row}, i] =": value for row, value in enumerate((*end, t_end, h, *x_remainder, *y_remainder))},
+    }
+    arguments = "tolerance, horizon, gates, now, new, flag, crossed"
+    reads = {**_start_in("now"), "t0": "now[4, i]"}
+    if remainders:
+        # In WebAssembly inputs have the rows of this order.
+        reads |= {"last_size": "now[5, i]", "x_remainder": "now[6, i]", "y_remainder": "now[7, i]"}
+    return _lane_loop(program, arguments, reads, writes, gates, rows=("now", "new"))
+
+
+def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
+    program = StraightLine("_fixed_step", table)
+    x, y = structure.orbit(program)
+    h = program.input("h")
+    x_end, px_end = _horner(x, h)
+    y_end, py_end = _horner(y, h)
+    # The sums are left to the loop: within the program they make it up to a sixth slower.
+    writes: dict[str, Value | str] = {
+        "sums[0, i] +=": "weight*(x0*x0)",
+        "sums[1, i] +=": "weight*(y0*y0)",
+        **{f"state[{row}, i] =": value for row, value in enumerate((x_end, y_end, px_end, py_end))},
+    }
+    return _lane_loop(program, "h, weight, state, sums", _start_in("state"), writes, rows=("state", "sums"))
+
+
+def _jets(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
+    program = StraightLine("_jets", table)
+    orbit = zip("xy", structure.orbit(program), strict=True)
+    writes = {f"{name}_jet[{k}, i] =": series[k] for name, series in orbit for k in range(ORDER + 1)}
+    return _lane_loop(program, "x, y, px, py, x_jet, y_jet", _START, writes)
+
+
+def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
+    """Variational equations ẅ = −(Hessian of V along the orbit) w, with w = (δx, δy, δpx, δpy); eq. 4 of Zotos (2014)."""
+    program = StraightLine("_tangent", table)
+    hessian = structure.hessian(program)
+    second: dict[tuple[int, int], list[Value]] = {axes: [] for axes in hessian}
+    u, v = ([program.input(f"{name}{k}") for k in (0, 1)] for name in "uv")
+    for k in range(ORDER - 1):
+        for axes, (coefficient, _) in hessian.items():
+            second[axes].append(coefficient(k))
+        for w, row in ((u, ((0, 0), (0, 1))), (v, ((0, 1), (1, 1)))):
+            parts = (cauchy(second[axes], other, k) for axes, other in zip(row, (u, v), strict=True) if hessian[axes][1])
+            w.append(total(program, parts) * (1.0 / ((k + 1) * (k + 2))))
+        if structure.setting.rotates:
+            add_coriolis(program, u, v)
+    h = program.input("h")
+    (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
+    reads = {**_START, "u0": "wx[i]", "v0": "wy[i]", "u1": "wpx[i]", "v1": "wpy[i]", "h": "duration[i]"}
+    writes = {"wx[i] =": u_end, "wy[i] =": v_end, "wpx[i] =": pu_end, "wpy[i] =": pv_end}
+    return _lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
+
+
+def _point_function(name: str, append: Callable[[StraightLine], Mapping[str, Value]], table: dict[Any, int]) -> GeneratedFunction:
+    """A function of one point (x, y)."""
+    program = StraightLine(f"_{name}", table)
+    values = append(program)
+    program.results = [value.index for value in values.values()]
+    lines = [
+        "@kernel",
+        f"def {name}(coefficients, x, y):",
+        f"    {TABLE} = read_table(coefficients)",
+        f"    ({', '.join(values)},) = {program.name}({', '.join(program.parameters)})",
+        f"    return {', '.join(values)}",
+    ]
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n")
+
+
+def generate_code(
+    definition: Definition,
+    channels: int,
+    reach: float = REACH,
+    *,
+    discs: int = 0,
+    ring: bool = False,
+    rotates: bool = False,
+) -> GeneratedCode:
+    """The generated functions for a potential, the same object for all potentials of the same structure.
+
+    Parameters
+    ----------
+    definition
+        ((i, j, c), …) of V = Σ c x^i y^j, in any order, or an expression.
+    channels
+        How many lines ``step`` tests, 0 or more.
+    reach
+        Radius about the origin, above 0, that contains all orbits.
+    discs
+        How many discs around centres ``step`` tests, 0 or more.
+    ring
+        Whether it tests a circle around the origin.
+    rotates
+        Whether the frame rotates.
+    """
+    return _generate(_find_structure(definition, Setting(channels, discs, ring, rotates), reach))
+
+
+@functools.singledispatch
+def _find_structure(definition: Any, setting: Setting, reach: float) -> Structure:
+    raise TypeError(f"definition={definition!r}: must be terms or an expression")
+
+
+@_find_structure.register(tuple)
+def _of_polynomial(terms: Terms, setting: Setting, reach: float) -> Structure:
+    return structure_of_polynomial(terms, setting, reach)
+
+
+@_find_structure.register(Expression)
+def _of_expression(expression: Expression, setting: Setting, _reach: float) -> Structure:
+    return structure_of_expression(expression, setting)
+
+
+@functools.lru_cache(maxsize=_STRUCTURES)
+def _generate(structure: Structure) -> GeneratedCode:
+    table: dict[Any, int] = {}
+    functions = [
+        *(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent)),
+        *(_point_function(name, append, table) for name, append in structure.point_functions().items()),
+    ]
+    return GeneratedCode(tuple(functions), tuple(table), structure)

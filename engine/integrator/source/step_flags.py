@@ -1,0 +1,76 @@
+"""Tests of a step for events, appended to its straight-line program."""
+
+from __future__ import annotations
+
+from engine.integrator.source.series import ORDER, Series, Setting
+from engine.integrator.source.straight_line import StraightLine, Value, where
+
+HIDDEN, GATE, OVERSHOOT, NEAR = 1, 2, 4, 8
+"""Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon; it may pass an
+exit although its end is not beyond."""
+
+# Of σ − σ^k, 0 ≤ σ ≤ 1, rounded up; 1 for larger k.
+_LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
+
+
+def _bend(series: Series, h: Value) -> Value:
+    """½ Σ_{k≥2} |y_k| (2h)^k, which is at least twice the distance of y from its chord over a step."""
+    twice = h + h
+    bound = abs(series[ORDER])
+    for k in reversed(range(2, ORDER)):
+        bound = bound * twice + abs(series[k])
+    return bound * twice * h
+
+
+def _sag(series: Series, h: Value) -> Value:
+    """A bound of the distance of a coordinate from its chord over a step, Σ_{k≥2} max(σ − σ^k) |x_k| h^k with 0 ≤ σ ≤ 1."""
+    bound = abs(series[ORDER])
+    for k in reversed(range(2, ORDER)):
+        bound = bound * h + (_LARGEST_SAGS.get(k, 1.0) * abs(series[k]))
+    return bound * h * h
+
+
+def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
+    """The test of a step for hidden crossings of y = 0, for potentials where there can be any: HIDDEN or 0.
+
+    The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. So none hide where ẏ keeps its sign (|ẏ(0)| h > bound), nor where both
+    ends lie on one side, further off than bound/2.
+    """
+    bound = _bend(y, h)
+    near, far = abs(y[0]), abs(end)
+    near = where(near < far, near, far)
+    return where(abs(y[1]) * h > bound, 0, where((y[0] * end > 0.0) & (near > 0.5 * bound), 0, HIDDEN))
+
+
+def flag_gates(
+    setting: Setting, program: StraightLine, series: tuple[Series, Series], end: tuple[Value, Value], h: Value
+) -> tuple[dict[str, str], Value]:
+    """The inputs of the gates with their sources, and GATE, NEAR or 0.
+
+    A row of `gates` is g_x, g_y, g: for a channel the line g_x x + g_y y = g, for a centre its place and the radius of its disc,
+    for the escape circle 0, 0 and its radius.
+    """
+    count = setting.channels + setting.discs + setting.ring
+    columns = {"x": 0, "y": 1, "": 2}
+    sources = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(count) for name, column in columns.items()}
+    flag = program.constant(0)
+    rows = [[program.input(f"g{k}{name}") for name in columns] for k in range(count)]
+    lines, circles = rows[: setting.channels], rows[setting.channels :]
+    if not setting.needs_whole_steps:
+        for g_x, g_y, g in lines:
+            flag = where(g_x * end[0] + g_y * end[1] > g, GATE, flag)
+        return sources, flag
+    start = series[0][0], series[1][0]
+    # No point of the step is further than this from its chord.
+    bend = _sag(series[0], h) + _sag(series[1], h)
+    half_chord = 0.5 * (abs(end[0] - start[0]) + abs(end[1] - start[1]))
+    for g_x, g_y, g in lines:
+        for x, y in (start, end):
+            flag = where(g_x * x + g_y * y + bend > g, NEAR, flag)
+    for k, (c_x, c_y, radius) in enumerate(circles):
+        squares = [(x - c_x) * (x - c_x) + (y - c_y) * (y - c_y) for x, y in (start, end)]
+        is_disc = k < setting.discs
+        edge = radius + (bend + half_chord) if is_disc else where(radius > bend, radius - bend, 0.0)
+        for square in squares:
+            flag = where(square < edge * edge if is_disc else square > edge * edge, NEAR, flag)
+    return sources, flag

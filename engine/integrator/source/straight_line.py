@@ -1,0 +1,92 @@
+"""Straight-line programs, recorded by calculating with symbolic values; compiled by `engine.integrator.jit.llvm_emitter`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+TABLE = "table"
+"""Name of the parameter with the numbers that `StraightLine.entry` refers to."""
+
+
+@dataclass
+class StraightLine:
+    """A function without branches: a list of operations, each on the results of earlier ones.
+
+    Attributes
+    ----------
+    name
+        Name of the function.
+    table
+        {key: index} of the table that is passed at run time; may be shared with other programs, and grows with `entry`.
+    operations
+        (symbol, operands): ``input`` with a name, ``constant`` with a number, ``entry`` with an index of the table, or an
+        operation on the results with the given indices: + − · / on doubles, + − · >> on 64-bit integers, < <= > >= == on two
+        of a kind, & on booleans, ``abs`` and ``sqrt`` of doubles, ``where`` (condition, value, other value), ``bits_of`` and
+        ``double_of``, which reinterpret a double as an integer and back.
+    results
+        Indices of the results that are returned.
+    """
+
+    name: str
+    table: dict[Any, int]
+    operations: list[tuple[str, tuple[Any, ...]]] = field(default_factory=list)
+    results: list[int] = field(default_factory=list)
+
+    @property
+    def parameters(self) -> list[str]:
+        """The table, then the inputs in the order of their first use."""
+        return [TABLE, *dict.fromkeys(operands[0] for symbol, operands in self.operations if symbol == "input")]
+
+    def input(self, name: str) -> Value:
+        """A parameter: a double or an integer."""
+        return self._append("input", name)
+
+    def constant(self, number: float) -> Value:
+        """An integer or a double."""
+        return self._append("constant", number)
+
+    def entry(self, key: Any) -> Value:
+        """A number of the table."""
+        return self._append("entry", self.table.setdefault(key, len(self.table)))
+
+    def apply(self, symbol: str, *operands: Value | float) -> Value:
+        """The result of an operation; numbers among the operands become constants."""
+        values = [each if isinstance(each, Value) else self.constant(each) for each in operands]
+        return self._append(symbol, *(value.index for value in values))
+
+    def _append(self, symbol: str, *operands: Any) -> Value:
+        self.operations.append((symbol, operands))
+        return Value(self, len(self.operations) - 1)
+
+    def __str__(self) -> str:
+        lines = [f"{index}: {symbol} {' '.join(map(repr, operands))}" for index, (symbol, operands) in enumerate(self.operations)]
+        return "\n".join([self.name, *lines, f"results {self.results}"])
+
+
+def _binary(symbol: str, *, swapped: bool = False) -> Callable[[Value, Value | float], Value]:
+    def method(one: Value, other: Value | float) -> Value:
+        return one.program.apply(symbol, *((other, one) if swapped else (one, other)))
+
+    return method
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """A result within a program; operators and comparisons append to the program and return new values."""
+
+    program: StraightLine
+    index: int
+
+    __add__, __sub__, __mul__, __rshift__, __and__ = map(_binary, ("+", "-", "*", ">>", "&"))
+    __lt__, __le__, __gt__, __ge__, equals = map(_binary, ("<", "<=", ">", ">=", "=="))
+    __radd__, __rsub__, __rmul__, __rtruediv__ = (_binary(symbol, swapped=True) for symbol in "+-*/")
+
+    def __abs__(self) -> Value:
+        return self.program.apply("abs", self)
+
+
+def where(condition: Value, chosen: Value | float, otherwise: Value | float) -> Value:
+    """One of two values; both are computed."""
+    return condition.program.apply("where", condition, chosen, otherwise)

@@ -1,0 +1,176 @@
+"""The inner branch of the unstable manifold of a Lyapunov orbit: a tube of orbits that lead from the exit into the well."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.exits.lyapunov_orbits import LyapunovOrbit
+from engine.exits.periodic_orbits import monodromy_matrix
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.integrator.kernels.dense_output import sample_path, trace_steps
+from engine.integrator.source.recurrence import TOLERANCE
+from engine.propagation.fixed_step_batches import map_tiles
+from engine.systems.compiled import kernels_of
+from engine.systems.potential import Potential
+
+# Largest displacement from the Lyapunov orbit at which orbits of the tube start. The distance of such a start from the manifold,
+# by the time the tube has grown to the size of the well, scales with its third power: 4e-8 for 1e-2, 3e-11 for 1e-3, so 3e-13.
+_MAX_DISPLACEMENT = 2e-4
+# Between two section passages an orbit may stay near another Lyapunov orbit; longer stays than this many periods are not needed.
+_MAX_PERIODS_PER_PASSAGE = 12.0
+# Lyapunov orbits over a saddle have multipliers of 38 and more; an orbit with multiplier 1 is about to become stable.
+_MIN_MULTIPLIER = 1.5
+# A Lyapunov orbit that crosses y = 0 is itself a point of the section, from which one endless curve starts. Its first image ends
+# where a displacement that kept growing by the multiplier would reach this multiple of the saddle's distance from the origin.
+_FIRST_IMAGE_END = 6.0
+# A tile takes about 0.3 ms.
+_TILES_PER_TASK = 16
+
+
+@dataclass(frozen=True, eq=False)
+class UnstableManifold:
+    """The inner branch of a Lyapunov orbit's unstable manifold, as a one-parameter family of orbits.
+
+    A displacement from a fixed point of the Lyapunov orbit, in the unstable direction, grows by the multiplier per period. The
+    displacements between one size and the multiplier times that size therefore give each orbit of the branch once (a fundamental
+    domain). They are parametrised by a phase from 0 to 1; both ends give the same orbit.
+
+    Attributes
+    ----------
+    orbit
+        The Lyapunov orbit of a potential in units of its well.
+    direction
+        (4,) unit vector in phase space at the orbit's first point, where it is at rest: the unstable direction, inward.
+    multiplier
+        Unstable eigenvalue of the monodromy matrix, above 1.
+    min_displacement, max_displacement
+        Displacements of phase 0 and of phase 1, dimensionless.
+    near_passages
+        Number of initial passages of y = 0 near the Lyapunov orbit; 0 if that orbit does not cross y = 0.
+    """
+
+    orbit: LyapunovOrbit
+    direction: np.ndarray
+    multiplier: float
+    min_displacement: float
+    max_displacement: float
+    near_passages: int
+
+    @classmethod
+    def from_orbit(cls, orbit: LyapunovOrbit) -> UnstableManifold:
+        """Build the manifold of a Lyapunov orbit.
+
+        Raises
+        ------
+        ValueError
+            When the orbit is not unstable, or the frame rotates.
+        """
+        orbit.potential.check_at_rest("manifolds of Lyapunov orbits")
+        monodromy = monodromy_matrix(orbit.potential, orbit.start, orbit.period)
+        multiplier, direction = _leading_eigenvector(monodromy)
+        if not multiplier > _MIN_MULTIPLIER:
+            raise ValueError(
+                f"the Lyapunov orbit of channel {orbit.channel} is not unstable; "
+                f"its multiplier {multiplier:.3g} must be above {_MIN_MULTIPLIER:g}"
+            )
+        if direction[:2] @ orbit.outward > 0.0:
+            direction = -direction
+        largest, near_passages = _MAX_DISPLACEMENT, 0
+        if orbit.y[0] * orbit.y[orbit.y.size // 2] <= 0.0:
+            end = _FIRST_IMAGE_END * float(np.hypot(*orbit.potential.saddles[orbit.channel - 1]))
+            periods = math.ceil(math.log(end / _MAX_DISPLACEMENT) / math.log(multiplier))
+            largest, near_passages = end * multiplier**-periods, periods - 1
+        manifold = cls(orbit, read_only(direction), multiplier, largest / multiplier, largest, near_passages)
+        left_eigenvector = _leading_eigenvector(monodromy.T)[1]
+        return replace(manifold, max_displacement=manifold._displacement_after_period(left_eigenvector))
+
+    @property
+    def potential(self) -> Potential:
+        """The potential in units of its well."""
+        return self.orbit.potential
+
+    def _displacement_after_period(self, left_eigenvector: np.ndarray) -> float:
+        """The displacement that the orbit of phase 0 has after one period; nonlinear terms make it differ from the linear one.
+
+        The product of left_eigenvector (4,), which belongs to the multiplier, with a displacement is proportional to the
+        unstable component.
+        """
+        kernels = kernels_of(self.potential)
+        (start,) = self.start_states(np.array([self.min_displacement]))
+        steps = trace_steps(kernels, start, self.orbit.period, len(self.potential.outcomes))
+        target = sample_path(kernels, steps, np.array([self.orbit.period]))[:, 0]
+        displacement = self.max_displacement
+        for _ in range(3):
+            (trial,) = self.start_states(np.array([displacement]))
+            displacement += float(left_eigenvector @ (target - trial) / (left_eigenvector @ self.direction))
+        return displacement
+
+    def find_passages(self, phases: np.ndarray, count: int, execution: Execution = DEFAULT_EXECUTION) -> np.ndarray:
+        """Find the first downward passages of y = 0 of the orbits with these phases, until they escape.
+
+        Parameters
+        ----------
+        phases
+            (n,) from 0 to 1.
+        count
+            Number of passages per orbit, at least 1.
+        execution
+            How the computation runs.
+
+        Returns
+        -------
+        (n, count, 3) x, px and time; NaN for missing passages. Time 0 is when the displacement, growing exponentially at its
+        initial rate, would be 1, so that phases 0 and 1 give the same times.
+
+        Raises
+        ------
+        concurrent.futures.CancelledError
+            When cancelled.
+        """
+        displacements = self.displacements(phases)
+        growth_time = self.orbit.period / math.log(self.max_displacement / self.min_displacement)
+        curves = exit_curves(self.potential, self.orbit.energy)
+        duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
+        passages = map_tiles(
+            _passages, self.potential, self.start_states(displacements), count, curves, exit_gates(curves), duration,
+            shape=(count, 3), execution=execution, tiles_per_task=_TILES_PER_TASK,
+        )  # fmt: skip
+        execution.raise_if_cancelled()
+        passages[:, :, 2] += growth_time * np.log(displacements)[:, None]
+        return passages
+
+    def displacements(self, phases: np.ndarray) -> np.ndarray:
+        """(n,) displacements of the orbits with phases (n,), in geometric progression."""
+        displacements: np.ndarray = self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
+        return displacements
+
+    def start_states(self, displacements: np.ndarray) -> np.ndarray:
+        """(n, 4) states displaced by (n,) from the Lyapunov orbit's point of rest, projected back onto its energy."""
+        states: np.ndarray = self.orbit.start + displacements[:, None] * self.direction
+        for _ in range(3):
+            gradient = np.column_stack([*self.potential.gradient(states[:, 0], states[:, 1]), states[:, 2:]])
+            excess = self.potential.energy(states) - self.orbit.energy
+            states = states - (excess / np.sum(gradient * gradient, axis=1))[:, None] * gradient
+        return states
+
+
+def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:
+    """The eigenvalue of largest modulus and its unit eigenvector; real parts."""
+    values, vectors = np.linalg.eig(matrix)
+    leading = int(np.argmax(np.abs(values)))
+    return float(values[leading].real), vectors[:, leading].real.copy()
+
+
+def _passages(
+    potential: Potential, tile: np.ndarray, count: int, curves: np.ndarray, gates: np.ndarray, duration: float
+) -> np.ndarray:
+    """(lanes, count, 3) passages of the orbits in a tile (4, lanes)."""
+    passages = np.full((tile.shape[1], count, 3), np.nan)
+    found = np.zeros(tile.shape[1], np.int64)
+    kernels_of(potential).find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, found)
+    return passages

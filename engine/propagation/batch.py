@@ -1,0 +1,331 @@
+"""A batch of orbits as arrays, and its parallel propagation in tiles on any executor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from engine.exits.exit_rows import exit_gates
+from engine.exits.interior import find_outside_starts
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
+from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits
+from engine.integrator.source.recurrence import LANES, TOLERANCE
+from engine.propagation.certificates import Certificate
+from engine.propagation.fates import Fate
+from engine.systems.compiled import kernels_of
+from engine.systems.potential import Potential
+
+LARGEST_TILE = 2048
+"""Largest number of orbits per tile."""
+
+STEP_BUDGET = 2_000_000
+"""Largest number of steps of lanes per kernel call, 20 to 50 ms: the interval at which cancellation and progress are handled."""
+
+# With fewer orbits the lanes are not full enough: a worker gives them back, and they are joined with others.
+_FULL_LANES = LANES - 2 * VECTOR
+
+
+@dataclass
+class OrbitBatch:
+    """The states of n orbits; their propagation can be continued at any time.
+
+    Attributes
+    ----------
+    state
+        (n, 4) x, y, px, py at time `t`: where the orbit escaped, or where its next step starts.
+    t
+        (n,) time reached; the escape time of an escaped orbit.
+    crossings
+        (n,) upward crossings of y = 0 until `t`.
+    last_crossings
+        (n,) upward crossings between `t` and t_max of a bounded orbit.
+    fate
+        (n,) int8 codes, see `Fate`.
+    curve_row
+        (n,) the row of the exit curves array for the energy of this orbit.
+    outside
+        (n,) int8: the channel beyond whose Lyapunov orbit the start lies; 0 if it lies inside.
+    certificate
+        (n,) int8 codes, see `Certificate`: why an orbit is bounded although it was not integrated to t_max; 0 for all others.
+    remainder
+        (n, 2) what rounding has dropped from x and y of `state`, see `engine.integrator.kernels.propagate.Orbits`.
+    tested
+        (n,) time of the last test for certificates, 0 before the first.
+    digits
+        (n,) digits to which averages agreed in that test, infinite before the first; see `BoundednessCertifier`.
+    """
+
+    state: np.ndarray
+    t: np.ndarray
+    crossings: np.ndarray
+    last_crossings: np.ndarray
+    fate: np.ndarray
+    curve_row: np.ndarray
+    outside: np.ndarray
+    certificate: np.ndarray
+    remainder: np.ndarray
+    tested: np.ndarray
+    digits: np.ndarray
+
+    @classmethod
+    def empty(cls, curve_row: np.ndarray) -> OrbitBatch:
+        """Orbits (n,) whose starts are set later."""
+        n = curve_row.size
+        counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
+        fate = np.full(n, Fate.NOT_COMPUTED, np.int8)
+        states, times, digits = np.full((n, 4), np.nan), np.zeros((2, n)), np.full(n, np.inf)
+        return cls(
+            states, times[0], counts[0], counts[1], fate, curve_row, codes[0], codes[1], np.zeros((n, 2)), times[1], digits
+        )
+
+    @classmethod
+    def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
+        """Orbits at t = 0. `mark_outside` finds the outside starts."""
+        batch = cls.empty(curve_row)
+        batch.set_starts(np.arange(curve_row.size), states)
+        return batch
+
+    def set_starts(self, which: np.ndarray, states: np.ndarray) -> None:
+        """Set the states (m, 4) of the orbits `which` (m,) at t = 0; those with a non-finite state are forbidden."""
+        self.state[which] = states
+        self.fate[which[~np.isfinite(states).all(axis=1)]] = Fate.FORBIDDEN
+
+    def set_outcomes(
+        self, fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, outside: np.ndarray, certificate: np.ndarray
+    ) -> None:
+        """Set the outcomes (n,) of all orbits without their states."""
+        self.fate[:], self.crossings[:], self.outside[:], self.certificate[:] = fate, crossings, outside, certificate
+        self.t[:] = np.where(fate > 0, escape_time, 0.0)
+
+    def mark_outside(
+        self,
+        potential: Potential,
+        which: np.ndarray,
+        curves: np.ndarray,
+        *,
+        execution: Execution = DEFAULT_EXECUTION,
+    ) -> np.ndarray:
+        """Set `outside` and `fate` of those starts among `which` (indices) that lie outside the exits.
+
+        Returns the indices that were tested: all, unless it was cancelled.
+        """
+        tested = [which[:0]]
+        for part, channel in run_parts(
+            _find_outside, which, lambda part: (potential, self.state[part], curves, self.curve_row[part]),
+            execution=execution,
+        ):  # fmt: skip
+            self.outside[part] = channel
+            self.fate[part[channel > 0]] = Fate.OUTSIDE
+            tested.append(part)
+        return np.concatenate(tested)
+
+    def mark_bounded(self, which: np.ndarray, certificate: np.ndarray | int) -> None:
+        """Store the certificates of the orbits `which` (indices); orbits with a certificate become bounded."""
+        self.certificate[which] = certificate
+        self.fate[which[self.certificate[which] != Certificate.NONE]] = Fate.BOUNDED
+
+    def copy_to_images(self, which: np.ndarray, images: np.ndarray, numbers: np.ndarray) -> None:
+        """Copy the results of the orbits `which` to the orbits `images`, their exact mirror images under x → −x.
+
+        Parameters
+        ----------
+        which, images
+            Indices of the same shape.
+        numbers
+            (n, outcomes + 1) the image of each fate, see `Well.mirror_numbers`.
+        """
+        self.state[images] = self.state[which] * [-1.0, 1.0, -1.0, 1.0]
+        self.remainder[images] = self.remainder[which] * [-1.0, 1.0]
+        for name in ("t", "crossings", "last_crossings"):
+            getattr(self, name)[images] = getattr(self, name)[which]
+        fate, orbits = self.fate[which], np.arange(which.size)
+        self.fate[images] = np.where(fate > 0, numbers[orbits, np.maximum(fate, 0)], fate)
+        self.outside[images] = numbers[orbits, self.outside[which]]
+        certified = self.certificate[which] != Certificate.NONE
+        self.certificate[images] = np.where(certified, Certificate.MIRRORED, Certificate.NONE)
+
+    def reopen(self, which: np.ndarray) -> None:
+        """Make the orbits `which` (indices), which are bounded or undecided, undecided again, to be continued."""
+        self.fate[which], self.certificate[which] = Fate.NOT_COMPUTED, Certificate.NONE
+        self.last_crossings[which] = 0
+
+    def certificates(self) -> np.ndarray:
+        """(n,) int8: the `Certificate` of each orbit, including `Certificate.INTEGRATED`."""
+        integrated = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
+        return np.where(integrated, np.int8(Certificate.INTEGRATED), self.certificate)
+
+    def for_kernels(self, pending: np.ndarray) -> Orbits:
+        """The arrays that `propagate` changes in place; pending (n,) uint8: 1 for the orbits to propagate."""
+        return Orbits(self.state, self.t, self.crossings, self.last_crossings, self.fate, pending, self.remainder)
+
+    @property
+    def nbytes(self) -> int:
+        """Total size of the arrays in bytes."""
+        return sum(getattr(self, field.name).nbytes for field in fields(self))
+
+    def take(self, which: np.ndarray) -> OrbitBatch:
+        """A copy of the orbits `which` (indices)."""
+        return replace(self, **{field.name: getattr(self, field.name)[which] for field in fields(self)})
+
+    def put(self, which: np.ndarray, orbits: OrbitBatch) -> None:
+        """Replace the orbits `which` (indices) by others."""
+        for field in fields(self):
+            getattr(self, field.name)[which] = getattr(orbits, field.name)
+
+
+def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
+    """(n,) int8: the channel beyond which each start (n, 4) lies, 0 for none; runs in a worker."""
+    x, y = np.ascontiguousarray(states[:, :2].T)
+    with np.errstate(invalid="ignore"):
+        # At the centre of a body V = −∞: a start of any energy has an infinite momentum.
+        energy = np.where(np.isinf(states[:, 2:]).any(axis=1), np.inf, potential.energy(states))
+    return find_outside_starts(potential, x, y, energy, curves, curve_row)
+
+
+@dataclass
+class Tile:
+    """A part of a batch that one worker propagates.
+
+    Attributes
+    ----------
+    orbits
+        (n,) indices of the orbits in the whole batch.
+    batch
+        A copy of these orbits.
+    active
+        (n,) uint8: 1 for orbits that have neither escaped nor reached the horizon.
+    """
+
+    orbits: np.ndarray
+    batch: OrbitBatch
+    active: np.ndarray
+
+    @classmethod
+    def copy_from(cls, batch: OrbitBatch, orbits: np.ndarray) -> Tile:
+        """A tile of the orbits (indices), all active."""
+        return cls(orbits, batch.take(orbits), np.ones(orbits.size, np.uint8))
+
+
+def _advance_tile(
+    potential: Potential,
+    curves: np.ndarray,
+    gates: np.ndarray,
+    tile: Tile,
+    horizon: float,
+    final: bool,
+    tolerance: float,
+    least: int,
+) -> Tile:
+    """Propagate the orbits of a tile by `STEP_BUDGET` steps, or until fewer than `least` are active; runs in a worker."""
+    exits = Exits(gates, curves, tile.batch.curve_row)
+    kernels_of(potential).propagate(
+        np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least, exits, tile.batch.for_kernels(tile.active),
+        NO_TRACE,
+    )  # fmt: skip
+    return tile
+
+
+class OrbitPool:
+    """Orbits that wait for a worker, in the order in which they are propagated.
+
+    Parameters
+    ----------
+    orbits
+        (n,) indices of all orbits to propagate.
+    workers
+        Number of workers.
+    """
+
+    def __init__(self, orbits: np.ndarray, workers: int) -> None:
+        self._waiting, self._workers = orbits, workers
+        self._taken = 0
+
+    @property
+    def waiting(self) -> int:
+        """Number of orbits that wait."""
+        return self._waiting.size
+
+    def take(self) -> np.ndarray:
+        """The share of a worker in the orbits left, in whole SIMD vectors and at most `LARGEST_TILE`."""
+        share = -(-(self._waiting.size + self._taken) // self._workers)
+        size = min(-(-share // VECTOR) * VECTOR, LARGEST_TILE)
+        orbits, self._waiting = np.split(self._waiting, [size])
+        self._taken += orbits.size
+        return orbits
+
+    def give_back(self, tile: Tile) -> None:
+        """Queue the orbits of a tile that are still active."""
+        self._taken -= tile.orbits.size
+        self._waiting = np.concatenate([self._waiting, tile.orbits[tile.active != 0]])
+
+
+def propagate_batch(
+    potential: Potential,
+    curves: np.ndarray,
+    batch: OrbitBatch,
+    which: np.ndarray,
+    horizon: float,
+    *,
+    final: bool,
+    execution: Execution = DEFAULT_EXECUTION,
+    on_tiles: Callable[[], None] = lambda: None,
+    tolerance: float = TOLERANCE,
+) -> bool:
+    """Integrate the undecided orbits among `which` until they escape or reach `horizon`; the batch is changed in place.
+
+    The result of each orbit is bit-identical for every executor and for every pattern of interruptions. All quantities are in
+    units of the well.
+
+    Parameters
+    ----------
+    potential
+        The potential in units of its well, `Potential.in_well_units`.
+    curves
+        (energies, channels, columns) exit curves, see `exit_curves`.
+    batch
+        The orbits.
+    which
+        Indices of the orbits to propagate.
+    horizon
+        Time at which to stop, dimensionless.
+    final
+        Whether the horizon is t_max: orbits that reach it become bounded.
+    execution
+        How the computation runs. When it is cancelled, the propagation stops early; it can be continued by another call.
+    on_tiles
+        Called after each group of completed tiles.
+    tolerance
+        Tolerance of the Taylor steps.
+
+    Returns
+    -------
+    Whether the propagation was completed; False if it was cancelled.
+    """
+    workers = execution.workers
+    gates = exit_gates(curves)
+    undecided = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
+    pool = OrbitPool(undecided, workers)
+    running: set[Future[Tile]] = set()
+
+    def keep_workers_busy() -> None:
+        # Tiles are queued ahead only while there are full ones.
+        while pool.waiting and len(running) < (2 * workers if pool.waiting > LARGEST_TILE else workers):
+            tile = Tile.copy_from(batch, pool.take())
+            least = _FULL_LANES if pool.waiting and tile.orbits.size > _FULL_LANES else 0
+            running.add(execution.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least))
+
+    keep_workers_busy()
+    while running:
+        done, running = wait(running, return_when=FIRST_COMPLETED)
+        for future in done:
+            propagated = execution.collect(future)
+            if propagated is not None:
+                batch.put(propagated.orbits, propagated.batch)
+                pool.give_back(propagated)
+        if not execution.is_cancelled:
+            keep_workers_busy()
+            on_tiles()
+    return not execution.is_cancelled

@@ -1,0 +1,152 @@
+"""Outcomes of a list of orbits of one energy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, ClassVar
+
+import numpy as np
+
+from engine.exits.exit_rows import exit_curves
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.foundations.validation import LARGEST_NUMBER, checked_array, checked_number, checks_types
+from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.propagation.fates import Fate, OrbitResult
+from engine.systems.outcomes import Outcome
+from engine.systems.potential import Potential
+from engine.systems.well_units import TIME
+
+ENERGY_TOLERANCE = 1e-9
+"""Largest difference between the energy of a start and the given energy, in units of the well."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Outcomes(OrbitResult):
+    """Outcomes of n orbits, as returned by `classify_orbits`; arrays are read-only.
+
+    Attributes
+    ----------
+    fate
+        int8 codes: k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k, or a `Fate`.
+    escape_time
+        float64, time of the passage through the exit, of the collision or of the passage of the escape radius; NaN for orbits
+        without an outcome.
+    crossings
+        int32, upward crossings of y = 0 (not counting the start) before the escape or until t_max; 0 if there is no orbit.
+    energy_error
+        float64, ``|H − h| / |h|`` at the end; NaN if there is no orbit.
+    t_max
+        Integration time of the orbits that have not escaped; infinite if it is not known.
+    outcomes
+        Those of the potential, see `Potential.outcomes`; empty if they are not known.
+    """
+
+    fate: np.ndarray
+    escape_time: np.ndarray = field(metadata=TIME)
+    crossings: np.ndarray
+    energy_error: np.ndarray
+    t_max: float = field(default=float("inf"), metadata=TIME)
+    outcomes: tuple[Outcome, ...] = ()
+    codes: ClassVar = {"fate": Fate}
+    row_dimension: ClassVar = "orbit"
+
+
+def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
+    """The outcomes of a batch in its current state and its units; `energy` (n,) is the reference for the energy errors."""
+    orbit = (batch.fate >= Fate.BOUNDED) | (batch.fate == Fate.NOT_COMPUTED)
+    crossings = np.where(orbit, batch.crossings + batch.last_crossings, 0).astype(np.int32)
+    decided, error = batch.fate >= Fate.BOUNDED, np.full(batch.fate.size, np.nan)
+    reference = energy[decided]
+    difference = np.abs(potential.energy(batch.state[decided]) - reference)
+    error[decided] = difference / np.maximum(np.abs(reference), np.finfo(float).tiny)
+    escape_time = np.where(batch.fate >= 1, batch.t, np.nan)
+    return Outcomes(read_only(batch.fate.copy()), read_only(escape_time), read_only(crossings), read_only(error))
+
+
+@shows_progress("orbits")
+@checks_types(potential=Potential, execution=Execution)
+def classify_orbits(
+    potential: Potential,
+    energy: float,
+    states: Any,
+    t_max: float = 1e5,
+    *,
+    execution: Execution = DEFAULT_EXECUTION,
+) -> Outcomes:
+    """Fate, escape time and number of crossings of orbits of one energy.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    energy
+        h, finite, at most 1e9 in magnitude, dimensionless.
+    states
+        (n, 4) x, y, px, py; finite, with that energy to within 1e-9 in units of the well.
+    t_max
+        Largest integration time, 0 < t_max ≤ 1e8, dimensionless.
+    execution
+        How the computation runs. When it is cancelled, orbits without a result stay `Fate.NOT_COMPUTED`.
+
+    Returns
+    -------
+    `Outcomes`, whose `to_pandas` and `to_xarray` have a row for each orbit.
+
+    Raises
+    ------
+    ValueError
+        If a state is not finite or has another energy, or a parameter is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from escape_explorer import CASES, Plane, classify_orbits, start_states
+    >>> states = start_states(CASES["I"], Plane.X_PX, 0.3, np.array([-0.3, 0.0, 0.3]), np.zeros(3))
+    >>> outcomes = classify_orbits(CASES["I"], 0.3, states, t_max=100.0)
+    >>> outcomes.fate.tolist(), outcomes.escape_time.round(2).tolist()
+    ([1, 1, 1], [45.7, 2.03, 1.82])
+    """
+    states = _checked_states(potential, energy, states)
+    t_max = potential.checked_t_max(t_max)
+    units, well = potential.units, potential.in_well_units
+    outcomes = classify_in_well_units(well, energy / units.energy, states / units.state, t_max / units.time, execution)
+    return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy))
+
+
+def classify_in_well_units(
+    potential: Potential, energy: float, states: np.ndarray, t_max: float, execution: Execution
+) -> Outcomes:
+    """As `classify_orbits`, of a potential in units of its well; states are not checked, `t_max` and `outcomes` not set."""
+    curves = exit_curves(potential, energy)[None]
+    batch = OrbitBatch.from_starts(states, np.zeros(len(states), np.int64))
+    every_orbit = np.arange(len(states))
+    batch.mark_outside(potential, every_orbit, curves, execution=execution)
+    propagate_batch(
+        potential, curves, batch, every_orbit, t_max, final=True, execution=execution,
+        on_tiles=lambda: execution.report(partial(_share_done, batch, t_max)),
+    )  # fmt: skip
+    return collect_outcomes(potential, np.full(len(states), energy), batch)
+
+
+def _share_done(batch: OrbitBatch, t_max: float) -> float:
+    """Share of the integration time that is done; an orbit that has ended is done."""
+    return float(np.where(batch.fate == Fate.NOT_COMPUTED, np.minimum(batch.t / t_max, 1.0), 1.0).mean())
+
+
+def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
+    energy = checked_number("energy", energy)
+    array: np.ndarray = np.ascontiguousarray(checked_array("states", states))
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise ValueError(f"states of shape {array.shape}: must be (n, 4) with columns x, y, px, py")
+    legal = (np.abs(array) <= LARGEST_NUMBER).all(axis=1)
+    if not legal.all():
+        row = int(np.argmin(legal))
+        raise ValueError(f"states: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")
+    difference = np.abs(potential.energy(array) - energy)
+    if np.any(difference > ENERGY_TOLERANCE * potential.units.energy):
+        row = int(np.argmax(difference))
+        row_energy = float(potential.energy(array[row]))
+        raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {ENERGY_TOLERANCE:g}")
+    return array

@@ -1,0 +1,55 @@
+"""Deviation vectors of the variational equations, and the SALI of many orbits computed from them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.foundations.arrays import read_only
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.propagation.fixed_step_batches import map_tiles
+from engine.systems.compiled import fixed_step_size, kernels_of
+from engine.systems.potential import Potential
+
+# Fixed, so that an orbit always has the same SALI; orthonormal, and generic, so that no symmetry keeps a vector in a subspace.
+DEVIATION_VECTORS = read_only(np.array([[1.0, 2.0, 3.0, 4.0], [4.0, -3.0, 2.0, -1.0]]) / np.sqrt(30.0))
+
+
+def attach_deviations(states: np.ndarray) -> np.ndarray:
+    """Append the initial deviation vectors and the smallest SALI so far, infinity, to states (n, 4); returns (n, 13)."""
+    vectors = np.broadcast_to(DEVIATION_VECTORS.ravel(), (len(states), DEVIATION_VECTORS.size))
+    return np.column_stack([states, vectors, np.full(len(states), np.inf)])
+
+
+def propagate_deviations(
+    potential: Potential,
+    orbits: np.ndarray,
+    duration: float,
+    *,
+    execution: Execution = DEFAULT_EXECUTION,
+) -> np.ndarray:
+    """Integrate orbits with their deviation vectors at a fixed step, and update the smallest SALI of each (Zotos 2014, eq. 9).
+
+    Parameters
+    ----------
+    potential
+        The `Potential`.
+    orbits
+        (n, 13) as from `attach_deviations`.
+    duration
+        Integration time, dimensionless, rounded to at least one step.
+    execution
+        How the computation runs. When it is cancelled, orbits not processed yet get NaN.
+
+    Returns
+    -------
+    (n, 13); the smallest SALI of an orbit stays as it is once the orbit has run off to infinity.
+    """
+    steps = max(1, round(duration / fixed_step_size(potential)))
+    return map_tiles(_propagate_tile, potential, orbits, steps, shape=orbits.shape[1:], execution=execution)
+
+
+def _propagate_tile(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
+    """(lanes, 13) rows of a tile (13, lanes) after some steps."""
+    with np.errstate(invalid="ignore"):
+        kernels_of(potential).fixed_step_sali(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
+    return tile.T

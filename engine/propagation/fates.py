@@ -1,0 +1,126 @@
+"""Codes and texts for the outcome of an orbit, and the criterion for chaos."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from engine.foundations.codes import name_code
+from engine.foundations.result import Result
+from engine.integrator.kernels import events
+from engine.systems.outcomes import Outcome, exit_outcome, write_outcomes
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+CHAOS_THRESHOLD = 1e-7
+"""A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
+
+MIN_REGULAR_TIME = 1000.0
+"""Shortest orbit that can be called regular without a certificate, in units of the well: weak chaos takes this long."""
+
+
+class Fate(IntEnum):
+    """Code of the fate of an orbit. Codes k from 1 are not members: the orbit ended at ``potential.outcomes[k - 1]``."""
+
+    BOUNDED = events.BOUNDED
+    FORBIDDEN = -1
+    OUTSIDE = -2
+    NOT_COMPUTED = events.NOT_COMPUTED
+    FAILED = events.FAILED
+
+
+class Regularity(IntEnum):
+    """Character of a bounded orbit.
+
+    ``NOT_APPLICABLE``: it escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to the
+    threshold. ``NO_SIGN_OF_CHAOS``: neither until t_max, as a sticky orbit, too. ``NOT_JUDGED``: not computed yet.
+    """
+
+    NOT_APPLICABLE = 0
+    REGULAR = 1
+    CHAOTIC = 2
+    NO_SIGN_OF_CHAOS = 3
+    NOT_JUDGED = 4
+
+    def __str__(self) -> str:
+        return self.name.lower().replace("_", " ")
+
+
+class Trust(IntEnum):
+    """Whether the outcome of a pixel is robust against small changes.
+
+    ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
+    outcome, and the orbit escapes or has a certificate. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its number
+    of crossings before the escape or its escape time changed, or it is bounded only by chance. ``NOT_TESTED``: not computed yet.
+    """
+
+    NOT_APPLICABLE = 0
+    LIKE_NEIGHBOURS = 1
+    CONFIRMED = 2
+    DOUBTFUL = 3
+    NOT_TESTED = 4
+
+    def __str__(self) -> str:
+        return self.name.lower().replace("_", " ")
+
+
+_SENTENCES = {
+    Fate.BOUNDED: "Bounded: has not escaped by t_max.",
+    Fate.FORBIDDEN: "Forbidden: no orbit of this energy can start here because its kinetic energy would be negative.",
+    Fate.OUTSIDE: "Outside: the start lies beyond an exit.",
+    Fate.NOT_COMPUTED: "Not computed yet.",
+    Fate.FAILED: "Unresolved: the steps became too short, as near a singularity of V or on the way to infinity in a finite time.",
+}
+
+
+UNRESOLVED = "unresolved"
+"""The name of `Fate.FAILED` for readers."""
+
+
+def outcome_of(fate: int, outcomes: Sequence[Outcome] = ()) -> Outcome:
+    """The outcome of a fate of 1 or more; a channel where the outcomes are not known, as in files of older versions."""
+    return outcomes[fate - 1] if fate <= len(outcomes) else exit_outcome(fate)
+
+
+def name_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
+    """A fate code in a word or two: "channel 1", "bounded"."""
+    if fate >= 1:
+        return outcome_of(fate, outcomes).label
+    return UNRESOLVED if fate == Fate.FAILED else name_code(Fate, fate)
+
+
+def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
+    """A sentence for a fate code.
+
+    Parameters
+    ----------
+    fate
+        A `Fate`, or the number of an outcome.
+    outcomes
+        Those of the potential, `Potential.outcomes`; where they are not known, they are channels.
+    """
+    return outcome_of(fate, outcomes).sentence if fate >= 1 else _SENTENCES[Fate(fate)]
+
+
+class OrbitResult(Result):
+    """Base of results on orbits, with the outcomes of their potential."""
+
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def fate_labels(self) -> Sequence[str]:
+        """Labels of the fates from 1 on."""
+        return [outcome.label for outcome in self.outcomes]
+
+    def to_xarray(self) -> xr.Dataset:
+        """As of other results, with the outcomes as an attribute."""
+        return super().to_xarray().assign_attrs(outcomes=write_outcomes(self.outcomes))
+
+
+def is_chaotic(sali: np.ndarray | float) -> np.ndarray:
+    """Whether bounded orbits with these final SALI values (any shape) are chaotic; bool, and True for NaN."""
+    return np.logical_not(sali > CHAOS_THRESHOLD)

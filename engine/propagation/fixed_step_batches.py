@@ -1,0 +1,108 @@
+"""Parallel fixed-step computations on many orbits, in tiles of at most `LANES` orbits on any executor."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from typing import Any
+
+import numpy as np
+
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.integrator.kernels.propagate import VECTOR
+from engine.integrator.source.recurrence import LANES
+from engine.systems.potential import Potential
+
+
+def map_tiles(
+    work: Callable[..., np.ndarray],
+    potential: Potential,
+    states: np.ndarray,
+    *arguments: Any,
+    shape: tuple[int, ...] = (),
+    execution: Execution = DEFAULT_EXECUTION,
+    tiles_per_task: int = 1,
+) -> np.ndarray:
+    """Apply a function to many states in parallel, tile by tile.
+
+    Parameters
+    ----------
+    work
+        ``work(potential, tile, *arguments)`` returns a (lanes, *shape) array. `tile` is a (columns, lanes) array that `work` may
+        change. `work` must be a module-level function, so that it can be pickled for other processes.
+    potential
+        The potential.
+    states
+        (n, columns) one row per orbit.
+    arguments
+        Further arguments of `work`.
+    shape
+        Shape of the result for one orbit.
+    execution
+        How the computation runs. When it is cancelled, no further tiles are submitted.
+    tiles_per_task
+        Largest number of tiles that a worker computes in one call; above 1 where a tile takes less than a millisecond.
+
+    Returns
+    -------
+    (n, *shape) the results; NaN for orbits that were not computed because of a cancellation.
+    """
+    results = np.full((len(states), *shape), np.nan)
+    tiles = run_tiles(work, potential, states, *arguments, execution=execution, tiles_per_task=tiles_per_task)
+    for begin, result in tiles:
+        results[begin : begin + len(result)] = result
+    return results
+
+
+def run_tiles(
+    work: Callable[..., Any],
+    potential: Potential,
+    states: np.ndarray,
+    *arguments: Any,
+    execution: Execution = DEFAULT_EXECUTION,
+    tiles_per_task: int = 1,
+) -> Iterator[tuple[int, Any]]:
+    """Run a function on tiles of states in parallel; the first state of each tile and its result, without repeated lanes.
+
+    The parameters are those of `map_tiles`; `work` may return any sequence with one entry per lane.
+    """
+    workers = execution.workers
+    lanes = _lanes_per_tile(len(states), workers)
+    # Two tasks for each worker if there are enough tiles.
+    per_task = lanes * min(tiles_per_task, max(len(states) // (2 * workers * lanes), 1))
+    running: deque[tuple[int, Future[list[Any]]]] = deque()
+
+    def completed(left_running: int) -> Iterator[tuple[int, Any]]:
+        while len(running) > left_running:
+            begin, future = running.popleft()
+            results: list[Any] | None = execution.collect(future)
+            for number, result in enumerate(results or ()):
+                tile = begin + number * lanes
+                yield tile, result[: len(states) - tile]
+
+    for begin in range(0, len(states), per_task):
+        yield from completed(2 * workers - 1)
+        if execution.is_cancelled:
+            break
+        tiles = [_copy_tile(states, tile, lanes) for tile in range(begin, min(begin + per_task, len(states)), lanes)]
+        running.append((begin, execution.submit(_run_on_each, work, potential, tiles, *arguments)))
+    yield from completed(0)
+
+
+def _run_on_each(work: Callable[..., Any], potential: Potential, tiles: list[np.ndarray], *arguments: Any) -> list[Any]:
+    """The results of several tiles; runs in a worker."""
+    return [work(potential, tile, *arguments) for tile in tiles]
+
+
+def _lanes_per_tile(count: int, workers: int) -> int:
+    """A multiple of `VECTOR`, at most `LANES`, so that each worker gets the same number of tiles, which take equal times."""
+    tiles_per_worker = max(-(-count // (workers * LANES)), 1)
+    share = max(-(-count // (tiles_per_worker * workers)), 1)
+    return -(-share // VECTOR) * VECTOR
+
+
+def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:
+    """(columns, lanes) up to `lanes` states from row `begin`; the last state is repeated to fill whole SIMD vectors."""
+    lanes = min(lanes, -(-(len(states) - begin) // VECTOR) * VECTOR)
+    return states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

@@ -1,0 +1,51 @@
+"""Crossings of the surface of section y = 0, py > 0, by fixed-step integration."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.propagation.fixed_step_batches import map_tiles
+from engine.systems.compiled import fixed_step_size, kernels_of
+from engine.systems.potential import Potential
+
+
+def find_section_points(
+    potential: Potential,
+    states: np.ndarray,
+    count: int,
+    duration: float,
+    *,
+    execution: Execution = DEFAULT_EXECUTION,
+) -> np.ndarray:
+    """The first `count` upward crossings of y = 0 of each orbit, not counting the start.
+
+    Exits are not detected: after an orbit has escaped, its points are missing or meaningless.
+
+    Parameters
+    ----------
+    potential
+        The `Potential`.
+    states
+        (n, 4) x, y, px, py, finite.
+    count
+        Largest number of points per orbit, at least 1.
+    duration
+        Integration time, dimensionless.
+    execution
+        How the computation runs. When it is cancelled, the points of orbits not yet computed stay NaN.
+
+    Returns
+    -------
+    (n, count, 2) x and px; NaN for points that were not found.
+    """
+    return map_tiles(trace_section_points, potential, states, count, duration, shape=(count, 2), execution=execution)
+
+
+def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
+    """As `find_section_points` for a tile of states (4, lanes), a multiple of `VECTOR`, which it changes; runs in a worker."""
+    points = np.full((tile.shape[1], count, 3), np.nan)
+    found = np.zeros(tile.shape[1], np.int64)
+    steps = int(np.ceil(duration / fixed_step_size(potential)))
+    kernels_of(potential).find_section_points(fixed_step_size(potential), steps, tile, points, found)
+    return points[..., :2]

@@ -1,0 +1,86 @@
+"""The potentials included in the engine, each with a description and a reference; `docs/potentials.md` lists them too."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import comb
+
+from engine.systems.catalogue.entry import CatalogueEntry, EnergyRange
+from engine.systems.catalogue.names import ByName
+from engine.systems.catalogue.rotating_systems import ROTATING_ENTRIES
+
+PAPER_ENERGIES = {
+    "I": EnergyRange(0.1, 0.5, (0.13, 0.15, 0.17, 0.19, 0.21, 0.23, 0.25, 0.27, 0.30), 0.19),
+    "II": EnergyRange(0.14, 0.5, (0.17, 0.18, 0.19, 0.20, 0.22, 0.24, 0.26, 0.28, 0.30), 0.20),
+    "III": EnergyRange(0.2, 1.0, (0.26, 0.28, 0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60), 0.35),
+}
+"""Energy ranges of the cases of Zotos (2014)."""
+
+
+def _paper_entry(name: str, formula: str, description: str) -> CatalogueEntry:
+    reference = "E. E. Zotos, Nonlinear Dynamics 78, 1389 (2014)"
+    return CatalogueEntry(name, f"Case {name}", formula, description, reference, energies=PAPER_ENERGIES[name])
+
+
+def _family_entry(n: int) -> CatalogueEntry:
+    count = {3: "Three", 4: "Four", 5: "Five", 6: "Six", 7: "Seven", 8: "Eight"}[n]
+    equal = ": identical to case II" if n == 3 else ""
+    return CatalogueEntry(
+        f"C{n}",
+        f"C{n} family",
+        f"r²/2 − ({' '.join(_signed_term(n, j) for j in range(0, n + 1, 2)).removeprefix('+ ')})/{n}",
+        f"{count} equal channels at θ = 2πk/{n}, open above {Fraction(1, 2) - Fraction(1, n)}{equal}.",
+        "V = r²/2 − (1/n) rⁿ cos nθ, a family of potentials of this project",
+    )
+
+
+def _signed_term(n: int, j: int) -> str:
+    """The term with x^(n − j) y^j of the real part of (x + iy)ⁿ, as text."""
+    letters = "".join(f"{name}^{power}" if power > 1 else name for name, power in (("x", n - j), ("y", j)) if power)
+    return f"{'−' if j % 4 else '+'} {comb(n, j) if comb(n, j) > 1 else ''}{letters}"
+
+
+_ENTRIES = (
+    _paper_entry("I", "½(x² + y²) − xy²", "Two channels, mirror images of each other in the x axis."),
+    _paper_entry(
+        "II", "½(x² + y²) − x(x²/3 − y²)", "Three channels at angles of 120° to each other: the Hénon–Heiles potential, rotated."
+    ),
+    _paper_entry("III", "½(x² + y²) − x²y²", "Four channels along the diagonals."),
+    *(_family_entry(n) for n in range(3, 9)),
+    CatalogueEntry(
+        "HH",
+        "Hénon–Heiles",
+        "½(x² + y²) + x²y − y³/3",
+        "Three channels, one of them along the +y axis: the original orientation, even in x but not in y.",
+        "M. Hénon & C. Heiles, Astronomical Journal 69, 73 (1964)",
+    ),
+    CatalogueEntry(
+        "Barbanis",
+        "Barbanis, unequal frequencies",
+        "½(x² + 1.1² y²) − 0.11xy²",
+        "Two channels far from the origin, as in case I, with frequencies 1 and 1.1 and a weak coupling.",
+        "S. Naik & S. Wiggins, arXiv:1904.10018 (2019), for the form of the potential; the coefficients are chosen here",
+    ),
+    CatalogueEntry(
+        "Separable",
+        "Integrable Hénon–Heiles, separable",
+        "½(x² + y²) + xy² + x³/3",
+        "Two channels and no chaos: the motions along x + y and along x − y are independent.",
+        "G. Contopoulos, A. C. Tzemos & F. Zanias, arXiv:2501.08437 (2025)",
+    ),
+    CatalogueEntry(
+        "One exit",
+        "Integrable Hénon–Heiles, one exit",
+        "½(x² + y²) + xy² + 2x³",
+        "A single channel along −x and no chaos.",
+        "A. C. Tzemos, G. Contopoulos & F. Zanias, arXiv:2509.10201 (2025)",
+    ),
+)
+
+_BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
+
+CATALOGUE: Mapping[str, CatalogueEntry] = ByName(
+    "potential", _BY_NAME, _BY_NAME.__getitem__, {name: entry.title for name, entry in _BY_NAME.items()}
+)
+"""The potentials included in the engine with their descriptions, by name; the three cases of Zotos (2014) come first."""

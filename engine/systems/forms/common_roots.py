@@ -1,0 +1,107 @@
+"""All real common roots of two polynomials in x and y with rational coefficients, with proof.
+
+The resultant of two polynomials p and q with respect to y is a polynomial in x that vanishes at the x of each common root. That
+with respect to x gives the y, and that of p and q in sheared axes, s = x + k y, gives the s. Their real roots are enclosed by
+intervals that FLINT computes with proof (Johansson 2017, IEEE Trans. Comput. 66, 1281). If k is such that different common roots
+have different s, each real s belongs to exactly one real root (x, y), the only one with x + k y = s. It is found when the
+intervals are so short that only one pair (x, y) is left for each s. The multiplicity of s is that of the common root.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass
+from typing import Any
+
+from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly
+
+from engine.expressions.polynomials import ExactTerms
+from engine.systems.forms.point_searches import UndecidedError
+
+RING = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
+"""The polynomials in x and y with rational coefficients."""
+
+# Arbitrary factors k, tried in turn. Two common roots have the same s only if the line through them has the slope −1/k.
+_SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
+# Bits of the intervals, tried in turn.
+_PRECISIONS = (128, 256, 512, 1024)
+# Relative distance within which an x is compared with s − k y by intervals.
+_NEAR = 1e-9
+
+
+@dataclass(frozen=True)
+class CommonRoot:
+    """A common root (x, y), each coordinate an interval, and its multiplicity, 1 where the two curves cross."""
+
+    x: arb
+    y: arb
+    multiplicity: int
+
+
+def exact_polynomial(terms: ExactTerms) -> fmpq_mpoly:
+    """Σ c x^i y^j."""
+    return RING.from_dict({powers: fmpq(c.numerator, c.denominator) for powers, c in terms.items()})
+
+
+def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
+    """All real common roots of two polynomials without a common factor, each once.
+
+    The precision of `flint.ctx`, which all threads share, is changed meanwhile.
+
+    Raises
+    ------
+    UndecidedError
+        If the intervals are not short enough to tell the roots apart at the highest precision.
+    """
+    if p.is_constant() or q.is_constant():
+        return []
+    along_x, along_y = (_univariate(p.resultant(q, name), axis) for axis, name in enumerate(("y", "x")))
+    for shear in _SHEARS:
+        sheared = [_sheared(each, shear) for each in (p, q)]
+        if any(each.degrees()[1] < each.total_degree() for each in sheared):
+            # Roots at infinity would count.
+            continue
+        along_s = _univariate(sheared[0].resultant(sheared[1], "y"), 0)
+        for precision in _PRECISIONS:
+            with ctx.workprec(precision):
+                found = _paired(_real_roots(along_x), _real_roots(along_y), _real_roots(along_s), shear)
+            if found is not None:
+                return found
+    raise UndecidedError("Whether all points where the force vanishes are known cannot be decided: some are too close together.")
+
+
+def _univariate(polynomial: fmpq_mpoly, axis: int) -> fmpq_poly:
+    """A polynomial of one coordinate."""
+    coefficients = {powers[axis]: c for powers, c in polynomial.to_dict().items()}
+    return fmpq_poly([coefficients.get(n, 0) for n in range(max(coefficients, default=0) + 1)])
+
+
+def _sheared(polynomial: fmpq_mpoly, shear: fmpq) -> fmpq_mpoly:
+    """The polynomial in s = x + k y, instead of x, and y."""
+    x, y = RING.gens()
+    return polynomial.compose(x - shear * y, y)
+
+
+def _real_roots(polynomial: fmpq_poly) -> list[tuple[arb, int]]:
+    """The real roots with their multiplicities, in increasing order."""
+    # FLINT's stubs leave out the multiplicities.
+    roots: list[Any] = polynomial.numer().complex_roots() if polynomial.degree() > 0 else []
+    return sorted(((root.real, multiplicity) for root, multiplicity in roots if root.imag == 0), key=lambda each: each[0].mid())
+
+
+def _paired(
+    along_x: list[tuple[arb, int]], along_y: list[tuple[arb, int]], along_s: list[tuple[arb, int]], shear: fmpq
+) -> list[CommonRoot] | None:
+    """For each s the only x and y with x + k y = s; None if there is not exactly one pair for one of them."""
+    places, k, found = [float(x) for x, _ in along_x], arb(shear), []
+    for s, multiplicity in along_s:
+        pairs = []
+        for y, _ in along_y:
+            rest = s - k * y
+            near = _NEAR * (abs(float(s)) + abs(float(k * y)))
+            around = range(bisect_left(places, float(rest) - near), bisect_right(places, float(rest) + near))
+            pairs += [(along_x[place][0], y) for place in around if along_x[place][0].overlaps(rest)]
+        if len(pairs) != 1:
+            return None
+        found.append(CommonRoot(*pairs[0], multiplicity))
+    return found

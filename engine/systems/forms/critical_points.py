@@ -1,0 +1,137 @@
+"""All critical points of a polynomial V, found with proof, in rational arithmetic.
+
+A coefficient stands for the decimal that Python prints, or for a fraction of small denominator that is nearest to it, so that the
+result is the same on every machine, and exact for formulas as they are typed. V_x and V_y are divided by their greatest common
+divisor, the rest has isolated common roots (`find_common_roots`), and where the divisor vanishes the force vanishes along curves,
+or at single points.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from fractions import Fraction
+
+import numpy as np
+from flint import arb, ctx, fmpq, fmpq_mpoly
+
+from engine.expressions.polynomials import Terms
+from engine.systems.forms.common_roots import RING, CommonRoot, exact_polynomial, find_common_roots
+from engine.systems.forms.point_searches import NotIsolatedError
+
+# Denominators of fractions that are recognised, such as 1/3.
+_LARGEST_DENOMINATOR = 1000
+# An arbitrary place.
+_ARBITRARY = fmpq(577, 1009), fmpq(-733, 1013)
+# Bits of the intervals in which signs are found; all roots are known to more.
+_PRECISION = 1024
+# Relative error of the coefficients by which a Hessian may become singular.
+_ROUNDING = 2.0**-44
+# Precision is a global variable of FLINT.
+_LOCK = threading.Lock()
+
+
+def find_critical_points(terms: Terms) -> np.ndarray:
+    """The points at which the gradient of V vanishes, with their indices.
+
+    Parameters
+    ----------
+    terms
+        {(i, j): c}: V = Σ c x^i y^j.
+
+    Returns
+    -------
+    (n, 3) x, y and the index of each point, once: 1 for a minimum or a maximum, −1 for a saddle, 0 if it is degenerate or would
+    be with coefficients that differ by their rounding errors.
+
+    Raises
+    ------
+    NotIsolatedError
+        If the gradient vanishes along a curve.
+    UndecidedError
+        If the points are too close together to be told apart.
+    """
+    with _LOCK:
+        potential = exact_polynomial({powers: _rational(c) for powers, c in terms.items() if c})
+        first, second = potential.derivative("x"), potential.derivative("y")
+        common = first.gcd(second)
+        if common.is_zero():
+            raise NotIsolatedError
+        degenerate = _isolated_zeros(common)
+        others = [root for root in find_common_roots(first / common, second / common) if not _is_among(root, degenerate)]
+        rows = [(root, 0) for root in degenerate] + [(root, _index(potential, root)) for root in others]
+        return np.array([(float(root.x), float(root.y), index) for root, index in rows], float).reshape(-1, 3)
+
+
+def _rational(c: float) -> Fraction:
+    """The number that a coefficient stands for."""
+    decimal = Fraction(repr(float(c)))
+    simple = decimal.limit_denominator(_LARGEST_DENOMINATOR)
+    return simple if float(simple) == c else decimal
+
+
+def _isolated_zeros(polynomial: fmpq_mpoly) -> list[CommonRoot]:
+    """The real zeros of a polynomial, which are isolated points; NotIsolatedError if there are curves of them.
+
+    On each curve of zeros there is a point that is nearest to an arbitrary place; the gradient there points along the line to it.
+    """
+    zeros = []
+    x, y = RING.gens()
+    for factor, _ in polynomial.factor_squarefree()[1]:
+        along_x, along_y = factor.derivative("x"), factor.derivative("y")
+        across = (x - _ARBITRARY[0]) * along_y - (y - _ARBITRARY[1]) * along_x
+        if not factor.gcd(across).is_constant():
+            raise NotIsolatedError
+        for zero in find_common_roots(factor, across):
+            is_singular = _value(along_x, zero).contains(0) and _value(along_y, zero).contains(0)
+            if not (is_singular and _Hessian(factor, zero).determinant > 0):
+                raise NotIsolatedError
+            zeros.append(zero)
+    return zeros
+
+
+def _is_among(root: CommonRoot, others: list[CommonRoot]) -> bool:
+    return any(root.x.overlaps(other.x) and root.y.overlaps(other.y) for other in others)
+
+
+def _index(potential: fmpq_mpoly, root: CommonRoot) -> int:
+    """1, −1 or 0, see `find_critical_points`."""
+    hessian = _Hessian(potential, root)
+    if root.multiplicity > 1 or hessian.determinant.contains(0) or hessian.is_singular_to_rounding():
+        return 0
+    return 1 if hessian.determinant > 0 else -1
+
+
+class _Hessian:
+    """The second derivatives of a polynomial at a root, as intervals, and sums of the magnitudes of their terms."""
+
+    def __init__(self, polynomial: fmpq_mpoly, root: CommonRoot) -> None:
+        along_x, along_y = polynomial.derivative("x"), polynomial.derivative("y")
+        entries = along_x.derivative("x"), along_x.derivative("y"), along_y.derivative("y")
+        self.xx, self.xy, self.yy = (_value(entry, root) for entry in entries)
+        self._sizes = [float(_value(entry, root, magnitude=True)) for entry in entries]
+        with ctx.workprec(_PRECISION):
+            self.determinant = self.xx * self.yy - self.xy**2
+
+    def is_singular_to_rounding(self) -> bool:
+        """Whether rounding errors of the coefficients can change the sign of the eigenvalue λ of smaller magnitude.
+
+        With its unit vector e, a change δ of the matrix changes λ by eᵀ δ e.
+        """
+        with ctx.workprec(_PRECISION):
+            mean = (self.xx + self.yy) / 2
+            distance = (((self.xx - self.yy) / 2) ** 2 + self.xy**2).sqrt()
+            smaller = self.determinant / (mean + distance if mean > 0 else mean - distance)
+            vectors = ((self.xy, smaller - self.xx), (smaller - self.yy, self.xy))
+            e = max(([abs(float(part)) for part in vector] for vector in vectors), key=lambda each: math.hypot(*each))
+        length = math.hypot(*e)
+        u, v = (part / length for part in e) if length else (1.0, 1.0)
+        xx, xy, yy = self._sizes
+        return abs(float(smaller)) <= _ROUNDING * (xx * u * u + 2.0 * xy * u * v + yy * v * v)
+
+
+def _value(polynomial: fmpq_mpoly, root: CommonRoot, *, magnitude: bool = False) -> arb:
+    """An interval that contains the value at a root; with `magnitude` the sum of the magnitudes of the terms."""
+    with ctx.workprec(_PRECISION):
+        terms = (arb(c) * root.x**i * root.y**j for (i, j), c in polynomial.to_dict().items())
+        return sum(map(abs, terms) if magnitude else terms, arb(0))

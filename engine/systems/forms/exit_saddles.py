@@ -1,0 +1,179 @@
+"""Which saddles of a potential lead out of the well at the origin, and which maxima lie beside them.
+
+From a saddle two lines of steepest descent start, one on each side along its unstable direction. If one ends at the origin and
+the other elsewhere, at another minimum or at infinity, the saddle is an exit of the well. The two lines of steepest ascent run
+through the walls of the channel; above the energy of a maximum at which one of them ends, the channel has no wall there.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from engine.systems.forms.form import Velocity
+from engine.systems.forms.point_searches import NO_POINTS, DescentError
+
+Downhill = Callable[[float, float], Velocity]
+Hessian = Callable[..., tuple[np.ndarray, ...]]
+
+# Distance from the saddle at which a descent starts, in units of the distance of the nearest other critical point.
+_START_DISTANCE = 1e-3
+# Distance from a critical point at which a descent ends, in units of the distance of the one nearest to the origin.
+_END_DISTANCE = 1e-4
+# A descent has gone to infinity at this distance from the origin, in units of the distance of the outermost critical point.
+_FAR = 10.0
+
+# A descent is at rest if it moves by less in a step, in units of the distance of the point nearest to the origin.
+_AT_REST = 1e-13
+
+_RELATIVE_ERROR = 1e-9
+# Length of the first step, in units of the start's distance from the saddle.
+_FIRST_MOVE = 1e-6
+# Limit on the steps of all descents of a potential, some seconds. Most potentials need about 1 000, one of 600 wells 17 000.
+_MOST_STEPS = 20_000
+# Limit on the steps of one method along one line. Most lines need 200, those through long narrow valleys about 2 000.
+_MOST_STEPS_ALONG_LINE = 5_000
+
+
+def leads_out_of_well(
+    downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, poles: np.ndarray = NO_POINTS
+) -> np.ndarray:
+    """(n,) whether each critical point (n, 2) of a potential is a saddle that leads out of the well or pole at the origin.
+
+    Parameters
+    ----------
+    downhill
+        The flow along −sign ∇V as a function of a length and of the sign, see `Form.downhill`.
+    hessian
+        (V_xx, V_xy, V_yy) as a function of x and y.
+    points
+        All critical points, including the origin exactly; if it is neither a minimum nor a pole, no point leads out.
+    indices
+        (n,) −1 for saddles, 1 for minima and maxima.
+    poles
+        (m, 2) points at which V is not defined, where lines of steepest descent can end.
+    """
+    flags = np.zeros(len(points), bool)
+    sinks = np.concatenate([points[(indices > 0) & (hessian(*points.T)[0] > 0.0)], poles])
+    points, is_saddle = np.concatenate([points, poles]), np.concatenate([indices < 0, np.zeros(len(poles), bool)])
+    origin = np.flatnonzero(np.hypot(*points.T) == 0.0)
+    if not np.any(np.hypot(*sinks.T) == 0.0) or len(points) < 2:
+        return flags
+    descent = _Descent(downhill, 1.0, hessian, points, is_saddle)
+    for k in np.flatnonzero(is_saddle):
+        one, other = (descent.find_ends(int(k), side) for side in (1.0, -1.0))
+        flags[k] = (int(origin[0]) in one) != (int(origin[0]) in other)
+    return flags
+
+
+def find_maxima_beside(
+    downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, saddles: np.ndarray
+) -> np.ndarray:
+    """(m, n) whether a line of steepest ascent from each of m saddles ends at each critical point, a maximum.
+
+    Parameters
+    ----------
+    downhill
+        The flow along −sign ∇V as a function of a length and of the sign, see `Form.downhill`.
+    hessian
+        (V_xx, V_xy, V_yy) as a function of x and y.
+    points
+        (n, 2) all critical points.
+    indices
+        (n,) −1 for saddles, 1 for minima and maxima.
+    saddles
+        (m,) places of saddles among the points.
+    """
+    flags = np.zeros((len(saddles), len(points)), bool)
+    if not len(saddles) or not np.any((indices > 0) & (hessian(*points.T)[0] < 0.0)):
+        return flags
+    ascent = _Descent(downhill, -1.0, lambda x, y: tuple(-entry for entry in hessian(x, y)), points, indices < 0)
+    for row, saddle in zip(flags, saddles, strict=True):
+        ends = ascent.find_ends(int(saddle), 1.0) | ascent.find_ends(int(saddle), -1.0)
+        row[[end for end in ends if end >= 0]] = True
+    return flags
+
+
+class _Descent:
+    """Lines of steepest descent of one potential from its saddles."""
+
+    def __init__(self, downhill: Downhill, sign: float, hessian: Hessian, points: np.ndarray, is_saddle: np.ndarray) -> None:
+        self.points, self.is_saddle = points, is_saddle
+        distance = np.hypot(*points.T)
+        self.length = float(distance[distance > 0.0].min())
+        self.flow = downhill(self.length, sign)
+        self.far = _FAR * float(distance.max())
+        entries = np.array([np.broadcast_to(e, len(points)) for e in hessian(*points.T)])
+        hessians = np.moveaxis(np.nan_to_num(entries), 0, -1)
+        self.unstable_directions = [np.linalg.eigh([[a, b], [b, c]])[1][:, 0] for a, b, c in hessians]
+        self.steps_left = _MOST_STEPS
+
+    def find_ends(self, saddle: int, side: float) -> set[int]:
+        """Indices of the critical points where the descent on one side of a saddle ends, −1 for infinity.
+
+        There is more than one if the line ends at another saddle, which happens in symmetric potentials.
+        """
+        pending, visited, ends = [(saddle, side)], {saddle}, set[int]()
+        while pending:
+            end = self._descend(*pending.pop())
+            if end >= 0 and self.is_saddle[end]:
+                pending += [(end, 1.0), (end, -1.0)] if end not in visited else []
+                visited.add(end)
+            else:
+                ends.add(end)
+        return ends
+
+    def _descend(self, saddle: int, side: float) -> int:
+        """Index of the critical point where one line of steepest descent ends, −1 for infinity."""
+        from scipy.integrate import LSODA, Radau
+
+        # LSODA may not notice that a long narrow valley needs an implicit method. Radau is one, but takes ten times as long, and
+        # needs a steady flow: after a very slow start its steps would become shorter than the rounding error of the time.
+        for method, flow in ((LSODA, self.flow), (Radau, self._steady_flow)):
+            with warnings.catch_warnings():
+                # Where it fails, the other method is next.
+                warnings.filterwarnings("ignore", "lsoda: ", UserWarning)
+                end = self._follow(method, flow, saddle, side)
+            if end is not None:
+                return end
+        x, y = self.points[saddle]
+        raise DescentError(f"The end of a line of steepest descent from the saddle ({x:.6g}, {y:.6g}) is not found.")
+
+    def _steady_flow(self, time: float, place: np.ndarray) -> np.ndarray:
+        """The flow at speed 1."""
+        velocity = self.flow(time, place)
+        steady: np.ndarray = velocity / np.hypot(*velocity)
+        return steady
+
+    def _follow(self, method: Any, flow: Velocity, saddle: int, side: float) -> int | None:
+        """As `_descend`, along a flow and by one of SciPy's methods; None if it does not come to the end."""
+        others = np.delete(np.arange(len(self.points)), saddle)
+        distance = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
+        start = self.points[saddle] + side * distance * self.unstable_directions[saddle]
+        # Without an end in time: a descent takes longer the flatter its valley is.
+        tolerances = {"rtol": _RELATIVE_ERROR, "atol": _RELATIVE_ERROR * self.length}
+        # LSODA's own first step can be too long for its corrector to converge.
+        first_step = _FIRST_MOVE * distance / np.hypot(*flow(0.0, start))
+        line = method(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
+        last = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
+        while self.steps_left > last and line.status == "running":
+            self.steps_left -= 1
+            before = line.y
+            line.step()
+            if line.status == "failed":
+                break
+            distances = self._distances(line.y)[others]
+            if distances.min() < _END_DISTANCE * self.length:
+                return int(others[np.argmin(distances)])
+            moved = float(np.hypot(*(line.y - before)))
+            # At rest, it is at a critical point that is not in the list, beyond the region where they were searched.
+            if np.hypot(*line.y) > self.far or moved < _AT_REST * self.length:
+                return -1
+        return None
+
+    def _distances(self, place: np.ndarray) -> np.ndarray:
+        distances: np.ndarray = np.hypot(*(self.points - place).T)
+        return distances

@@ -1,0 +1,248 @@
+"""Potentials that are expressions of x and y with powers, roots, exp, log, sin and cos."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from engine.expressions.calculus import curvatures, derivative, replace_parts, slopes, substitute
+from engine.expressions.evaluation import evaluate, evaluate_at
+from engine.expressions.graph import Graph, make_graph
+from engine.expressions.nodes import Expression, Sum, X, Y, as_terms, from_terms, linear_combination, multiply, number, power
+from engine.expressions.parity import EVEN, parity
+from engine.expressions.polynomials import Terms
+from engine.expressions.singularities import singular_bases
+from engine.expressions.text import write_expression
+from engine.foundations.arrays import read_only
+from engine.systems.forms.form import Velocity
+from engine.systems.forms.interval_newton import Derivatives
+from engine.systems.forms.point_searches import NO_POINTS, NotIsolatedError, UndecidedError
+from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.forms.stationary_points import find_stationary_points
+from engine.systems.well_units import nearest_power_of_two
+
+MOST_CONVOLUTIONS = 120
+"""Largest number of products and functions in the graph of gradient and Hessian: their cost and compile time grow with it."""
+
+# Results of searches for zeros, some 0.1 kB each, and the share of the operations that a search may take.
+_ZEROS, _EFFORT_FOR_ZEROS = 1024, 0.1
+
+# Rotations up to this are looked for, with V compared on circles and at angles up to a relative error.
+_MOST_ROTATIONS, _ROTATION_ERROR = 12, 1e-11
+_RADII, _ANGLES = 2.0 ** np.arange(-6.0, 3.0)[:, None], np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
+# Values of an expression that count as 0, relative to its curvature.
+_ZERO = 1e-14
+# A rotation that is none by 2π/n: by 1 radian.
+_ANY_ROTATION = 1.0
+
+
+@dataclass(frozen=True)
+class ExpressionForm:
+    """V as an expression; a parameter of it has its value.
+
+    What is divided by, or of which a root or a logarithm is taken, is written from its zero, as (x − 1)² + y² instead of
+    x² − 2x + y² + 1, which would lose digits near it.
+    """
+
+    expression: Expression
+
+    def __post_init__(self) -> None:
+        # An expression that is refused for its size is not searched.
+        if self.limits_refusal() is None:
+            object.__setattr__(self, "expression", replace_parts(self.expression, _from_zeros(self.expression)))
+
+    def __repr__(self) -> str:
+        return f"ExpressionForm({self.text})"
+
+    @property
+    def definition(self) -> Expression:
+        """The expression."""
+        return self.expression
+
+    @property
+    def text(self) -> str:
+        """The formula."""
+        return write_expression(self.expression)
+
+    @property
+    def length(self) -> float:
+        """The distance of the nearest critical point from the origin, or 1."""
+        distance = np.hypot(*self.find_critical_points()[:, :2].T)
+        distance = distance[distance > 0.0]
+        return nearest_power_of_two(float(distance.min())) if distance.size else 1.0
+
+    @property
+    def mirror_in_x(self) -> bool:
+        """Whether x enters through its even powers only."""
+        return parity(self.expression, 0) == EVEN
+
+    @property
+    def mirror_in_y(self) -> bool:
+        """Whether y enters through its even powers only."""
+        return parity(self.expression, 1) == EVEN
+
+    @property
+    def has_constant(self) -> bool:
+        """Whether a number is added."""
+        return isinstance(self.expression, Sum) and self.expression.constant != 0.0
+
+    def value(self, x: Any, y: Any) -> Any:
+        """V at (x, y); arrays broadcast; NaN where it is not defined."""
+        return self._evaluate(x, y, self.expression)[0]
+
+    def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """(V_x, V_y)."""
+        along_x, along_y = self._evaluate(x, y, *slopes(self.expression))
+        return along_x, along_y
+
+    def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
+        """(V_xx, V_xy, V_yy)."""
+        vxx, vxy, vyy = self._evaluate(x, y, *curvatures(self.expression))
+        return vxx, vxy, vyy
+
+    @staticmethod
+    def _evaluate(x: Any, y: Any, *expressions: Expression) -> list[Any]:
+        graph, numbers = make_graph(expressions)
+        return [value[()] for value in evaluate(graph, numbers, x, y)]
+
+    @property
+    def slopes_graph(self) -> tuple[Graph, tuple[float, ...]]:
+        """The graph of V, V_x and V_y, and its numbers."""
+        return make_graph((self.expression, *slopes(self.expression)))
+
+    def force(self, axis: int) -> ExpressionForm:
+        """−∂V/∂x or −∂V/∂y."""
+        return ExpressionForm(linear_combination([(-1.0, derivative(self.expression, axis))]))
+
+    def find_critical_points(self) -> np.ndarray:
+        """(n, 3) those of a region, see `engine.systems.forms.stationary_points`."""
+        return self._critical_points
+
+    @cached_property
+    def _critical_points(self) -> np.ndarray:
+        return find_stationary_points(Derivatives.of(self.expression))
+
+    def downhill(self, length: float, sign: float) -> Velocity:
+        """−sign ∇V, no faster than the slope that the well's quadratic part has at `length`, or V on average around a centre."""
+        curvature = np.abs(self.hessian(0.0, 0.0)).max()
+        around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
+        steep = length * curvature if np.isfinite(curvature) else float(np.hypot(*around).mean())
+
+        graph, numbers = make_graph(slopes(self.expression))
+
+        def velocity(_time: float, place: np.ndarray) -> np.ndarray:
+            along_x, along_y = evaluate_at(graph, numbers, *place.tolist())
+            speed = -sign / (1.0 + math.hypot(along_x, along_y) / steep)
+            return np.array([speed * along_x, speed * along_y])
+
+        return velocity
+
+    @cached_property
+    def singular_points(self) -> np.ndarray:
+        """(n, 2) isolated zeros of what is divided by, or of which a root or a logarithm is taken."""
+        found = [_isolated_zeros(base) for base in singular_bases(self.expression)]
+        return read_only(np.concatenate([NO_POINTS, *found]))
+
+    def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
+        """Whether what is divided by, or of which a root or a logarithm is taken, has both signs."""
+        signs = (np.sign(self._evaluate(x, y, base)[0]) for base in singular_bases(self.expression))
+        return any(bool((each > 0.0).any() and (each < 0.0).any()) for each in signs)
+
+    def plus(self, terms: Terms) -> ExpressionForm:
+        """A sum."""
+        return ExpressionForm(linear_combination([(1.0, self.expression), (1.0, from_terms(terms))]))
+
+    def scaled(self, length: float, energy: float) -> ExpressionForm:
+        """V(length x, length y) / energy."""
+        x, y = (linear_combination([(length, axis)]) for axis in (X, Y))
+        return ExpressionForm(linear_combination([(1.0 / energy, substitute(self.expression, x, y))]))
+
+    def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> ExpressionForm:
+        """ε V with the constant, linear and quadratic terms of the expansion about the origin as the parameters want them."""
+        if omega_1 == omega_2 == epsilon == 1.0:
+            return self
+        vxx, vxy, vyy = map(float, self.hessian(0.0, 0.0))
+        along_x, along_y = map(float, self.gradient(0.0, 0.0))
+        changes = {
+            (0, 0): float(self.value(0.0, 0.0)) * (1.0 - epsilon),
+            (1, 0): along_x * (1.0 - epsilon),
+            (0, 1): along_y * (1.0 - epsilon),
+            (2, 0): 0.5 * vxx * (omega_1**2 - epsilon),
+            (1, 1): vxy * (omega_1 * omega_2 - epsilon),
+            (0, 2): 0.5 * vyy * (omega_2**2 - epsilon),
+        }
+        return ExpressionForm(linear_combination([(epsilon, self.expression), (1.0, from_terms(changes))]))
+
+    def moved(self, x: float, y: float) -> ExpressionForm:
+        """V(x + x₀, y + y₀)."""
+        axes = (linear_combination([(1.0, axis), (place, number(1.0))]) for axis, place in ((X, x), (Y, y)))
+        return ExpressionForm(substitute(self.expression, *axes))
+
+    def count_rotations(self) -> int:
+        """From values of V on circles."""
+        if self._is_turned_by(_ANY_ROTATION):
+            return 0
+        return next(n for n in range(_MOST_ROTATIONS, 0, -1) if n == 1 or self._is_turned_by(2.0 * math.pi / n))
+
+    def _is_turned_by(self, angle: float) -> bool:
+        """Whether a rotation leaves V unchanged, as far as it is defined."""
+        one, other = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
+        known = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
+        error = np.abs(one[known] - other[known]).max(axis=1)
+        return bool(known.any() and np.all(error <= _ROTATION_ERROR * np.abs(one[known]).max(axis=1)))
+
+    def limits_refusal(self) -> str | None:
+        """Size of V and of its derivatives, each before the next ones are made: they can be a hundred times as large."""
+        graphs = (
+            ("V has", lambda: (self.expression,)),
+            ("The first derivatives of V have", lambda: slopes(self.expression)),
+            ("The first and second derivatives of V have", lambda: (*slopes(self.expression), *curvatures(self.expression))),
+        )
+        for subject, expressions in graphs:
+            used = make_graph(expressions())[0].convolutions
+            if used > MOST_CONVOLUTIONS:
+                return f"{subject} {used} products and functions; at most {MOST_CONVOLUTIONS} are allowed."
+        return None
+
+
+def _from_zeros(expression: Expression) -> dict[Expression, Expression]:
+    """The polynomials with one isolated zero, away from the origin, among the singular bases, and what they are from there."""
+    found = {}
+    for base in singular_bases(expression):
+        terms, zeros = as_terms(base), _isolated_zeros(base)
+        if terms is not None and len(zeros) == 1 and zeros.any():
+            found[base] = _shifted(terms, *zeros[0].tolist())
+    return found
+
+
+def _shifted(terms: Terms, a: float, b: float) -> Expression:
+    """A polynomial as Σ c (x − a)^k (y − b)^m, without the rounding errors of zero coefficients."""
+    moved: dict[tuple[int, int], float] = {}
+    for (i, j), c in terms.items():
+        for k, m in np.ndindex(i + 1, j + 1):
+            moved[k, m] = moved.get((k, m), 0.0) + c * math.comb(i, k) * math.comb(j, m) * a ** (i - k) * b ** (j - m)
+    largest = max(abs(c) * math.hypot(a, b) ** (k + m) for (k, m), c in moved.items())
+    kept = {(k, m): c for (k, m), c in moved.items() if abs(c) * math.hypot(a, b) ** (k + m) > _ZERO * largest}
+    x, y = (linear_combination([(1.0, axis), (-place, number(1.0))]) for axis, place in ((X, a), (Y, b)))
+    return linear_combination((c, multiply(power(x, k), power(y, m))) for (k, m), c in kept.items())
+
+
+@lru_cache(maxsize=_ZEROS)
+def _isolated_zeros(expression: Expression) -> np.ndarray:
+    """(n, 2) the stationary points of an expression at which it is 0, to rounding; none where these form a curve."""
+    terms = as_terms(expression)
+    form = ExpressionForm(expression) if terms is None else PolynomialForm(tuple((i, j, c) for (i, j), c in terms.items()))
+    try:
+        if isinstance(form, ExpressionForm):
+            points = find_stationary_points(Derivatives.of(form.expression), _EFFORT_FOR_ZEROS)[:, :2]
+        else:
+            points = form.find_critical_points()[:, :2]
+    except (NotIsolatedError, UndecidedError):
+        return NO_POINTS
+    size = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0) * (1.0 + (points**2).sum(axis=1))
+    zeros: np.ndarray = points[np.abs(form.value(*points.T)) <= _ZERO * size]
+    return zeros

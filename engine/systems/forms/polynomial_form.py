@@ -1,0 +1,222 @@
+"""Potentials that are polynomials, V = Σ c x^i y^j."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import comb
+from typing import Any
+
+import numpy as np
+
+from engine.expressions.polynomials import (
+    HIGHEST_DEGREE,
+    Powers,
+    Terms,
+    degree,
+    derivative,
+    evaluate,
+    largest_coefficients,
+    substitute,
+)
+from engine.foundations.validation import LARGEST_COEFFICIENT, checked_count, checked_number, short_repr
+from engine.systems.forms.critical_points import find_critical_points
+from engine.systems.forms.form import Velocity
+from engine.systems.forms.point_searches import NO_POINTS
+
+MOST_TERMS = 60
+"""Largest number of terms of a potential after expansion."""
+
+COEFFICIENT_RANGE = (1e-9, 1e9)
+"""Smallest and largest magnitude of a coefficient."""
+
+# Smallest coefficient as a share of the largest one, beyond which one of them has no effect in double precision.
+_SMALLEST_RATIO = 1e-18
+# Coefficients below this share of the largest one, after a shift of the origin or among those of one degree, are errors of zero.
+_ZERO_COEFFICIENT = 1e-12
+
+
+@dataclass(frozen=True)
+class PolynomialForm:
+    """Σ c x^i y^j with `terms` ((i, j, c), …)."""
+
+    terms: tuple[tuple[int, int, float], ...]
+
+    @property
+    def definition(self) -> tuple[tuple[int, int, float], ...]:
+        """The terms."""
+        return self.terms
+
+    @property
+    def text(self) -> str:
+        """The terms, such as "0.5 x^2 y^0; …"."""
+        return "; ".join(f"{c!r} x^{i} y^{j}" for i, j, c in self.terms)
+
+    @cached_property
+    def coefficients(self) -> dict[Powers, float]:
+        """The terms as {(i, j): c}."""
+        return {(i, j): c for i, j, c in self.terms}
+
+    @property
+    def length(self) -> float:
+        """The unit of length in which the largest coefficients of the lowest and the highest degree are about equal.
+
+        It is a power of 2, so that scaling by it is exact.
+        """
+        largest = {n: c for n, c in largest_coefficients(self.coefficients).items() if n and c}
+        if len(largest) < 2:
+            return 1.0
+        low, high = min(largest), max(largest)
+        return float(2.0 ** np.round((np.log2(largest[low]) - np.log2(largest[high])) / (high - low)))
+
+    @property
+    def mirror_in_x(self) -> bool:
+        """Whether all powers of x are even."""
+        return all(i % 2 == 0 for i, _, _ in self.terms)
+
+    @property
+    def mirror_in_y(self) -> bool:
+        """Whether all powers of y are even."""
+        return all(j % 2 == 0 for _, j, _ in self.terms)
+
+    @property
+    def has_constant(self) -> bool:
+        """Whether there is a term without x and y."""
+        return (0, 0) in self.coefficients
+
+    def value(self, x: Any, y: Any) -> Any:
+        """V at (x, y); arrays broadcast."""
+        return evaluate(self.coefficients, x, y)
+
+    def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """(V_x, V_y)."""
+        along_x, along_y = self.slopes
+        return evaluate(along_x, x, y), evaluate(along_y, x, y)
+
+    def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
+        """(V_xx, V_xy, V_yy)."""
+        return tuple(evaluate(self.derivative(*order), x, y) for order in ((2, 0), (1, 1), (0, 2)))
+
+    def derivative(self, nx: int, ny: int) -> dict[Powers, float]:
+        """The nonzero terms of ∂^(nx+ny) V / ∂x^nx ∂y^ny, as {(i, j): c}."""
+        terms = self.coefficients
+        for axis in (0,) * nx + (1,) * ny:
+            terms = derivative(terms, axis)
+        return dict(terms)
+
+    @cached_property
+    def slopes(self) -> tuple[Terms, Terms]:
+        """The terms of V_x and V_y."""
+        return self.derivative(1, 0), self.derivative(0, 1)
+
+    def force(self, axis: int) -> PolynomialForm:
+        """−∂V/∂x or −∂V/∂y."""
+        return PolynomialForm(tuple((i, j, -c) for (i, j), c in self.slopes[axis].items()))
+
+    def find_critical_points(self) -> np.ndarray:
+        """(n, 3) all of them, see `engine.systems.forms.critical_points`."""
+        return find_critical_points(self.coefficients)
+
+    def downhill(self, length: float, sign: float) -> Velocity:
+        """−sign ∇V, slower far away, where a descent takes a finite time to −∞."""
+        highest = max(map(degree, self.slopes))
+        table = np.zeros((2, highest + 1, highest + 1))
+        for axis, terms in enumerate(self.slopes):
+            for (i, j), c in terms.items():
+                table[axis, i, j] = -sign * c
+        factors = np.ones((2, highest + 1))
+
+        def velocity(_time: float, place: np.ndarray) -> np.ndarray:
+            factors[:, 1:] = place[:, None]
+            powers_of_x, powers_of_y = np.multiply.accumulate(factors, axis=1)
+            downhill = table @ powers_of_y @ powers_of_x
+            slower: np.ndarray = downhill / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
+            return slower
+
+        return velocity
+
+    @property
+    def singular_points(self) -> np.ndarray:
+        """None."""
+        return NO_POINTS
+
+    def is_singular_on_curve(self, _x: np.ndarray, _y: np.ndarray) -> bool:
+        """False."""
+        return False
+
+    def plus(self, terms: Terms) -> PolynomialForm:
+        """The terms added, those that cancel left out."""
+        added = self.coefficients | {powers: self.coefficients.get(powers, 0.0) + c for powers, c in terms.items()}
+        return checked_form(tuple((i, j, c) for (i, j), c in added.items() if c))
+
+    def scaled(self, length: float, energy: float) -> PolynomialForm:
+        """V(length x, length y) / energy."""
+        # Not through `checked_form`: the legal range of the coefficients is for the potential's own units.
+        return PolynomialForm(tuple((i, j, c * length ** (i + j) / energy) for i, j, c in self.terms))
+
+    def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> PolynomialForm:
+        """Each term with its factor."""
+        return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
+
+    def moved(self, x: float, y: float) -> PolynomialForm:
+        """The terms of the expansion about (x, y), each rounded once, without the linear ones."""
+        terms: dict[Powers, Fraction] = {}
+        for i, j, c in self.terms:
+            for k in range(i + 1):
+                for m in range(j + 1):
+                    part = Fraction(c) * comb(i, k) * comb(j, m) * Fraction(x) ** (i - k) * Fraction(y) ** (j - m)
+                    terms[k, m] = terms.get((k, m), Fraction(0)) + part
+        rounded = {powers: float(c) for powers, c in terms.items() if sum(powers) != 1}
+        sizes = {powers: abs(c) * self.length ** sum(powers) for powers, c in rounded.items()}
+        smallest = _ZERO_COEFFICIENT * max(sizes.values(), default=0.0)
+        kept = {powers: c for powers, c in rounded.items() if sizes[powers] > smallest}
+        return checked_form(tuple((k, m, c) for (k, m), c in kept.items()))
+
+    def count_rotations(self) -> int:
+        """From V = Σ c z^a z̄^b with z = x + iy, where a rotation by φ multiplies each term by exp(i (a − b) φ)."""
+        return math.gcd(*(a - b for a, b in self._complex_terms() if a != b))
+
+    def _complex_terms(self) -> dict[Powers, complex]:
+        """{(a, b): c} of V = Σ c z^a z̄^b, without rounding errors of zero coefficients."""
+        x, y = {(1, 0): 0.5 + 0j, (0, 1): 0.5 + 0j}, {(1, 0): -0.5j, (0, 1): 0.5j}
+        largest = largest_coefficients(self.coefficients)
+        terms = substitute(self.coefficients, x, y)
+        return {(a, b): c for (a, b), c in terms.items() if abs(c) > _ZERO_COEFFICIENT * largest[a + b]}
+
+    def limits_refusal(self) -> str | None:
+        """Degree, number of terms and size of coefficients."""
+        highest = degree(self.coefficients)
+        if highest > HIGHEST_DEGREE:
+            return f"V has degree {highest}; the highest allowed degree is {HIGHEST_DEGREE}."
+        if len(self.terms) > MOST_TERMS:
+            return f"V has {len(self.terms)} terms; at most {MOST_TERMS} are allowed."
+        # In units of the potential itself, so that the user's units do not matter.
+        sizes = [abs(c) * self.length ** (i + j) for i, j, c in self.terms]
+        if sizes and not min(sizes) >= _SMALLEST_RATIO * max(sizes):
+            return f"V has a coefficient below {_SMALLEST_RATIO:g} of the largest one, in units in which its well has the size 1."
+        return None
+
+
+def checked_form(terms: Any) -> PolynomialForm:
+    """The form of ((i, j, c), …); ValueError if they are no legal terms."""
+    try:
+        checked = tuple(_checked_term(*term) for term in terms)
+    except TypeError:
+        raise ValueError(f"terms={short_repr(terms)}: must be ((i, j, c), …)") from None
+    if len({term[:2] for term in checked}) != len(checked):
+        raise ValueError(f"terms={short_repr(checked)}: each pair of exponents must occur only once")
+    return PolynomialForm(checked)
+
+
+def _checked_term(i: Any, j: Any, c: Any) -> tuple[int, int, float]:
+    power_x, power_y = (checked_count(f"terms: exponent of {axis}", n, 0, HIGHEST_DEGREE) for axis, n in (("x", i), ("y", j)))
+    return power_x, power_y, checked_number("terms: coefficient", c, largest=LARGEST_COEFFICIENT)
+
+
+def _parameter_factor(i: int, j: int, omega_1: float, omega_2: float, epsilon: float) -> float:
+    """The factor of the coefficient of x^i y^j in `Potential.with_parameters`."""
+    if i + j < 2:
+        return 1.0
+    return epsilon if i + j > 2 else omega_1**i * omega_2**j

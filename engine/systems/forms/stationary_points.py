@@ -1,0 +1,177 @@
+"""Critical points of an expression in a stated region, with proof that there are no others.
+
+The region is the disc of 16.2 times the distance of the nearest point from the origin. This distance is found by Newton's method
+from starts on rings, two to an octave; if none is found it is 1. Then the region is divided into boxes. A box is left out if
+intervals prove that a derivative does not vanish in it; one is solved if the operator of Krawczyk (1969, Computing 4, 187) proves
+that it contains exactly one point; others are divided. Boxes through which a wall runs, where V is not defined, are divided down
+to a small size and then left out, and boxes around poles down to the smallest one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.expressions.intervals import enclose
+from engine.systems.forms.interval_newton import Derivatives, box, excludes_zero, newton_step, refined, solve
+from engine.systems.forms.point_searches import NO_POINTS, NotIsolatedError, UndecidedError
+
+MOST_POINTS = 60
+"""Largest number of critical points in the region."""
+
+# Radius of the region in units of the distance of the nearest critical point, and operations on boxes, 6e7 a second. The smaller
+# ones follow where V is not defined in a larger one, or it has too many points or needs too many operations.
+_REGIONS = ((16.2, 30_000_000), (8.1, 10_000_000), (4.1, 5_000_000), (2.1, 5_000_000))
+_OCTAVES, _PER_OCTAVE, _ANGLES = 24, 2, 32
+# A point this close to the origin is the origin.
+_ZERO = 2.0**-_OCTAVES
+_NEWTON_STEPS = 60
+_SUBNORMAL = 1e-290
+_CONVERGED = 1e-12
+# Relative to their distance from the origin and to that of the nearest point, points closer than this are the same one.
+_SAME, _SAME_DEGENERATE = 1e-8, 1e-5
+# A Hessian is singular if the ratio of its eigenvalues is at most this. For a polynomial the rounding of its coefficients decides
+# (`critical_points`); the error of the second derivatives of an expression is not known.
+_SINGULAR_RATIO = 1e-10
+# Coordinates below this, in units of the distance of the nearest point, are rounding errors of zero.
+_ROUNDING = 1e-13
+
+# Boxes along a side of the region to begin with, and the four parts of a box.
+_SIDE = 32
+_QUARTERS = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
+# Half the side of the smallest boxes on walls, and of all, in units of the distance of the nearest point.
+_SMALLEST_ON_WALL, _SMALLEST = 2.0**-9, 2.0**-34
+# Boxes within this many half sides of one in which V is not defined are around a pole.
+_AROUND_POLE = 64.0
+# With more boxes than this of one small size, it is tested whether the points form a curve.
+_MANY_BOXES = 4_000
+# Newton's method ends on a curve of points within this many half sides of a box; the smaller eigenvalue is 0 there to this share.
+_NEAR_BOX, _SINGULAR_ON_A_CURVE = 8.0, 1e-6
+
+
+def find_stationary_points(derivatives: Derivatives, effort: float = 1.0) -> np.ndarray:
+    """(n, 3) the points with ∇V = 0 in the region, each once, with their indices; the origin, if it is one, is exactly (0, 0).
+
+    The index is 1 for a minimum or a maximum, −1 for a saddle and 0 for a point whose Hessian is singular to rounding.
+
+    Parameters
+    ----------
+    derivatives
+        V and its derivatives.
+    effort
+        Factor of the limit on the operations.
+
+    Raises
+    ------
+    NotIsolatedError
+        If the points form a curve.
+    UndecidedError
+        If there are too many points, V is not defined in a part of the region, or the proof takes too long.
+    """
+    rings = _rings(2.0 ** np.linspace(-_OCTAVES, _OCTAVES, 2 * _OCTAVES * _PER_OCTAVE + 1))
+    near = _newton(derivatives, rings)
+    # Where V is flat its slopes are subnormal numbers, without digits.
+    near = near[np.abs(derivatives.hessian_at(near)).max(axis=(1, 2)) > _SUBNORMAL]
+    distance = np.hypot(*near.T)
+    known = distance[(distance >= _ZERO) & (distance <= 2.0**_OCTAVES)]
+    nearest = float(known.min()) if known.size else 1.0
+    problem = ""
+    for factor, operations in _REGIONS:
+        try:
+            return _find_within(derivatives, near, nearest, factor, int(effort * operations))
+        except UndecidedError as error:
+            problem = problem or str(error)
+    raise UndecidedError(problem)
+
+
+def _find_within(derivatives: Derivatives, near: np.ndarray, nearest: float, factor: float, operations: int) -> np.ndarray:
+    """The points within a multiple of the distance of the nearest one; those that Newton's method finds are among them."""
+    radius = factor * nearest
+    region = f"within r = {radius:.6g}, {factor:g} times the distance of the nearest critical point from the origin"
+    undecided = UndecidedError(f"Whether all critical points {region} are known is not decided within the limit on the work.")
+    half, points = radius / _SIDE, [NO_POINTS]
+    centres = radius * np.linspace(-1.0, 1.0, _SIDE + 1)
+    left = np.stack(np.meshgrid(centres, centres), axis=-1).reshape(-1, 2)
+    while len(left) and half >= _SMALLEST * nearest:
+        left = left[np.hypot(*np.maximum(np.abs(left) - half, 0.0).T) <= radius]
+        operations -= len(left) * derivatives.operations
+        if operations < 0:
+            raise undecided
+        slopes = enclose(*derivatives.slopes, *box(left, half))
+        if slopes.nowhere.any():
+            raise UndecidedError(f"V is not defined everywhere {region}.")
+        left, defined = (each[~excludes_zero(slopes)] for each in (left, slopes.defined))
+        if half < _SMALLEST_ON_WALL * nearest:
+            left = left[defined | ~derivatives.is_singular_in(left, half)]
+            if len(left) > _MANY_BOXES and _lie_on_curve(derivatives, left, half):
+                raise NotIsolatedError
+        roots, solved = solve(derivatives, left, half)
+        points.append(roots)
+        half *= 0.5
+        left = (left[~solved][:, None] + half * _QUARTERS).reshape(-1, 2)
+    found = np.concatenate(points)
+    unique = _distinct(found[np.hypot(*found.T) <= radius], nearest, _SAME)
+    defined = enclose(*derivatives.slopes, *box(left, half)).defined
+    at_pole = _are_near(left, left[~defined], _AROUND_POLE * half)
+    degenerate = _distinct(left[~at_pole], nearest, _SAME_DEGENERATE)
+    if len(unique) + len(degenerate) > MOST_POINTS:
+        raise UndecidedError(f"V has more than {MOST_POINTS} critical points {region}.")
+    all_points = np.concatenate([unique, degenerate])
+    near = near[np.hypot(*near.T) <= radius]
+    if not _are_near(near, all_points, _SAME_DEGENERATE * (nearest + np.hypot(*near.T))).all():
+        raise undecided
+    return np.concatenate([_with_indices(derivatives, unique), np.column_stack([degenerate, np.zeros(len(degenerate))])])
+
+
+def _are_near(points: np.ndarray, others: np.ndarray, distance: float | np.ndarray) -> np.ndarray:
+    """(n,) whether points (n, 2) are within a distance of one of others (m, 2)."""
+    near: np.ndarray = np.hypot(*np.moveaxis(points[:, None] - others, -1, 0)).min(axis=1, initial=np.inf) <= distance
+    return near
+
+
+def _lie_on_curve(derivatives: Derivatives, centres: np.ndarray, half: float) -> bool:
+    """Whether most of the boxes contain a point at which the Hessian is singular."""
+    points = refined(derivatives, centres)
+    near = (np.abs(points - centres) <= _NEAR_BOX * half).all(axis=1)
+    eigenvalues = np.abs(np.linalg.eigvalsh(derivatives.hessian_at(points[near])))
+    flat = eigenvalues.min(axis=1) <= _SINGULAR_ON_A_CURVE * eigenvalues.max(axis=1)
+    return bool(2 * np.count_nonzero(flat) > len(centres))
+
+
+def _rings(radii: np.ndarray) -> np.ndarray:
+    """(n, 2) points on circles, not on the axes, where symmetry can lead Newton's method to the same point again."""
+    angle = 0.1 + 2.0 * np.pi / _ANGLES * np.arange(_ANGLES)
+    return np.stack([np.outer(radii, np.cos(angle)), np.outer(radii, np.sin(angle))], axis=-1).reshape(-1, 2)
+
+
+def _newton(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
+    """(n, 2) where Newton's method converges, with repetitions."""
+    roots = [NO_POINTS]
+    for _ in range(_NEWTON_STEPS):
+        step = newton_step(derivatives, points)
+        length = np.hypot(*step.T)
+        converged = length <= _CONVERGED * np.maximum(np.hypot(*points.T), _ZERO)
+        points = points - step
+        roots.append(points[converged])
+        points = points[~converged & np.isfinite(length)]
+    return np.concatenate(roots)
+
+
+def _distinct(points: np.ndarray, nearest: float, same: float) -> np.ndarray:
+    """Each point once, on the axes and at the origin exactly."""
+    distance = np.hypot(*points.T)
+    at_origin = distance < max(_ZERO, same * nearest)
+    kept, left = [np.zeros(2)] if at_origin.any() else [], points[~at_origin]
+    while len(left) and len(kept) <= MOST_POINTS:
+        kept.append(left[0])
+        left = left[np.hypot(*(left - left[0]).T) > same * (nearest + np.hypot(*left[0]))]
+    unique = np.array(kept).reshape(-1, 2)
+    return np.where(np.abs(unique) < _ROUNDING * nearest, 0.0, unique)
+
+
+def _with_indices(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
+    """(n, 3) points (n, 2) with their indices."""
+    hessians = np.nan_to_num(derivatives.hessian_at(points))
+    eigenvalues = np.linalg.eigvalsh(hessians)
+    sizes = np.abs(eigenvalues)
+    is_singular = sizes.min(axis=1) <= _SINGULAR_RATIO * sizes.max(axis=1)
+    return np.column_stack([points, np.where(is_singular, 0.0, np.sign(eigenvalues).prod(axis=1))])

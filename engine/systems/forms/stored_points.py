@@ -1,0 +1,58 @@
+"""Points of a potential, stored on disk beside the compiled kernels: finding them again needs SciPy, which loads slowly."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import io
+import logging
+from collections.abc import Callable
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+
+from engine.foundations.cache_files import SUFFIX, cache_folder, read_cached, write_cached
+
+log = logging.getLogger(__name__)
+
+
+def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np.ndarray:
+    """The result of `find`, read from a file if the same package has found it before on this machine.
+
+    Parameters
+    ----------
+    kind
+        What is found, for the name of the file.
+    form
+        That on which the result depends; its `repr` tells it from others.
+    find
+        Finds the array, of numbers or flags. Its errors are raised and not stored.
+    """
+    key = repr((form, _versions()))
+    path = cache_folder() / f"{kind}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
+    try:
+        content = read_cached(path)
+        if content is not None:
+            stored: np.ndarray = np.load(io.BytesIO(content), allow_pickle=False)
+            return stored
+    except (OSError, ValueError) as error:
+        log.warning("invalid points %s: %s; finding them again", path, error)
+    found = find()
+    buffer = io.BytesIO()
+    np.save(buffer, found, allow_pickle=False)
+    write_cached(path, buffer.getvalue())
+    return found
+
+
+@functools.cache
+def _versions() -> tuple[str, ...]:
+    """Whatever else the results depend on: the modules that find them and the libraries below."""
+    engine = Path(__file__).parents[2]
+    files = [
+        engine / "polynomials.py",
+        *sorted((engine / "expressions").glob("*.py")),
+        *sorted(Path(__file__).parent.glob("*.py")),
+    ]
+    sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)
+    return (*sources, *(metadata.version(package) for package in ("numpy", "scipy", "python-flint")))

@@ -1,0 +1,346 @@
+"""Parser of potentials in common notation: "½(x² + y²) − x²y²", "0.5*(x^2+y^2) - x^2*y^2", "−1/√(x² + y² + c²) + x² exp(−y²)".
+
+The text is parsed by recursive descent and expanded with exact fractions as far as it is a polynomial; it is never evaluated as
+code. The grammar is:
+
+    formula  := ["V" ["(x, y)"] "="] sum
+    sum      := [sign] product {sign product}
+    product  := factor {["*" | "/"] factor}            "1/2 x" is ½ x
+    factor   := {sign} base [exponent]
+    exponent := superscript | ("^" | "**") [sign] (digits | letter | "(" sum ")")    a number between −12 and 12
+    base     := number | letter | "x" | "y" | "r" | "(" sum ")" | function "(" sum ")" | "√" base      r = √(x² + y²)
+    function := "exp" | "log" | "ln" | "sin" | "cos" | "sqrt"
+
+A letter, with or without one digit, is a parameter whose value is substituted: "a", "B", "k1", "α". Clauses can follow, see
+`engine.systems.formulas.outcome_clauses`.
+"""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from functools import partial
+
+from engine.expressions.nodes import Expression
+from engine.expressions.polynomials import ExactTerms, TooLargeError
+from engine.expressions.text import monomial
+from engine.foundations.validation import checked_number, checks_types
+from engine.systems.forms.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
+from engine.systems.formulas.formula_tokens import (
+    ALLOWED,
+    BASE_KINDS,
+    FROM_SUPERSCRIPT,
+    OPERATORS,
+    SIGNS,
+    FormulaError,
+    Token,
+    read_number,
+    tokenize,
+)
+from engine.systems.formulas.formula_values import (
+    LARGEST_EXPONENT,
+    NAMES,
+    FormulaValue,
+    add,
+    constant_of,
+    negative,
+    product,
+    quotient,
+    raised,
+)
+from engine.systems.formulas.formula_writer import by_degree, write_formula
+from engine.systems.formulas.outcome_clauses import Part, split_clauses
+from engine.systems.potential import Potential
+
+LONGEST_TEXT = 500
+"""Largest number of characters of a formula."""
+
+DEEPEST_NESTING = 50
+"""Largest depth of nested brackets, or of roots of roots, in a formula."""
+
+LARGEST_VALUE = COEFFICIENT_RANGE[1]
+"""Largest magnitude of the value of a letter; unlike a coefficient, it may be 0."""
+
+MOST_LETTERS = 8
+"""Largest number of different letters of a formula."""
+
+
+@checks_types(text=str, name=(str, type(None)), parameters=(Mapping, type(None)))
+def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, float] | None = None) -> Potential:
+    """The potential given by a formula.
+
+    Parameters
+    ----------
+    text
+        A formula in x and y, at most 500 characters: numbers (2, 0.5, 1e-3, ½), x, y, r = √(x² + y²), + − * / ^ ** √, exp(),
+        log() or ln(), sin(), cos(), sqrt() and round brackets. "2x²y" is a product; "−", "·" and "×" are operators too; "V ="
+        in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin but e, E and V, or
+        Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py",
+        "vx" and "vy" are refused. After it there may be what orbits end at: "; centre the Moon (0, 0) 0.0045", a body with a
+        name, its place and its radius of collision, "; escape 10", an escape radius, and "; well (1, 0)", a place near a minimum
+        to which the axes are moved, see `Potential.at_minimum`.
+    name
+        Name of the potential; by default the formula as written by `write_formula`.
+    parameters
+        Values of letters, at most 1e9 in magnitude; by default 1. A value is substituted as the decimal that Python prints.
+
+    Returns
+    -------
+    The potential. A polynomial is expanded exactly, with each coefficient rounded once and the terms sorted by degree; a constant
+    term is kept.
+
+    Raises
+    ------
+    ValueError
+        A `FormulaError` with the position and the problem, if the text cannot be parsed, has more than 500 characters, more than
+        50 nested brackets or roots, neither x nor y, a function of a number outside its domain, as a polynomial a degree above
+        12, more than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9, or else more than 120 products and
+        functions with the derivatives up to the second. A ValueError, if a parameter is no letter of the formula, its value is
+        not legal, or V has no minimum to which the axes could be moved.
+
+    Examples
+    --------
+    >>> from escape_explorer import parse_formula
+    >>> potential = parse_formula("½(x² + y²) + x²y − y³/3")
+    >>> potential.channels, round(potential.escape_energy, 6)
+    (3, 0.166667)
+    >>> parse_formula("½(x² + y²) − a x y²", parameters={"a": 1.5}).name
+    'x²/2 + y²/2 − 3xy²/2'
+    >>> parse_formula("½r² − a x²y exp(−y²)", parameters={"a": 2}).channels
+    2
+    """
+    if len(text) > LONGEST_TEXT:
+        raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")
+    values, clauses = _exact_values(text, parameters or {}), split_clauses(text)
+    expanded = _Parser(clauses.formula, values).parse()
+    if isinstance(expanded, Expression):
+        potential = Potential(name or "", expanded)
+        # Whatever is made of it next needs its derivatives.
+        if (problem := potential.form.limits_refusal()) is not None:
+            raise FormulaError(0, problem)
+    else:
+        _check_expanded(expanded)
+        terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree))
+        potential = Potential(name or "", terms)
+    number_of = partial(_number_of, values=values)
+    centres, escape_radius = clauses.evaluate(number_of)
+    found = Potential(name or write_formula(potential), potential.form, centres=centres, escape_radius=escape_radius)
+    return found if clauses.well is None else found.at_minimum(*map(number_of, clauses.well))
+
+
+def formula_letters(text: str) -> tuple[str, ...]:
+    """The letters of a formula that are coefficients, in the order of the text; FormulaError if a character is not understood."""
+    letters: dict[str, int] = {}
+    clauses = split_clauses(text)
+    for part in (Part(clauses.formula, 0), *clauses.numbers):
+        for token in tokenize(part.text):
+            if token.kind == "letter":
+                letters.setdefault(token.text, part.position + token.position)
+    if len(letters) > MOST_LETTERS:
+        problem = f"the formula has {len(letters)} letters for coefficients; at most {MOST_LETTERS} are allowed"
+        raise FormulaError(list(letters.values())[MOST_LETTERS], problem)
+    return tuple(letters)
+
+
+def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
+    """The value of a number of a clause; FormulaError if it is none."""
+    try:
+        number = constant_of(_Parser(part.text, values).parse())
+    except FormulaError as error:
+        raise FormulaError(part.position + error.position, error.problem) from None
+    if number is None:
+        raise FormulaError(part.position, "a place or a radius must be a number, without x and y")
+    return float(number)
+
+
+def checked_letter_value(name: str, value: float) -> float:
+    """The value of a letter as a float; ValueError if it is not finite or too large."""
+    number = checked_number(name, value)
+    if abs(number) > LARGEST_VALUE:
+        raise ValueError(f"{name}={value}: must be between {-LARGEST_VALUE:g} and {LARGEST_VALUE:g}")
+    return number
+
+
+def _exact_values(text: str, parameters: Mapping[str, float]) -> dict[str, Fraction]:
+    letters = formula_letters(text)
+    for name in parameters:
+        if name not in letters:
+            legal = f"its letters are {', '.join(letters)}" if letters else "it has no letters"
+            raise ValueError(f"parameters: {reprlib.repr(name)} is no letter of the formula; {legal}")
+    return {name: Fraction(repr(checked_letter_value(name, value))) for name, value in parameters.items()}
+
+
+def _check_expanded(expanded: ExactTerms) -> None:
+    if not any(i + j for i, j in expanded):
+        raise FormulaError(0, "the expanded formula has neither x nor y; a potential must depend on at least one of them")
+    if len(expanded) > MOST_TERMS:
+        raise FormulaError(0, f"the expanded formula has {len(expanded)} terms; at most {MOST_TERMS} are allowed")
+    low, high = COEFFICIENT_RANGE
+    for (i, j), c in expanded.items():
+        if not low <= abs(c) <= high:
+            problem = f"the coefficient of {monomial(i, j) or '1'} must be between {low:g} and {high:g} in magnitude"
+            raise FormulaError(0, problem)
+
+
+_NUMBERS = ("number", "fraction")
+
+
+class _Parser:
+    """Recursive descent over the tokens of a text; each `_parse_…` method handles one rule of the grammar."""
+
+    def __init__(self, text: str, values: Mapping[str, Fraction]) -> None:
+        self.tokens = tokenize(text)
+        self.values = values
+        self.index = 0
+        self.depth = 0
+
+    @property
+    def token(self) -> Token:
+        return self.tokens[self.index]
+
+    def parse(self) -> FormulaValue:
+        value = self._parse_sum()
+        if self.token.kind != "end":
+            raise self._unexpected_token()
+        return value
+
+    def _parse_sum(self) -> FormulaValue:
+        value = self._parse_product()
+        while self.token.kind == "sign":
+            sign = self._next_token()
+            right = self._parse_product()
+            value = self._bounded(sign, add, value, negative(right) if SIGNS[sign.text] == "-" else right)
+        return value
+
+    def _parse_product(self) -> FormulaValue:
+        value = self._parse_factor()
+        while self.token.kind in ("operator", *BASE_KINDS):
+            operator, before = self.token, self.tokens[self.index - 1]
+            if operator.kind == "operator":
+                self._next_token()
+            elif operator.kind in ("number", "fraction"):
+                problem = f"{operator.text} directly after {before.text}: write * for a product, ^ for a power, as in 2x or x^2"
+                raise FormulaError(operator.position, problem)
+            right = self._parse_factor()
+            divides = OPERATORS.get(operator.text) == "/"
+            if divides and constant_of(right) == 0:
+                raise FormulaError(operator.position, "the divisor must not be 0")
+            value = self._bounded(operator, quotient if divides else product, value, right)
+        return value
+
+    def _parse_factor(self) -> FormulaValue:
+        is_negative = self._parse_signs()
+        value = self._parse_power()
+        return negative(value) if is_negative else value
+
+    def _parse_signs(self) -> bool:
+        """Whether an odd number of the signs that follow are minus signs."""
+        is_negative = False
+        while self.token.kind == "sign":
+            is_negative ^= SIGNS[self._next_token().text] == "-"
+        return is_negative
+
+    def _parse_power(self) -> FormulaValue:
+        start = self.token
+        value = self._parse_base()
+        exponent = self._parse_exponent()
+        if start.kind == "name" and start.text == "r":
+            exponent = (1 if exponent is None else exponent) * Fraction(1, 2)
+        return value if exponent is None else self._bounded(start, raised, value, exponent)
+
+    def _parse_exponent(self) -> Fraction | None:
+        if self.token.kind not in ("power", "superscript"):
+            return None
+        token = self._next_token()
+        if token.kind == "power":
+            token = self.token
+            exponent = self._parse_number_of_exponent()
+        else:
+            exponent = Fraction(token.text.translate(FROM_SUPERSCRIPT))
+        if abs(exponent) > LARGEST_EXPONENT:
+            raise FormulaError(token.position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
+        if self.token.kind in ("power", "superscript"):
+            raise FormulaError(self.token.position, "a power of a power needs brackets, as in (x^2)^3")
+        return exponent
+
+    def _parse_number_of_exponent(self) -> Fraction:
+        is_negative, token = self._parse_signs(), self.token
+        if token.kind not in (*_NUMBERS, "letter", "open", "superscript"):
+            raise FormulaError(token.position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
+        if token.kind == "superscript":
+            value: FormulaValue = {(0, 0): Fraction(self._next_token().text.translate(FROM_SUPERSCRIPT))}
+        else:
+            value = self._parse_base()
+        exponent = constant_of(value)
+        if exponent is None:
+            raise FormulaError(token.position, "an exponent must be a number, without x and y")
+        return -exponent if is_negative else exponent
+
+    def _parse_base(self) -> FormulaValue:
+        token = self.token
+        if token.kind not in BASE_KINDS:
+            raise self._unexpected_token()
+        self._next_token()
+        if token.kind == "open":
+            return self._parse_brackets(token)
+        if token.kind in ("function", "root"):
+            return self._parse_function(token)
+        one = Fraction(1)
+        if token.kind != "name":
+            value = self.values.get(token.text, one) if token.kind == "letter" else read_number(token)
+            return {(0, 0): value} if value else {}
+        # The power of r is halved, so its base is r².
+        return {"x": {(1, 0): one}, "y": {(0, 1): one}, "r": {(2, 0): one, (0, 2): one}}[token.text]
+
+    def _parse_function(self, token: Token) -> FormulaValue:
+        """What follows the name of a function: its argument in brackets; after √ any base."""
+        if token.kind == "root":
+            start = self.token
+            argument = self._parse_nested(token, self._parse_base) if start.kind == "root" else self._parse_base()
+            if start.kind == "name" and start.text == "r":
+                argument = self._bounded(token, raised, argument, Fraction(1, 2))
+        else:
+            if self.token.kind != "open":
+                raise FormulaError(self.token.position, f"{token.text} needs its argument in brackets, as in {token.text}(x)")
+            argument = self._parse_brackets(self._next_token())
+        return self._bounded(token, NAMES["sqrt" if token.kind == "root" else token.text], argument)
+
+    def _parse_brackets(self, opening: Token) -> FormulaValue:
+        value = self._parse_nested(opening, self._parse_sum)
+        if self.token.kind == "end":
+            raise FormulaError(opening.position, "this bracket is not closed")
+        if self.token.kind != "close":
+            raise self._unexpected_token()
+        self._next_token()
+        return value
+
+    def _parse_nested(self, token: Token, parse: Callable[[], FormulaValue]) -> FormulaValue:
+        """The value of what is inside brackets, or of a root under a root."""
+        self.depth += 1
+        if self.depth > DEEPEST_NESTING:
+            raise FormulaError(token.position, f"more than {DEEPEST_NESTING} nested brackets or roots")
+        value = parse()
+        self.depth -= 1
+        return value
+
+    @staticmethod
+    def _bounded[*Operands](token: Token, operation: Callable[[*Operands], FormulaValue], *operands: *Operands) -> FormulaValue:
+        """The result of an operation; if it is too large or no real number, an error at the position of `token`."""
+        try:
+            return operation(*operands)
+        except TooLargeError as error:
+            raise FormulaError(token.position, f"the expanded formula is too large: {error}") from None
+        except (ArithmeticError, ValueError):
+            raise FormulaError(token.position, f"{token.text}: its value is not a finite real number") from None
+
+    def _next_token(self) -> Token:
+        """Return the current token and move to the next one; the end token is never passed."""
+        token = self.token
+        self.index = min(self.index + 1, len(self.tokens) - 1)
+        return token
+
+    def _unexpected_token(self) -> FormulaError:
+        if self.token.kind == "end":
+            return FormulaError(self.token.position, "the formula ends where a number, x, y, r or a bracket is expected")
+        return FormulaError(self.token.position, f"unexpected {self.token.text}; {ALLOWED}")

@@ -1,0 +1,121 @@
+"""Arithmetic of the parser: polynomials with exact coefficients as long as possible, expressions where they end.
+
+A part of a formula without functions, roots or divisions by x and y is expanded exactly. As a part of an expression each of its
+coefficients is rounded once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+
+from flint import fmpq
+
+from engine.expressions.nodes import (
+    FUNCTIONS,
+    Expression,
+    apply_function,
+    as_number,
+    as_terms,
+    from_terms,
+    linear_combination,
+    multiply,
+    number,
+    power,
+)
+from engine.expressions.polynomials import ExactTerms, exact_negative, exact_power, exact_product, exact_sum
+from engine.systems.forms.common_roots import exact_polynomial
+
+FormulaValue = ExactTerms | Expression
+
+LARGEST_EXPONENT = 12
+"""Largest magnitude of an exponent."""
+
+
+def add(one: FormulaValue, other: FormulaValue) -> FormulaValue:
+    """The sum."""
+    if isinstance(one, Expression) or isinstance(other, Expression):
+        return _simplified(linear_combination([(1.0, _rounded(one)), (1.0, _rounded(other))]))
+    return exact_sum(one, other)
+
+
+def negative(value: FormulaValue) -> FormulaValue:
+    """−value."""
+    return linear_combination([(-1.0, value)]) if isinstance(value, Expression) else exact_negative(value)
+
+
+def product(one: FormulaValue, other: FormulaValue) -> FormulaValue:
+    """The product."""
+    if isinstance(one, Expression) or isinstance(other, Expression):
+        return _simplified(multiply(_rounded(one), _rounded(other)))
+    return exact_product(one, other)
+
+
+def quotient(one: FormulaValue, other: FormulaValue) -> FormulaValue:
+    """one / other; ZeroDivisionError if the divisor is 0."""
+    divisor = constant_of(other)
+    if divisor is not None and not isinstance(other, Expression):
+        return product(one, {(0, 0): 1 / divisor})
+    return product(one, raised(other, Fraction(-1)))
+
+
+def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
+    """A power; ArithmeticError or ValueError for one of a number that is not a finite real number."""
+    if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
+        return exact_power(base, int(exponent))
+    if exponent.denominator == 1 and base and not isinstance(base, Expression):
+        return _simplified(_power_of_factors(base, int(exponent)))
+    return _simplified(power(_rounded(base), float(exponent)))
+
+
+def _power_of_factors(base: ExactTerms, exponent: int) -> Expression:
+    """A power of a polynomial; of its factors if one of them is repeated, so that 1/(x² + 2x + 1) is (x + 1)^−2."""
+    constant, factors = exact_polynomial(base).factor_squarefree()
+    if all(n == 1 for _, n in factors):
+        return power(_rounded(base), float(exponent))
+    raised_factors = []
+    for factor, n in factors:
+        leading = factor.leading_coefficient()
+        constant *= leading**n
+        terms = {(i, j): _fraction(c / leading) for (i, j), c in factor.to_dict().items()}
+        raised_factors.append(power(_rounded(terms), float(n * exponent)))
+    return multiply(number(float(_fraction(constant) ** exponent)), *raised_factors)
+
+
+def _fraction(value: fmpq) -> Fraction:
+    return Fraction(int(value.p), int(value.q))
+
+
+def applied(name: str, argument: FormulaValue) -> FormulaValue:
+    """A function of `FUNCTIONS`; ArithmeticError or ValueError for a number outside its domain."""
+    return _simplified(apply_function(name, _rounded(argument)))
+
+
+def constant_of(value: FormulaValue) -> Fraction | None:
+    """The value of a formula without x and y; None for others."""
+    if isinstance(value, Expression):
+        return None
+    return value.get((0, 0), Fraction(0)) if set(value) <= {(0, 0)} else None
+
+
+def _rounded(value: FormulaValue) -> Expression:
+    if isinstance(value, Expression):
+        return value
+    return from_terms({powers: float(c) for powers, c in value.items()})
+
+
+def _simplified(value: Expression) -> FormulaValue:
+    """A number or a polynomial, whose coefficients are exact from here on; others unchanged."""
+    number = as_number(value)
+    if number is not None:
+        return {(0, 0): Fraction(number)} if number else {}
+    terms = as_terms(value)
+    return value if terms is None else {powers: Fraction(c) for powers, c in terms.items()}
+
+
+NAMES: dict[str, Callable[[FormulaValue], FormulaValue]] = {
+    **{name: lambda argument, name=name: applied(name, argument) for name in FUNCTIONS},  # type: ignore[misc]
+    "ln": lambda argument: applied("log", argument),
+    "sqrt": lambda argument: raised(argument, Fraction(1, 2)),
+}
+"""The functions of formulas by name."""

@@ -1,0 +1,64 @@
+"""Potentials as plain text that the parser reads back."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+from engine.expressions.text import join_signed, monomial_term, write_expression
+from engine.foundations.validation import checked_count, checks_types
+from engine.systems.forms.expression_form import ExpressionForm
+from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.formulas.outcome_clauses import write_clauses
+from engine.systems.potential import Potential
+
+# Of a double, none are lost.
+_MOST_DIGITS = 17
+
+
+@checks_types(potential=Potential)
+def write_formula(potential: Potential, digits: int | None = None) -> str:
+    """A potential as plain text, such as "x²/2 + y²/2 − x²y²", in a rotating frame the effective one.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    digits
+        Significant digits of the coefficients, 1 to 17, so that `parse_formula` reads back each with a relative error of at most
+        5·10^−digits; None for as many as it needs to read back exactly the same terms.
+
+    Examples
+    --------
+    >>> from escape_explorer import parse_formula, write_formula
+    >>> potential = parse_formula("½(x² + y²) − 0.123456789 x²y²")
+    >>> write_formula(potential)
+    'x²/2 + y²/2 − 0.123456789x²y²'
+    >>> write_formula(potential, digits=4)
+    'x²/2 + y²/2 − 10x²y²/81'
+    """
+    if digits is not None:
+        digits = checked_count("digits", digits, 1, _MOST_DIGITS)
+    return _write_form(potential.form, digits) + write_clauses(potential.centres, potential.escape_radius)
+
+
+@functools.singledispatch
+def _write_form(form: Any, digits: int | None) -> str:
+    raise TypeError(form)
+
+
+@_write_form.register
+def _write_polynomial(form: PolynomialForm, digits: int | None) -> str:
+    terms = sorted(form.terms, key=by_degree)
+    return join_signed([(c, monomial_term(i, j, abs(c), digits)) for i, j, c in terms]) or "0"
+
+
+@_write_form.register
+def _write_other(form: ExpressionForm, digits: int | None) -> str:
+    return write_expression(form.expression, digits)
+
+
+def by_degree(term: tuple[int, int] | tuple[int, int, float]) -> tuple[int, int]:
+    """Sort key of a term (i, j) or (i, j, c): by degree, then by the power of y."""
+    i, j = term[:2]
+    return i + j, j

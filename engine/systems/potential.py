@@ -1,0 +1,335 @@
+"""Potentials: a formula, the rotation of its frame, and what orbits end at besides its exits.
+
+All else is derived from these: critical points, exits and units by `engine.systems.well`, the integrator by `engine.integrator`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from engine.expressions.nodes import Expression
+from engine.foundations.result import Result
+from engine.foundations.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
+from engine.systems.forms.expression_form import ExpressionForm
+from engine.systems.forms.form import Form, hessian_matrix
+from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
+from engine.systems.outcomes import Centre, Outcome, checked_radius
+from engine.systems.parameters import WELL_PARAMETERS, symbol_of
+from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
+from engine.systems.well import Well
+from engine.systems.well_units import WellUnits
+
+Terms = tuple[tuple[int, int, float], ...]
+
+
+@dataclass(frozen=True, init=False)
+class Potential(Result):
+    """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
+
+    In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for the velocities ẋ and ẏ, and H for
+    the Jacobi integral (ẋ² + ẏ²)/2 + Φ: ẍ = 2Ωẏ − Φ_x, ÿ = −2Ωẋ − Φ_y. See `in_rotating_frame`.
+
+    Without an escape radius orbits leave a well, or a centre, at the origin through the exits over its saddles. With one, saddles
+    are no exits, and orbits end beyond this radius. See `with_outcomes`.
+
+    Parameters
+    ----------
+    name
+        Display name; it has no influence on any result, and potentials of different name can be equal.
+    form
+        What V is. For a polynomial Σ c x^i y^j its terms ((i, j, c), …): exponents i, j from 0 to 12 and coefficient c, at most
+        1e90 in magnitude, of each term, each (i, j) only once. `parse_formula` makes the forms of other formulas.
+    rotation
+        Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
+    centres
+        Bodies with which orbits collide.
+    escape_radius
+        Distance from the origin beyond which orbits have escaped, 1e-6 to 1e6, dimensionless; None for exits over saddles.
+    origin
+        (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`; it has no influence on any result.
+    lineage
+        How its well is found.
+
+    Raises
+    ------
+    ValueError
+        If an exponent is out of range, a coefficient is not finite, a pair of exponents occurs twice, or another number is out of
+        range.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES
+    >>> potential = CASES["III"].with_parameters(epsilon=0.5)
+    >>> potential.channels, potential.escape_energy
+    (4, 0.5)
+    >>> potential.saddles.round(6).tolist()
+    [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
+    """
+
+    name: str = field(compare=False)
+    form: Form
+    rotation: float = 0.0
+    centres: tuple[Centre, ...] = ()
+    escape_radius: float | None = None
+    origin: tuple[float, float] = (0.0, 0.0)
+    lineage: Lineage = field(default=SEARCHED, repr=False)
+
+    def __init__(
+        self,
+        name: str,
+        form: Form | Terms | Expression,
+        rotation: float = 0.0,
+        centres: Sequence[Centre] = (),
+        escape_radius: float | None = None,
+        origin: tuple[float, float] = (0.0, 0.0),
+        lineage: Lineage = SEARCHED,
+    ) -> None:
+        check_type("name", name, str)
+        if isinstance(form, Expression):
+            form = ExpressionForm(form)
+        elif not isinstance(form, PolynomialForm | ExpressionForm):
+            form = checked_form(form)
+        check_type("centres", centres, Iterable)
+        for centre in centres:
+            check_type("centres", centre, Centre)
+        values = {
+            "name": name,
+            "form": form,
+            "rotation": checked_number("rotation", rotation),
+            "centres": tuple(centres),
+            "escape_radius": None if escape_radius is None else checked_radius("escape_radius", escape_radius),
+            "origin": (checked_number("origin", origin[0]), checked_number("origin", origin[1])),
+            "lineage": lineage,
+        }
+        for attribute, value in values.items():
+            object.__setattr__(self, attribute, value)
+
+    @cached_property
+    def well(self) -> Well:
+        """What follows from the potential: critical points, exits, symmetries, units."""
+        return self.lineage.make_well(self.form, self.rotation, self.centres, self.escape_radius)
+
+    @property
+    def critical_points(self) -> np.ndarray:
+        """(n, 2) all points with ∇V = 0, see `Well.critical_points`."""
+        return self.well.critical_points
+
+    @property
+    def saddles(self) -> np.ndarray:
+        """(n, 2) exit saddles in channel order, see `Well.saddles`."""
+        return self.well.saddles
+
+    @property
+    def channels(self) -> int:
+        """The number of exit channels; they are numbered from 1, counterclockwise from the +x axis."""
+        return self.well.channels
+
+    @property
+    def escape_energy(self) -> float:
+        """The lowest energy at which orbits can escape, see `Well.escape_energy`."""
+        return self.well.escape_energy
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What orbits can end at: the exits in channel order, the centres, the escape radius; the first one is fate 1."""
+        return self.well.outcomes
+
+    def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
+        """The outcomes as `outcomes`, named as exits are at an energy, or in a range of energies (low, high)."""
+        return self.well.outcomes_at(energy)
+
+    @property
+    def units(self) -> WellUnits:
+        """The units of the well, see `Well.units`."""
+        return self.well.units
+
+    @cached_property
+    def in_well_units(self) -> Potential:
+        """The same system in units of the well: V(L x, L y) / E, for units L of length and E of energy.
+
+        The potential itself if both are 1.
+        """
+        units = self.units
+        if units == WellUnits():
+            return self
+        # Legal ranges are for the potential's own units.
+        return replace_unchecked(
+            self,
+            form=self.form.scaled(units.length, units.energy),
+            rotation=self.rotation * units.time,
+            centres=tuple(centre.scaled(1.0 / units.length) for centre in self.centres),
+            escape_radius=None if self.escape_radius is None else self.escape_radius / units.length,
+            lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
+        )
+
+    def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
+        """The same potential as a member of a family, with exits that were found before; parameters as of `ContinuedWell`."""
+        return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
+
+    def _changed(self, **values: Any) -> Potential:
+        """Another potential, whose well is searched."""
+        return replace(self, lineage=SEARCHED, **values)
+
+    def in_rotating_frame(self, rotation: float) -> Potential:
+        """The potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).
+
+        Parameters
+        ----------
+        rotation
+            Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
+
+        Raises
+        ------
+        ValueError
+            If the rate is out of range, or the potential is one of a rotating frame already.
+        """
+        if self.rotation:
+            raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
+        half = -0.5 * checked_number("rotation", rotation) ** 2
+        return self._changed(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
+
+    def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
+        """The potential with its axes moved to the minimum nearest to a place, so that orbits leave the well there.
+
+        Energies are unchanged. A frame that rotates turns about the new origin.
+
+        Parameters
+        ----------
+        x, y
+            The place, dimensionless.
+
+        Raises
+        ------
+        ValueError
+            If V has no minimum, or it is not known.
+
+        Examples
+        --------
+        >>> from escape_explorer import parse_formula
+        >>> moved = parse_formula("5(x² + y²) + 3y + 0.3(x⁴ + y⁴ − 6x²y²)").at_minimum()
+        >>> [round(coordinate, 6) for coordinate in moved.origin], round(max(moved.well.saddle_energies), 4)
+        ([0.0, -0.296861], 27.0123)
+        """
+        place = np.array([checked_number("x", x), checked_number("y", y)])
+        points = self.well.critical_points
+        along_x, _, along_y = self.hessian(*points.T)
+        minima = points[(self.well.critical_indices > 0.0) & (along_x + along_y > 0.0)]
+        if not len(minima):
+            raise ValueError(f"potential={self.name}: V must have a minimum to which its axes can be moved")
+        nearest = minima[np.argmin(np.hypot(*(minima - place).T))].tolist()
+        centres = tuple(replace(each, x=each.x - nearest[0], y=each.y - nearest[1]) for each in self.centres)
+        origin = self.origin[0] + nearest[0], self.origin[1] + nearest[1]
+        return self._changed(form=self.form.moved(*nearest), centres=centres, origin=origin)
+
+    def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
+        """The potential with other centres and another escape radius; parameters as of the potential."""
+        check_type("centres", centres, Iterable)
+        return self._changed(centres=tuple(centres), escape_radius=escape_radius)
+
+    @cached_property
+    def reversed_in_time(self) -> Potential:
+        """The potential whose orbits, with the velocities reversed, are those of this one backward in time: Ω is reversed."""
+        return self._changed(rotation=-self.rotation) if self.rotation else self
+
+    def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
+        """`t_max` as a float, 0 < t_max ≤ longest; in units of the well where its unit of time is longer than 1."""
+        return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
+
+    def check_same_motion(self, other: Potential, what: str) -> None:
+        """Raise ValueError if the equations of motion are not those of another potential, of which a result is."""
+        if (self.form, self.rotation) != (other.form, other.rotation):
+            raise ValueError(f"potential={self.name}: must be that of the {what}, {other.name}")
+
+    def check_at_rest(self, what: str) -> None:
+        """Raise ValueError in a rotating frame, for what rests on the symmetry of time reversal."""
+        if self.rotation:
+            raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")
+
+    def check_without_centres(self, what: str) -> None:
+        """Raise ValueError around centres, for what is integrated with fixed steps."""
+        if self.centres:
+            raise ValueError(
+                f"potential={self.name}: has centres; {what} are computed with fixed steps, which cannot pass close to one"
+            )
+
+    @property
+    def certifies_tori(self) -> bool:
+        """Whether an invariant torus counts as evidence that its orbits are bounded for ever: only in a well at rest.
+
+        In a rotating frame, around centres and with an escape radius this evidence is not tested.
+        """
+        return not self.rotation and not self.centres and self.escape_radius is None
+
+    def numbers(self) -> dict[str, Any]:
+        """The name, the escape energy and the number of channels."""
+        return {"name": self.name, "escape_energy": self.escape_energy, "channels": self.channels}
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Number, place and energy of each exit saddle."""
+        x, y = self.saddles.T
+        return {"channel": np.arange(1, self.channels + 1), "x": x, "y": y, "energy": self.well.saddle_energies}
+
+    @property
+    def terms(self) -> Terms:
+        """((i, j, c), …) of a polynomial; ValueError for other formulas."""
+        if not isinstance(self.form, PolynomialForm):
+            raise ValueError(f"{self.name} is no polynomial")
+        return self.form.terms
+
+    def value(self, x: Any, y: Any) -> Any:
+        """V at (x, y); arrays broadcast."""
+        return self.form.value(x, y)
+
+    def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """(V_x, V_y) at (x, y); arrays broadcast."""
+        return self.form.gradient(x, y)
+
+    def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
+        """(V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
+        return self.form.hessian(x, y)
+
+    def hessian_matrix(self, x: float, y: float) -> np.ndarray:
+        """(2, 2) the Hessian matrix of V at one point."""
+        return hessian_matrix(self.form, x, y)
+
+    def energy(self, states: Any) -> Any:
+        """H of states (…, 4) = x, y, px, py."""
+        x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
+        return 0.5 * (px * px + py * py) + self.value(x, y)
+
+    def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Potential:
+        """This potential with other frequencies of its well and another strength of its perturbation.
+
+        V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 is the terms of degree 3 and higher.
+        In general V1 is all but the constant, linear and quadratic terms of the expansion about the origin, x² is multiplied by
+        ω1², y² by ω2² and x y by ω1 ω2, also if the quadratic terms are not ½ (x² + y²), so that the default values give the
+        potential itself. Constant and linear terms are unchanged.
+
+        Parameters
+        ----------
+        omega_1, omega_2
+            Frequencies along x and y, dimensionless, from 0.1 to 10.
+        epsilon
+            Strength of V1, dimensionless, from 0.01 to 100.
+
+        Raises
+        ------
+        ValueError
+            If a parameter is out of range.
+        """
+        chosen = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
+        for name, value in chosen.items():
+            low, high = WELL_PARAMETERS[name].range
+            if not low <= checked_number(name, value) <= high:
+                raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
+        is_changed = not omega_1 == omega_2 == epsilon == 1.0
+        if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
+            raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
+        changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
+        form = self.form.with_parameters(omega_1, omega_2, epsilon)
+        return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)

@@ -1,0 +1,107 @@
+"""Wells whose exits are known from those of another potential, and are not searched again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from engine.foundations.arrays import read_only
+from engine.systems.merged_channels import ChannelMerger
+from engine.systems.well import Well
+from engine.systems.well_units import WellUnits
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledWell(Well):
+    """The well of a potential in units of its well.
+
+    Attributes
+    ----------
+    stated
+        The same well in the units in which the potential was given; exits are those of this one, divided by powers of 2.
+    """
+
+    stated: Well
+
+    @cached_property
+    def units(self) -> WellUnits:
+        """1."""
+        return WellUnits()
+
+    @property
+    def stated_units(self) -> WellUnits:
+        """The units of the potential as it was given."""
+        return self.stated.units
+
+    @cached_property
+    def saddles(self) -> np.ndarray:
+        """See `Well.saddles`."""
+        return read_only(self.stated.saddles / self.stated_units.length)
+
+    @cached_property
+    def outward_directions(self) -> np.ndarray:
+        """See `Well.outward_directions`."""
+        return self.stated.outward_directions
+
+    @cached_property
+    def channel_mergers(self) -> tuple[ChannelMerger, ...]:
+        """See `Well.channel_mergers`."""
+        units = self.stated_units
+        return tuple(
+            ChannelMerger(energy / units.energy, x / units.length, y / units.length, channels)
+            for energy, x, y, channels in self.stated.channel_mergers
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ContinuedWell(Well):
+    """A well whose exits were continued from those of a potential nearby.
+
+    Attributes
+    ----------
+    found
+        (n, 2) the saddles of all exits, in any order.
+    maxima
+        (m, 2) the maxima between exits.
+    around
+        For each maximum the places of its exits among the saddles.
+    """
+
+    found: np.ndarray
+    maxima: np.ndarray
+    around: Sequence[Sequence[int]]
+
+    @cached_property
+    def saddles(self) -> np.ndarray:
+        """See `Well.saddles`."""
+        return self._in_channel_order(self.found)
+
+    @cached_property
+    def channel_mergers(self) -> tuple[ChannelMerger, ...]:
+        """See `Well.channel_mergers`."""
+        channel = np.array([1 + np.argmin(np.hypot(*(self.saddles - saddle).T)) for saddle in self.found], int)
+        return self._mergers_at(self.maxima, [np.sort(channel[list(places)]) for places in self.around])
+
+
+@dataclass(frozen=True)
+class Lineage:
+    """How the well of a potential is found.
+
+    Attributes
+    ----------
+    family
+        Empty, or from which family the exits were continued (`ParameterFamily`). They may differ in the last bit from those that
+        are found from the critical points, and so may results, which are therefore kept apart.
+    make_well
+        Makes the well of form, rotation, centres and escape radius; it has no influence on any result.
+    """
+
+    family: str = ""
+    make_well: Callable[..., Well] = field(default=Well, compare=False)
+
+
+SEARCHED = Lineage()
+"""Of a well whose exits are searched among the critical points."""

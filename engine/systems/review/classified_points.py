@@ -1,0 +1,72 @@
+"""The critical points of a potential with their kinds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from engine.systems.potential import Potential
+
+
+class PointKind(Enum):
+    """The type of a critical point; the value is its name in texts."""
+
+    MINIMUM = "minimum"
+    SADDLE = "saddle"
+    MAXIMUM = "maximum"
+    DEGENERATE = "degenerate point"
+
+
+@dataclass(frozen=True)
+class CriticalPoint:
+    """A point (x, y) with ∇V = 0 and V = `energy`; `channel` is the number of the channel over it, 0 if there is none."""
+
+    x: float
+    y: float
+    kind: PointKind
+    energy: float
+    channel: int
+
+
+def classify_points(potential: Potential) -> tuple[CriticalPoint, ...]:
+    """All critical points, the nearest to the origin first; ValueError where they are not found."""
+    points = [
+        CriticalPoint(x, y, _kind(potential, x, y, index), float(potential.value(x, y)), _channel(potential, x, y))
+        for (x, y), index in zip(potential.critical_points.tolist(), potential.well.critical_indices.tolist(), strict=True)
+    ]
+    return tuple(sorted(points, key=lambda point: math.hypot(point.x, point.y)))
+
+
+def _kind(potential: Potential, x: float, y: float, index: float) -> PointKind:
+    if index == 0.0:
+        return PointKind.DEGENERATE
+    if index < 0.0:
+        return PointKind.SADDLE
+    return PointKind.MINIMUM if np.trace(potential.hessian_matrix(x, y)) > 0.0 else PointKind.MAXIMUM
+
+
+def _channel(potential: Potential, x: float, y: float) -> int:
+    near = np.flatnonzero(np.hypot(*(potential.saddles - [x, y]).T) < 1e-6 * potential.units.length)
+    return int(near[0]) + 1 if near.size else 0
+
+
+def point_at_origin(points: tuple[CriticalPoint, ...]) -> CriticalPoint | None:
+    """The critical point that is the origin; None if it is none."""
+    return next((point for point in points if point.x == point.y == 0.0), None)
+
+
+def minima_of(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
+    """The minima, the nearest to the origin first."""
+    return [point for point in points if point.kind is PointKind.MINIMUM]
+
+
+def other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
+    """The nearest minimum that a formula can be moved to by a clause, which it may have once only."""
+    nearest = next(iter(minima_of(points)), None)
+    is_moved = any(potential.origin)
+    if nearest is None or nearest is point_at_origin(points) or is_moved or potential.rotation:
+        return None
+    return (nearest.x, nearest.y) if potential.escape_radius is None else None

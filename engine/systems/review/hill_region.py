@@ -1,0 +1,83 @@
+"""Tests of the Hill region, the region around the origin with V below an energy, on a polar grid: is it closed by the exits?"""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from engine.systems.potential import Potential
+
+# The tests use this share of the saddle energy: right at the saddle energy the ridge is too narrow for the grid.
+_ENERGY_SHARE = 0.9
+_ANGLES, _RADII_PER_E_FOLD = 720, 35
+# Smallest and largest radius of the grid, in units of the distances of the nearest and of the outermost critical point.
+_SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-2, 50.0
+# Where an opening without a saddle is searched: at this multiple of the range of the critical energies.
+_OPEN_ENERGY_FACTOR = 100.0
+_CACHE_SIZE = 256
+
+
+def is_open_without_saddle(potential: Potential, points: np.ndarray) -> bool:
+    """Whether a well at the origin without exits is open far above the energies of all critical points (n, 2)."""
+    bottom = float(potential.value(0.0, 0.0))
+    energy_range = float(np.abs(potential.value(*points.T) - bottom).max(initial=0.0)) or potential.units.energy
+    return is_open_below(potential, bottom + _OPEN_ENERGY_FACTOR * energy_range, points)
+
+
+@functools.lru_cache(maxsize=_CACHE_SIZE)
+def check_closed_well(potential: Potential) -> None:
+    """Raise ValueError unless a potential without exits has a well at the origin that no orbit leaves."""
+    points = potential.critical_points
+    is_regular = (points == 0.0).all(axis=1) & (potential.well.critical_indices > 0.0)
+    if not (is_regular.any() and potential.well.is_minimum) or is_open_without_saddle(potential, points):
+        raise ValueError(
+            f"potential={potential.name}: must have exits, or a closed well at the origin, so that it is defined which orbits "
+            "escape; review_potential says more"
+        )
+
+
+def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bool:
+    """Whether the region around the origin slightly below `energy` extends far beyond all critical points (n, 2).
+
+    The grid is polar, around a well in coordinates in which V ≈ ½ r² near the origin, so that it resolves narrow ones.
+    """
+    frequencies, axes = (
+        np.linalg.eigh(potential.hessian_matrix(0.0, 0.0)) if potential.well.is_minimum else (np.ones(2), np.eye(2))
+    )
+    scaled = np.sqrt(frequencies) * (points @ axes)
+    distance = np.hypot(*scaled.T)
+    distance = distance[distance > 0.0]
+    alone = np.sqrt(potential.units.energy) if potential.well.is_minimum else potential.units.length
+    low, high = (distance.min(), distance.max()) if distance.size else (alone, alone)
+    low, high = _SMALLEST_RADIUS * low, _LARGEST_RADIUS * high
+    radius = np.geomspace(low, high, int(_RADII_PER_E_FOLD * np.log(high / low)))[:, None]
+    # The angles span two turns, so that the edge of the grid does not split a region.
+    angle = np.linspace(0.0, 4.0 * np.pi, 2 * _ANGLES + 1)
+    xi, eta = radius * np.cos(angle) / np.sqrt(frequencies[0]), radius * np.sin(angle) / np.sqrt(frequencies[1])
+    value = potential.value(axes[0, 0] * xi + axes[0, 1] * eta, axes[1, 0] * xi + axes[1, 1] * eta)
+    bottom = potential.well.bottom
+    return bool(_connected_to_origin(value < bottom + _ENERGY_SHARE * (energy - bottom))[-1].any())
+
+
+def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
+    """The part of a region on a polar grid that is connected to the innermost circle."""
+    # `scipy.ndimage.label` does the same, but takes ten times as long to import.
+    allowed = allowed.copy()
+    allowed[0] = True
+    connected, count = np.zeros_like(allowed), 0
+    connected[0] = True
+    while int(connected.sum()) > count:
+        count = int(connected.sum())
+        for view in (np.s_[:], np.s_[::-1]):
+            for axis in (0, 1):
+                cells, open_cells = (np.moveaxis(grid, axis, 0)[view] for grid in (connected, allowed))
+                _spread(cells, open_cells)
+    return connected
+
+
+def _spread(connected: np.ndarray, allowed: np.ndarray) -> None:
+    """Connect, in place, the allowed points that follow a connected one along the first axis without a gap."""
+    index = np.arange(len(allowed))[:, None]
+    last_gap = np.maximum.accumulate(np.where(allowed, -1, index))
+    connected |= allowed & (np.maximum.accumulate(np.where(connected, index, -1)) > last_gap)

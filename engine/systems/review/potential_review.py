@@ -1,0 +1,194 @@
+"""The review of a potential before any computation: critical points, exits, symmetries, reasons for refusal, and remarks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property, lru_cache
+from typing import ClassVar
+
+import numpy as np
+
+from engine.foundations.result import Result
+from engine.foundations.validation import checks_types
+from engine.systems.catalogue.entry import EnergyRange
+from engine.systems.formulas.formula_writer import write_formula
+from engine.systems.merged_channels import name_channels
+from engine.systems.potential import Potential
+from engine.systems.review.classified_points import CriticalPoint, PointKind, other_well
+from engine.systems.review.energy_ranges import energy_range
+from engine.systems.review.refusals import find_points_or_refusal
+from engine.systems.system import System
+from engine.systems.well import EQUAL_ENERGY_TOLERANCE
+
+_CACHE_SIZE = 256
+_MOVED = "x and y count from the well at ({:.6g}, {:.6g}) of the formula."
+
+
+@dataclass(frozen=True, repr=False)
+class PotentialReview(Result):
+    """The result of `review_potential`; lengths and energies are dimensionless.
+
+    Attributes
+    ----------
+    potential
+        The potential.
+    formula
+        V(x, y) as text, with the values of the parameters.
+    critical_points
+        All critical points, sorted by distance from the origin; empty if they form a curve.
+    escape_energy
+        Energy of the lowest exit saddle; infinite if there is none.
+    channels
+        Number of exits.
+    highest_energy
+        The energy of the lowest maximum between two exits, above which they are one; infinite if there is none. Lyapunov orbits
+        may cease to exist below it: see `find_lyapunov_orbits`.
+    mirror_in_x, mirror_in_y
+        Whether V is even in x, in y.
+    rotations
+        The largest n for which a rotation by 2π/n leaves V unchanged: 1 if none does, 0 if every rotation does.
+    refusal
+        A sentence that says why the potential cannot be used; None if it can.
+    remarks
+        Unusual properties, one sentence each.
+    well
+        (x, y) of the nearest minimum if there is no well at the origin, see `Potential.at_minimum`; None if there is none, and
+        for rotating frames, escape radii and axes that are moved already.
+    """
+
+    potential: Potential
+    formula: str
+    critical_points: tuple[CriticalPoint, ...]
+    escape_energy: float
+    channels: int
+    highest_energy: float
+    mirror_in_x: bool
+    mirror_in_y: bool
+    rotations: int
+    refusal: str | None
+    remarks: tuple[str, ...]
+    well: tuple[float, float] | None
+    row_dimension: ClassVar = "point"
+
+    @cached_property
+    def energies(self) -> EnergyRange:
+        """Energies to explore: multiples of the escape energy; not for a potential that is refused."""
+        return energy_range(self.potential, self.highest_energy, [point.energy for point in self.critical_points])
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Place, kind, energy and channel of each critical point."""
+        names = [field.name for field in fields(CriticalPoint)]
+        columns = {name: np.array([getattr(point, name) for point in self.critical_points]) for name in names}
+        return columns | {"kind": np.array([point.kind.value for point in self.critical_points], dtype=str)}
+
+    def describe(self) -> str:
+        """Why the potential cannot be used, or what is unusual about it; empty for an ordinary one."""
+        return self.refusal or " ".join(self.remarks)
+
+
+@dataclass(frozen=True, repr=False)
+class SystemReview(PotentialReview):
+    """The review of a system, with its formula as users know it and the energies of the catalogue.
+
+    Attributes
+    ----------
+    system
+        The system.
+    """
+
+    system: System
+
+    @cached_property
+    def energies(self) -> EnergyRange:
+        """Energies to explore: those of the catalogue at its values, else as of any potential."""
+        known = self.system.entry.energies
+        return super().energies if known is None or self.system.parameters else known
+
+
+@checks_types(potential=Potential)
+@lru_cache(maxsize=_CACHE_SIZE)
+def review_potential(potential: Potential) -> PotentialReview:
+    """Check whether a potential can be used, without compiling or integrating anything.
+
+    It takes a tenth of a second usually, and about 2 s at most; repeated calls are answered from a cache. All iterations have
+    limits on their steps, so that the result does not depend on the speed of the machine.
+
+    Parameters
+    ----------
+    potential
+        Any potential.
+
+    Returns
+    -------
+    The review. No error is raised for a potential that cannot be used; its review has a `refusal`.
+
+    Examples
+    --------
+    >>> from escape_explorer import parse_formula, review_potential
+    >>> review = review_potential(parse_formula("½(x² + y²) + xy² + 2x³"))
+    >>> review.channels, round(review.escape_energy, 6), review.refusal
+    (1, 0.00463, None)
+    >>> review_potential(parse_formula("½(x² + y²) + x⁴ + y⁴")).refusal
+    'No saddle leads out of the well at the origin, so no orbit escapes at any energy.'
+    """
+    points, refusal = find_points_or_refusal(potential)
+    return PotentialReview(
+        potential=potential,
+        formula=write_formula(potential),
+        critical_points=points,
+        escape_energy=potential.escape_energy if points or potential.escape_radius is not None else float("inf"),
+        channels=potential.channels if points else 0,
+        highest_energy=potential.well.channel_mergers[0].energy if points and potential.well.channel_mergers else float("inf"),
+        mirror_in_x=potential.form.mirror_in_x,
+        mirror_in_y=potential.form.mirror_in_y,
+        rotations=potential.form.count_rotations(),
+        refusal=refusal,
+        remarks=() if refusal else _remarks(potential, points),
+        well=other_well(potential, points),
+    )
+
+
+def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
+    remarks = [_MOVED.format(*potential.origin)] if any(potential.origin) else []
+    if potential.escape_radius is not None:
+        return tuple(remarks)
+    energies = potential.well.saddle_energies
+    if np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.units.energy:
+        order = np.argsort(energies, kind="stable")
+        listed = ", ".join(f"{k + 1} above {energies[k]:.6g}" for k in order)
+        remarks.append(f"The channels open at different energies: {listed}.")
+    other_saddles = sum(point.kind is PointKind.SADDLE and not point.channel for point in points)
+    if other_saddles:
+        remarks.append(f"Saddles that do not lead out of the well at the origin and are therefore not exits: {other_saddles}.")
+    wells = [point for point in points if point.kind is PointKind.MINIMUM and (point.x or point.y)]
+    if wells:
+        places = ", ".join(f"({point.x:.6g}, {point.y:.6g})" for point in wells)
+        remarks.append(f"There are other wells, at {places}: an orbit that enters one counts as escaped but may return.")
+    if potential.well.channel_mergers:
+        lowest = potential.well.channel_mergers[0]
+        merged = name_channels(lowest.channels)
+        remarks.append(f"The exits are separate up to h = {lowest.energy:.6g}; above it some are one exit, {merged}.")
+    if not potential.form.mirror_in_y:
+        remarks.append("V is not even in y: y = 0 is not a symmetry axis, and an orbit may stay on one side of it.")
+    if potential.form.has_constant:
+        remarks.append("The constant term has no effect on the orbits, but all energies include it.")
+    return tuple(remarks)
+
+
+def review_system(system: System) -> SystemReview:
+    """The review of the potential of a system; ValueError if the formula or a parameter is invalid."""
+    review = review_potential(system.potential)
+    shared = {each.name: getattr(review, each.name) for each in fields(review)}
+    return SystemReview(**{**shared, "formula": system.formula_shown}, system=system)
+
+
+def critical_energies(potential: Potential) -> tuple[float, ...]:
+    """The energies whose equipotentials are the limits of connected regions.
+
+    With exits that of the lowest one; with an escape radius those of all saddles.
+    """
+    if potential.escape_radius is None:
+        return (potential.escape_energy,)
+    points = review_potential(potential).critical_points
+    return tuple(sorted({point.energy for point in points if point.kind is PointKind.SADDLE}))

@@ -1,0 +1,96 @@
+"""Why a potential cannot be used, each reason a sentence."""
+
+from __future__ import annotations
+
+from engine.systems.forms.point_searches import DescentError, NotIsolatedError, UndecidedError
+from engine.systems.potential import Potential
+from engine.systems.review.classified_points import (
+    CriticalPoint,
+    PointKind,
+    classify_points,
+    minima_of,
+    other_well,
+    point_at_origin,
+)
+from engine.systems.review.hill_region import is_open_below, is_open_without_saddle
+from engine.systems.review.singularity_check import singularity_refusal
+
+MOST_CHANNELS = 16
+"""Largest number of exit channels that the kernels of the Lyapunov orbit search support."""
+
+
+def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
+    """The critical points, none where they are not known, and why the potential cannot be used; None if it can."""
+    refusal = potential.form.limits_refusal() or singularity_refusal(potential)
+    if refusal is not None:
+        return (), refusal
+    if potential.escape_radius is not None:
+        return _known_points(potential), None
+    try:
+        # Both follow lines of steepest descent or ascent, which may fail.
+        points, _ = classify_points(potential), potential.well.channel_mergers
+    except DescentError as error:
+        return (), f"Which saddles are exits of the well is not known. {error}"
+    except UndecidedError as error:
+        return (), str(error)
+    except NotIsolatedError:
+        return (), (
+            "The force vanishes along a curve instead of at isolated points, as in an infinite valley or a circular potential, "
+            "so the well at the origin is not bounded by isolated saddles. Add terms that make V vary along this curve."
+        )
+    refusals = (check(potential, points) for check in (_well_refusal, _degenerate_refusal, _exits_refusal))
+    return points, next(filter(None, refusals), None)
+
+
+def _known_points(potential: Potential) -> tuple[CriticalPoint, ...]:
+    """Those of a system with an escape radius, which does not need them; none where they are not found."""
+    try:
+        return classify_points(potential)
+    except (UndecidedError, NotIsolatedError):
+        return ()
+
+
+def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
+    at_origin = point_at_origin(points)
+    if at_origin is not None and at_origin.kind is PointKind.MINIMUM:
+        return None
+    if any(x == y == 0.0 for x, y in potential.form.singular_points.tolist()):
+        return None
+    if at_origin is None:
+        problem = "There is no well at the origin: the force is not zero there, because V has linear terms."
+    else:
+        problem = f"There is no well at the origin: V has a {at_origin.kind.value} there."
+    minima = minima_of(points)
+    if not minima:
+        return f"{problem} Add quadratic terms that make the origin a minimum, or give an escape radius."
+    place = f"({minima[0].x:.6g}, {minima[0].y:.6g})"
+    which = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
+    can_move = other_well(potential, points) is not None
+    hint = f": with “; well {place}” after the formula, x and y count from there" if can_move else ""
+    return f"{problem} {which} at {place}{hint}."
+
+
+def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
+    for point in points:
+        if point.kind is PointKind.DEGENERATE:
+            return (
+                f"V has a degenerate critical point at ({point.x:.6g}, {point.y:.6g}), which is neither a saddle nor a minimum "
+                f"nor a maximum, so it is undefined whether orbits escape over it."
+            )
+    return None
+
+
+def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
+    if not potential.channels:
+        return _no_exit_refusal(potential)
+    if potential.channels > MOST_CHANNELS:
+        return f"V has {potential.channels} channels; at most {MOST_CHANNELS} are allowed."
+    if is_open_below(potential, potential.escape_energy, potential.critical_points):
+        return "The well is open below its lowest saddle, so orbits can escape without crossing an exit."
+    return None
+
+
+def _no_exit_refusal(potential: Potential) -> str:
+    if is_open_without_saddle(potential, potential.critical_points):
+        return "The well is open without a saddle, or rises too slowly to be called closed, so its exits are not defined."
+    return "No saddle leads out of the well at the origin, so no orbit escapes at any energy."

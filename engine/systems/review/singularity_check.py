@@ -1,0 +1,58 @@
+"""Whether V is defined wherever orbits can go: singular points must lie in discs of centres, or beyond the exits."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from engine.systems.potential import Potential
+
+# Where it is tested whether V is defined: radii in units of the escape radius, and angles off the axes.
+_SCANNED_RADII, _SCANNED_ANGLES = np.geomspace(1e-3, 1.0, 60), 0.1 + np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+_CACHE_SIZE = 256
+
+
+@functools.lru_cache(maxsize=_CACHE_SIZE)
+def check_defined(potential: Potential) -> None:
+    """Raise ValueError unless V is defined everywhere within the escape radius, except in discs of centres."""
+    if singularity_refusal(potential) is not None:
+        raise ValueError(
+            f"potential={potential.name}: must be defined everywhere within the escape radius, except in discs of centres; "
+            "review_potential says more"
+        )
+
+
+def singularity_refusal(potential: Potential) -> str | None:
+    """Orbits must end before they reach a point where V is not defined; points beyond the exits are not reached."""
+    if potential.escape_radius is None:
+        return _origin_refusal(potential)
+    for x, y in potential.form.singular_points.tolist():
+        if np.hypot(x, y) <= potential.escape_radius and not _in_disc(potential, np.array([x]), np.array([y]))[0]:
+            return f"V is not defined at ({x:.6g}, {y:.6g}): there must be a centre with a radius of collision."
+    radius, angle = np.meshgrid(potential.escape_radius * _SCANNED_RADII, _SCANNED_ANGLES)
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    missing = ~np.isfinite([potential.value(x, y), *potential.gradient(x, y)]).all(axis=0) & ~_in_disc(potential, x, y)
+    if potential.form.is_singular_on_curve(x, y):
+        return "V is not defined along a curve within the escape radius, where what is divided by changes its sign."
+    if not missing.any():
+        return None
+    return f"V is not defined at ({x[missing][0]:.6g}, {y[missing][0]:.6g}), which is within the escape radius."
+
+
+def _origin_refusal(potential: Potential) -> str | None:
+    """Without an escape radius there must be a smooth well or a centre at the origin."""
+    values = [potential.value(0.0, 0.0), *potential.gradient(0.0, 0.0), *potential.hessian(0.0, 0.0)]
+    if np.isfinite(values).all() or _in_disc(potential, np.zeros(1), np.zeros(1))[0]:
+        return None
+    return (
+        "V, its slope or its curvature is not defined at the origin, where there must be a well, or a centre with a radius of "
+        "collision."
+    )
+
+
+def _in_disc(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether points lie in the disc of a centre."""
+    discs = [centre.contains(x, y) for centre in potential.centres]
+    inside: np.ndarray = np.any([np.zeros(x.shape, bool), *discs], axis=0)
+    return inside

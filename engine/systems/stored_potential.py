@@ -1,0 +1,42 @@
+"""Potentials as attributes of files, and back."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.outcomes import Centre
+from engine.systems.potential import Potential
+
+_TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
+
+
+def describe_potential(potential: Potential) -> dict[str, Any]:
+    """Name, formula with all digits, rotation, centres, escape radius, 0 for none, and the origin of the axes."""
+    return {
+        "potential": potential.name,
+        "terms": potential.form.text,
+        "rotation": potential.rotation,
+        "centres": json.dumps([asdict(centre) for centre in potential.centres]),
+        "escape_radius": potential.escape_radius or 0.0,
+        "origin": json.dumps(potential.origin),
+    }
+
+
+def read_potential(attributes: Mapping[Any, Any]) -> Potential:
+    """The potential of attributes; without rotation, centres and escape radius where there are none of these attributes."""
+    text, name = str(attributes["terms"]), str(attributes["potential"])
+    terms = [_TERM.fullmatch(term) for term in text.split("; ")]
+    if all(terms):
+        potential = Potential(name, tuple((int(term[2]), int(term[3]), float(term[1])) for term in terms if term is not None))
+    else:
+        potential = parse_formula(text, name)
+    centres = [Centre(**centre) for centre in json.loads(attributes.get("centres", "[]"))]
+    escape_radius = float(attributes.get("escape_radius", 0.0)) or None
+    # The terms are those of the effective potential.
+    x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
+    return Potential(name, potential.form, float(attributes.get("rotation", 0.0)), centres, escape_radius, (x, y))

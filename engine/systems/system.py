@@ -1,0 +1,151 @@
+"""A potential as users choose it: a name of the catalogue or a formula, with parameters by name."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+from engine.foundations.validation import check_type
+from engine.systems.catalogue.entry import CatalogueEntry
+from engine.systems.catalogue.table import CATALOGUE
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, formula_letters, parse_formula
+from engine.systems.formulas.formula_writer import write_formula
+from engine.systems.parameters import ROTATION, WELL_PARAMETERS, symbol_of
+from engine.systems.potential import Potential
+
+TYPED = "typed"
+"""Case of a potential that is given by a formula."""
+
+SHOWN_DIGITS = 12
+"""Significant digits of the coefficients in formulas, where 1.46²/2 is 1.0658 without the rounding error of the product."""
+
+
+@dataclass(frozen=True)
+class System:
+    """A potential with its parameters: ω1, ω2 and ε of Zotos (2014), the rotation Ω of the frame, and the letters of a formula.
+
+    V = ½(ω1² x² + ω2² y²) + ε V1 − ½ Ω² (x² + y²). Systems of the catalogue with bodies have letters of their own instead.
+
+    Attributes
+    ----------
+    case
+        A key of `engine.POTENTIALS`, or `TYPED`.
+    formula
+        V(x, y) as text for `TYPED`, else empty.
+    parameters
+        Values by name: omega_1, omega_2 and epsilon as in `Potential.with_parameters`, rotation as in
+        `Potential.in_rotating_frame`, and the letters of the formula as in `parse_formula`. Those that have their default value,
+        `default_of`, are left out.
+
+    Raises
+    ------
+    ValueError
+        If the catalogue has no such name, or an argument is of another type.
+    """
+
+    case: str
+    formula: str = ""
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_type("case", self.case, str)
+        check_type("formula", self.formula, str)
+        check_type("parameters", self.parameters, Mapping)
+        _ = self.entry
+        # Sorted, so that the order in which they were chosen changes neither titles nor links.
+        places = {name: place for place, name in enumerate(WELL_PARAMETERS)}
+        ordered = sorted(self.parameters, key=lambda name: (places.get(name, len(places)), name))
+        changed = {name: self.parameters[name] for name in ordered if self.parameters[name] != self.default_of(name)}
+        object.__setattr__(self, "parameters", changed)
+
+    def __hash__(self) -> int:
+        return hash((self.case, self.formula, tuple(self.parameters.items())))
+
+    @property
+    def entry(self) -> CatalogueEntry:
+        """Its entry of the catalogue; of a typed formula what its entry would be."""
+        return CatalogueEntry("", "Typed potential", self.formula) if self.case == TYPED else CATALOGUE[self.case]
+
+    @property
+    def potential(self) -> Potential:
+        """The potential; ValueError if the formula or a parameter is invalid."""
+        return _potential(self)
+
+    @property
+    def letters(self) -> dict[str, float]:
+        """The values of the letters of the formula; ValueError if a character of it is not understood."""
+        return {name: self.value_of(name) for name in formula_letters(self.formula)}
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """The names of all parameters; ValueError if a character of the formula is not understood."""
+        return (*self.entry.adjustable, *self.letters)
+
+    def default_of(self, name: str) -> float:
+        """The value of a parameter that is not given."""
+        return self.entry.parameters.get(name, 1.0)
+
+    def range_of(self, name: str) -> tuple[float, float]:
+        """The smallest and the largest legal value of a parameter."""
+        return WELL_PARAMETERS[name].range if name in WELL_PARAMETERS else (-LARGEST_VALUE, LARGEST_VALUE)
+
+    def value_of(self, name: str) -> float:
+        """The value of a parameter."""
+        return self.parameters.get(name, self.default_of(name))
+
+    def with_parameter(self, name: str, value: float) -> System:
+        """The system with another value of one parameter."""
+        return replace(self, parameters={**self.parameters, name: value})
+
+    @property
+    def as_typed(self) -> System:
+        """The same system given by a formula: a well with its coefficients, another system with its letters."""
+        if self.case == TYPED:
+            return self
+        if self.entry.is_well:
+            at_rest = self.with_parameter(ROTATION, 0.0).potential
+            return System(TYPED, write_formula(at_rest, SHOWN_DIGITS), {ROTATION: self.value_of(ROTATION)})
+        return System(TYPED, self.entry.formula, {**self.entry.parameters, **self.parameters})
+
+    @property
+    def well_parameters(self) -> dict[str, float]:
+        """Those of ω1, ω2 and ε that are not 1."""
+        return {name: value for name, value in self.parameters.items() if name in WELL_PARAMETERS and name != ROTATION}
+
+    @property
+    def letter_parameters(self) -> dict[str, float]:
+        """The values of letters that are not given by default."""
+        return {name: value for name, value in self.parameters.items() if name not in WELL_PARAMETERS}
+
+    @property
+    def title(self) -> str:
+        """Name of the potential, with the parameters that are not 1."""
+        changed = ", ".join(f"{symbol_of(name)} = {value:.6g}" for name, value in self.parameters.items())
+        return f"{self.entry.title} with {changed}" if changed else self.entry.title
+
+    @property
+    def formula_shown(self) -> str:
+        """V(x, y) as text, with the values of the parameters; of systems with letters with these, and where axes are moved."""
+        if self.case != TYPED and not (self.parameters and self.entry.is_well):
+            return self.entry.formula
+        if self.value_of(ROTATION):
+            return self.as_typed.formula
+        potential = self.potential
+        if any(potential.origin):
+            x, y = potential.origin
+            return f"{potential.name}, where x and y count from ({x:.6g}, {y:.6g})"
+        return write_formula(potential, SHOWN_DIGITS)
+
+
+@lru_cache(maxsize=64)
+def _potential(system: System) -> Potential:
+    entry = system.entry
+    if system.case != TYPED and (unknown := [name for name in system.parameters if name not in entry.adjustable]):
+        legal = ", ".join(entry.adjustable) or "none"
+        raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is no parameter of {system.case}; it has {legal}")
+    values = {**entry.parameters, **system.parameters}
+    letters = {name: value for name, value in values.items() if name not in WELL_PARAMETERS}
+    well = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}
+    return parse_formula(entry.formula, entry.name, letters).with_parameters(**well).in_rotating_frame(values[ROTATION])

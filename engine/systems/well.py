@@ -1,0 +1,301 @@
+"""What follows from a potential: critical points, exits with their numbers, symmetries, units; each is found at its first use."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from engine.foundations.arrays import ReadOnlyArrays, read_only
+from engine.integrator.source.series import Setting
+from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_well
+from engine.systems.forms.form import Form, hessian_matrix
+from engine.systems.forms.stored_points import stored_points
+from engine.systems.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
+from engine.systems.outcomes import Centre, Outcome, exit_outcome, outcomes_of
+from engine.systems.well_units import WellUnits, nearest_power_of_two
+
+EQUAL_ENERGY_TOLERANCE = 1e-12
+"""Saddles whose energies differ by less count as equally high; in units of the well's energy."""
+
+# Coordinates below this share of the distance are rounding errors of zero: on the +x axis the sign of such an error would change
+# the channel numbers.
+_ROUNDING = 1e-13
+
+# Radius of a circle of typical size, in units of the escape radius, and points on it.
+_TYPICAL_SHARE, _CIRCLE_POINTS = 0.1, 64
+
+
+@dataclass(frozen=True, eq=False)
+class Well(ReadOnlyArrays):
+    """The well, or the centre, at the origin of a potential, and its exits.
+
+    Lengths and energies are in the units of the potential.
+
+    Attributes
+    ----------
+    form, rotation, centres, escape_radius
+        Those of the potential.
+    """
+
+    form: Form
+    rotation: float
+    centres: tuple[Centre, ...]
+    escape_radius: float | None
+
+    @property
+    def critical_points(self) -> np.ndarray:
+        """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve.
+
+        Those of a formula that is no polynomial are all of a region, see `engine.systems.forms.stationary_points`.
+        """
+        return self._points_and_indices[:, :2]
+
+    @property
+    def critical_indices(self) -> np.ndarray:
+        """(n,) the index of each critical point: 1 for a minimum or a maximum, −1 for a saddle, 0 for a degenerate one."""
+        return self._points_and_indices[:, 2]
+
+    @cached_property
+    def _points_and_indices(self) -> np.ndarray:
+        return read_only(stored_points("critical_points", self.form, self.form.find_critical_points))
+
+    @cached_property
+    def saddles(self) -> np.ndarray:
+        """(n, 2) saddle points (∇V = 0, V_xx V_yy − V_xy² < 0) that lead out of the well at the origin.
+
+        In counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from which exactly one
+        of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test without the
+        square of V_xy, which is a misprint. With an escape radius there are none.
+        """
+        if self.escape_radius is not None:
+            return read_only(np.empty((0, 2)))
+        form, points, indices = self.form, self.critical_points, self.critical_indices
+        leads_out = stored_points(
+            "exit_saddles", form, lambda: leads_out_of_well(form.downhill, form.hessian, points, indices, form.singular_points)
+        )
+        return self._in_channel_order(points[leads_out])
+
+    def _in_channel_order(self, points: np.ndarray) -> np.ndarray:
+        """Exit saddles (n, 2), counterclockwise from the +x axis, without rounding errors of zero and exactly symmetric."""
+        points = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
+        angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
+        points = points[np.argsort(angle, kind="stable")]
+        if self.mirror_in_x:
+            _make_symmetric(points)
+        return read_only(points)
+
+    @property
+    def channels(self) -> int:
+        """The number of exit channels; they are numbered from 1, counterclockwise from the +x axis."""
+        return len(self.saddles)
+
+    @cached_property
+    def saddle_energies(self) -> np.ndarray:
+        """(channels,) V at each exit saddle, in channel order."""
+        return read_only(np.asarray(self.form.value(self.saddles[:, 0], self.saddles[:, 1]), dtype=float))
+
+    @cached_property
+    def escape_energy(self) -> float:
+        """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none.
+
+        With an escape radius −∞: at every energy there may be orbits outside the saddles.
+        """
+        if self.escape_radius is not None:
+            return -np.inf
+        return float(self.saddle_energies.min(initial=np.inf))
+
+    def open_channels(self, energy: float) -> tuple[int, ...]:
+        """Numbers of the channels whose saddle lies below `energy`; empty at or below the escape energy."""
+        return tuple(
+            int(k) + 1 for k in np.flatnonzero(self.saddle_energies < energy - EQUAL_ENERGY_TOLERANCE * self.units.energy)
+        )
+
+    def is_closed_at(self, energy: Any) -> Any:
+        """Whether no orbit of the well at these energies ever ends: they are below all saddles, and there are no centres.
+
+        With an escape radius never. In a rotating frame orbits cannot pass the zero-velocity curve V = h either.
+        """
+        return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.centres)
+
+    @cached_property
+    def outward_directions(self) -> np.ndarray:
+        """(channels, 2) unit vectors along the unstable direction of each exit saddle, pointing away from the well."""
+        directions = np.array([self._unstable_direction(saddle) for saddle in self.saddles]).reshape(-1, 2)
+        if self.mirror_in_x:
+            for k in np.flatnonzero(self.saddles[:, 0] < 0.0):
+                directions[k] = directions[self.mirror_channels[k + 1] - 1] * [-1.0, 1.0]
+        return read_only(directions)
+
+    def _unstable_direction(self, saddle: np.ndarray) -> np.ndarray:
+        direction: np.ndarray = np.linalg.eigh(hessian_matrix(self.form, *saddle))[1][:, 0]
+        direction = np.where(np.abs(direction) < _ROUNDING, 0.0, direction)
+        return direction if direction @ saddle > 0 else -direction
+
+    @cached_property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What orbits can end at: the exits in channel order, the centres, the escape radius; the first one is fate 1."""
+        return outcomes_of(self.channels, self.centres, self.escape_radius is not None)
+
+    @property
+    def setting(self) -> Setting:
+        """What the compiled functions depend on besides the formula."""
+        return Setting(self.channels, len(self.centres), self.escape_radius is not None, self.rotation != 0.0)
+
+    @cached_property
+    def channel_mergers(self) -> tuple[ChannelMerger, ...]:
+        """The maxima that separate exits from each other, the lowest first.
+
+        A maximum lies between two exits if a line of steepest ascent from the saddle of each ends at it.
+        """
+        if not self.channels:
+            return ()
+        form, points, indices = self.form, self.critical_points, self.critical_indices
+        saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
+        beside = stored_points("maxima", form, lambda: find_maxima_beside(form.downhill, form.hessian, points, indices, saddles))
+        maxima = np.flatnonzero(beside.sum(axis=0) > 1)
+        return self._mergers_at(points[maxima], [np.flatnonzero(beside[:, k]) + 1 for k in maxima])
+
+    def _mergers_at(self, maxima: np.ndarray, channels: Sequence[np.ndarray]) -> tuple[ChannelMerger, ...]:
+        """The mergers at maxima (n, 2) between channels, the lowest first."""
+        places = zip(maxima.tolist(), channels, strict=True)
+        return tuple(
+            sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(around.tolist())) for (x, y), around in places)
+        )
+
+    def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
+        """The exits of several channels, above a maximum between these. Such an exit has the lowest of their numbers."""
+        return merged_exits(self.channel_mergers, energy)
+
+    def exit_numbers(self, energy: Any) -> np.ndarray:
+        """(…, outcomes + 1) the number of the exit that each fate is part of at energies (…); entry 0 is 0."""
+        below = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
+        numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[below]
+        return numbers
+
+    def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
+        """The outcomes as `outcomes`, named as exits are at an energy, or in a range of energies (low, high)."""
+        low, high = energy if isinstance(energy, tuple) else (energy, energy)
+        if not self.merged_exits(high):
+            return self.outcomes
+        lowest = self.exit_numbers(low)
+        exits = [
+            exit_outcome(describe_channel(channel, self.channel_mergers, low, high), occurs=bool(lowest[channel] == channel))
+            for channel in range(1, self.channels + 1)
+        ]
+        return (*exits, *self.outcomes[self.channels :])
+
+    @property
+    def mirror_in_x(self) -> bool:
+        """Whether (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point: V is even in x, and nothing rotates."""
+        return self.form.mirror_in_x and self._mirrors_centres([-1.0, 1.0])
+
+    @property
+    def mirror_in_y(self) -> bool:
+        """Whether (y, py) → (−y, −py) maps orbits to orbits, exactly in floating point: V is even in y, and nothing rotates."""
+        return self.form.mirror_in_y and self._mirrors_centres([1.0, -1.0])
+
+    def _mirrors_centres(self, signs: Sequence[float]) -> bool:
+        discs = {(each.x, each.y, each.radius) for each in self.centres}
+        return not self.rotation and {(signs[0] * x, signs[1] * y, radius) for x, y, radius in discs} == discs
+
+    @cached_property
+    def mirror_channels(self) -> np.ndarray:
+        """(outcomes + 1,) the image of each fate under x → −x; entry 0 is 0. Only valid if `mirror_in_x`."""
+        places = (self.saddles, np.array([(centre.x, centre.y) for centre in self.centres]).reshape(-1, 2))
+        images = [np.arange(1)]
+        for points in places:
+            if len(points):
+                distance = np.hypot(*(points[:, None] - points * [-1.0, 1.0]).T)
+                images.append(sum(map(len, images)) + np.argmin(distance, axis=0))
+        own = np.arange(sum(map(len, images)), len(self.outcomes) + 1)
+        return read_only(np.concatenate([*images, own]).astype(np.int8))
+
+    def mirror_numbers(self, energy: Any) -> np.ndarray:
+        """(…, outcomes + 1) the image of each fate under x → −x at energies (…); entry 0 is 0. Only valid if `mirror_in_x`."""
+        numbers: np.ndarray = self.exit_numbers(energy)[..., self.mirror_channels]
+        return numbers
+
+    @cached_property
+    def is_minimum(self) -> bool:
+        """Whether V curves upward in all directions at the origin."""
+        matrix = hessian_matrix(self.form, 0.0, 0.0)
+        return bool(np.isfinite(matrix).all() and np.linalg.eigvalsh(matrix)[0] > 0.0)
+
+    @property
+    def typical_radius(self) -> float:
+        """Half the distance of the nearest exit saddle, or a share of the escape radius; 0 without either."""
+        if self.escape_radius is not None:
+            return _TYPICAL_SHARE * self.escape_radius
+        return 0.5 * float(np.hypot(*self.saddles.T).min(initial=0.0 if not self.channels else np.inf))
+
+    @property
+    def _typical_circle(self) -> np.ndarray:
+        angle = 2.0 * np.pi / _CIRCLE_POINTS * (0.5 + np.arange(_CIRCLE_POINTS))
+        circle: np.ndarray = self.typical_radius * np.array([np.cos(angle), np.sin(angle)])
+        return circle
+
+    @cached_property
+    def fastest_frequency(self) -> float:
+        """The higher frequency of small oscillations in the well at the origin; NaN if there is neither well nor centre.
+
+        Without a well that of a circle of typical size about the origin: the square is the average slope of V over the radius.
+        """
+        if self.is_minimum or not self.typical_radius:
+            matrix = hessian_matrix(self.form, 0.0, 0.0)
+            with np.errstate(invalid="ignore"):
+                return float(np.sqrt(np.linalg.eigvalsh(matrix)[-1])) if np.isfinite(matrix).all() else np.nan
+        slope = np.hypot(*self.form.gradient(*self._typical_circle))
+        return float(np.sqrt(slope[np.isfinite(slope)].mean() / self.typical_radius))
+
+    @property
+    def exact_time_unit(self) -> float:
+        """The unit of time of the well before it is rounded: 1/ω of the fastest small oscillation; 1 without a frequency."""
+        frequency = self.fastest_frequency
+        return 1.0 / frequency if np.isfinite(frequency) and frequency > 0.0 else 1.0
+
+    @cached_property
+    def units(self) -> WellUnits:
+        """The units of the well, rounded to powers of 2; both are 1 for the three cases of Zotos (2014).
+
+        The unit of length is the distance of the nearest exit saddle, the unit of time 1/ω of the fastest small oscillation in
+        the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of it, without exits that of the
+        form.
+        """
+        frequency = self.fastest_frequency
+        time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
+        if self.escape_radius is not None:
+            return WellUnits(nearest_power_of_two(self.typical_radius), time)
+        if not self.channels:
+            return WellUnits(self.form.length, time)
+        return WellUnits(nearest_power_of_two(float(np.hypot(*self.saddles.T).min())), time)
+
+    @property
+    def stated_units(self) -> WellUnits:
+        """Units in which errors state energies and positions: those in which the potential was given, see `ScaledWell`."""
+        return WellUnits()
+
+    @cached_property
+    def bottom(self) -> float:
+        """V at the origin, from which multiples of the escape energy count.
+
+        Without a well its average on a circle with half the distance of the nearest exit saddle, or a tenth of the escape radius.
+        """
+        if self.is_minimum or not self.typical_radius:
+            return float(self.form.value(0.0, 0.0))
+        value = self.form.value(*self._typical_circle)
+        return float(value[np.isfinite(value)].mean())
+
+    def energy_at(self, multiple: float) -> float:
+        """The energy at a multiple of the depth of the well: 0 at the bottom, 1 at the escape energy."""
+        return self.bottom + multiple * (self.escape_energy - self.bottom)
+
+
+def _make_symmetric(points: np.ndarray) -> None:
+    """Replace each point at x < 0 by the exact mirror image of its partner at x > 0, in place."""
+    right = points[points[:, 0] > 0.0]
+    for left in np.flatnonzero(points[:, 0] < 0.0):
+        points[left] = right[np.argmin(np.hypot(*(right - points[left] * [-1.0, 1.0]).T))] * [-1.0, 1.0]

@@ -1,0 +1,191 @@
+"""Columns of the Bokeh data source that all pictures of a map share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from engine import Certificate, EscapeMap, Fate, OriginFateMap, Outcome, Regularity, RegularityMap, Trust, TrustMap
+from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
+
+NO_LAYER = [np.zeros((1, 1), np.uint8)]
+"""Column of a layer that is off."""
+
+# Images of a map without layers.
+_DRAWN = ("fate", "crossing_class", "crossings", "escape_time")
+
+_OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
+_FIRST_CLASS = len(OUTCOMES)
+_UNDECIDED = _OUTCOME_CODES[Fate.NOT_COMPUTED]
+_WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
+_LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
+
+
+def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[Any]]:
+    """One image per column, in the smallest integer types, and the position of the images in the plane.
+
+    Coarse frames have coarse images. The columns of passages and of differences are a single pixel: they need
+    another map (`passage_column`, `difference_column`). The column of characters is one too, unless `characters` is true.
+    """
+    images, window = frame.thinned()
+    fate, crossings = images["fate"], images["crossings"]
+    classes = np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1
+    # Bounded pixels are classified by their certificate.
+    classes[fate == Fate.BOUNDED] = len(CROSSING_CLASSES) + images["certificate"][fate == Fate.BOUNDED]
+    character = [_codes(fate, _certified_characters(images), bounded_too=True)] if characters else NO_LAYER
+    return {
+        "fate": [fate_codes(fate, frame.spec.outcomes)],
+        "crossing_class": [_codes(fate, classes, bounded_too=True)],
+        "crossings": [crossings.astype(np.min_scalar_type(crossings.max(initial=0)))],
+        "escape_time": [images["escape_time"].astype(np.float32)],
+        "character": character,
+        "passage": NO_LAYER,
+        "difference": NO_LAYER,
+        "ends": [end_words(frame.spec.outcomes)],
+        "x": [window.x_low],
+        "y": [window.ordinate_low],
+        "dw": [window.x_high - window.x_low],
+        "dh": [window.ordinate_high - window.ordinate_low],
+        "energy": [np.nan if frame.spec.common_energy is None else frame.spec.common_energy],
+        "complete": [frame.complete],
+    }
+
+
+def fate_codes(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
+    """uint8 codes of the colours `Palette.fate_colours` for fates of any shape."""
+    return _codes(fate, _ends(fate, outcomes) - 1)
+
+
+def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], sides: tuple[int, int]) -> dict[str, list[Any]]:
+    """Columns of an unfinished frame over those of an earlier map of the same starts, whose pixels stay until finer ones come.
+
+    Parameters
+    ----------
+    columns, earlier
+        Columns of `map_columns`; their windows may differ.
+    sides
+        (columns, rows) of the finished map, which the images do not exceed; else they have the finer pixels of both.
+    """
+    if columns["complete"][0]:
+        return columns
+    pixels, earlier_pixels = _pixel_sides(columns), _pixel_sides(earlier)
+    finer = earlier_pixels[0] < pixels[0]
+    lengths = columns["dw"][0], columns["dh"][0]
+    shown = earlier_pixels if finer else pixels
+    across, up = (min(max(round(length / pixel), 1), side) for length, pixel, side in zip(lengths, shown, sides, strict=True))
+    x = columns["x"][0] + columns["dw"][0] * (np.arange(across) + 0.5) / across
+    y = columns["y"][0] + columns["dh"][0] * (np.arange(up) + 0.5) / up
+    (here, _), (there, inside) = _pixels_at(columns, x, y), _pixels_at(earlier, x, y)
+    keep = inside & (earlier["fate"][0][there] != _UNDECIDED) & (finer | (columns["fate"][0][here] == _UNDECIDED))
+    drawn = {name: [np.where(keep, earlier[name][0][there], columns[name][0][here])] for name in _DRAWN}
+    return columns | drawn
+
+
+def _pixel_sides(columns: dict[str, list[Any]]) -> tuple[float, float]:
+    """Width and height of the pixels of a map's columns."""
+    rows, across = columns["fate"][0].shape
+    return columns["dw"][0] / across, columns["dh"][0] / rows
+
+
+def _pixels_at(columns: dict[str, list[Any]], x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Index arrays (rows, columns) of the pixels at x (columns,) and y (rows,), and whether these points lie in the images."""
+    rows, across = columns["fate"][0].shape
+    column = np.floor((x - columns["x"][0]) / columns["dw"][0] * across).astype(int)
+    row = np.floor((y - columns["y"][0]) / columns["dh"][0] * rows).astype(int)
+    inside = ((row >= 0) & (row < rows))[:, None] & ((column >= 0) & (column < across))
+    return np.ix_(row.clip(0, rows - 1), column.clip(0, across - 1)), inside
+
+
+def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]) -> dict[str, list[Any]]:
+    """Column of the pixels whose orbits end otherwise in another view of a plane with the same axes.
+
+    Parameters
+    ----------
+    columns
+        Columns of `map_columns`, of which the result is another one.
+    other
+        Those of the other view; its window and the number of its pixels may differ.
+    """
+    (rows, across), (width, height) = columns["fate"][0].shape, _pixel_sides(columns)
+    x, y = columns["x"][0] + width * (np.arange(across) + 0.5), columns["y"][0] + height * (np.arange(rows) + 0.5)
+    there, inside = _pixels_at(other, x, y)
+    return {"difference": [_difference_codes(columns["fate"][0], np.where(inside, other["fate"][0][there], _UNDECIDED))]}
+
+
+def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Codes of `DIFFERENCES` for two arrays of pixel codes of the fates; pixels without an orbit in both keep their code."""
+    lack_one, lack_other = np.isin(one, _WITHOUT_ORBIT), np.isin(other, _WITHOUT_ORBIT)
+    classes = np.where(lack_one != lack_other, 2, np.where(one != other, 1, 0))
+    codes = np.where(lack_one & lack_other, one, _FIRST_CLASS + classes)
+    return np.where((one == _UNDECIDED) | (other == _UNDECIDED), _UNDECIDED, codes).astype(np.uint8)
+
+
+def end_words(outcomes: Sequence[Outcome]) -> list[str]:
+    """What orbits of each of `Palette.ends` do; empty for those that the potential does not have."""
+    words = [""] * len(PAPER.ends)
+    for place, outcome in zip(end_places(outcomes), outcomes, strict=True):
+        words[place] = outcome.present
+    return words
+
+
+def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """How pixels of a potential with these outcomes become codes, for programs that make the columns elsewhere.
+
+    That is the fates that are no ends, the first class, the places and words of the ends, the classes of crossings, and the codes
+    of pixels without a decision or an orbit.
+    """
+    return {
+        "outcomes": [[int(fate), code] for fate, code in _OUTCOME_CODES.items()],
+        "first": _FIRST_CLASS,
+        "ends": end_places(outcomes),
+        "words": end_words(outcomes),
+        "leastCrossings": _LEAST_CROSSINGS.tolist(),
+        "undecided": _UNDECIDED,
+        "withoutOrbit": list(_WITHOUT_ORBIT),
+    }
+
+
+def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, list[Any]]:
+    """Column of regular and chaotic bounded orbits."""
+    return {"character": [_codes(frame.fate, regularity.character, bounded_too=True)]}
+
+
+def passage_column(origins: OriginFateMap) -> dict[str, list[Any]]:
+    """Column of origin and fate of each orbit."""
+    origin, fate = (_ends(codes, origins.spec.outcomes) for codes in (origins.origin, origins.fate))
+    passage = origin * (len(PAPER.ends) + 1) + fate
+    # If the origin or the fate is neither an end nor bounded, the pixel shows it.
+    outcome = np.minimum(origins.origin, origins.fate)
+    return {"passage": [_codes(outcome, passage, bounded_too=True)]}
+
+
+def doubt_tones(trust: TrustMap) -> np.ndarray:
+    """(rows, columns) uint8: 1 and 2 alternately on doubtful pixels, as on a chessboard, for the colours `DOUBT`; 0 elsewhere."""
+    rows, columns = np.indices(trust.trust.shape)
+    tones: np.ndarray = np.where(trust.trust == Trust.DOUBTFUL, 1 + (rows + columns) % 2, 0).astype(np.uint8)
+    return tones
+
+
+def _certified_characters(images: dict[str, np.ndarray]) -> np.ndarray:
+    """Regularity as far as certificates tell: orbits on an invariant torus are regular."""
+    character = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
+    character[images["certificate"] == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
+    return character
+
+
+def _ends(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
+    """Number of the end of each fate from 1 on, 1 for the first of `Palette.ends`; 0 for the others."""
+    numbers = np.array([0, *(place + 1 for place in end_places(outcomes))])
+    found: np.ndarray = numbers[np.maximum(fate, 0)]
+    return found
+
+
+def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
+    """Pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
+    codes = (_FIRST_CLASS + classes).astype(np.uint8)
+    for outcome, code in _OUTCOME_CODES.items():
+        if not (bounded_too and outcome is Fate.BOUNDED):
+            codes[fate == outcome] = code
+    return codes

@@ -1,0 +1,171 @@
+"""Orbits reduced for the browser: long paths as images, their histories, and a moving point with its trail."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from engine import Orbit, Potential, Window, default_window
+from engine.foundations.extras import require_package
+from engine.slices.planes import SPACE
+from plots.pictures.histories import History, reduce_history
+
+LEAST_SALI = 1e-17
+"""Lower end of the logarithmic axis of SALI."""
+
+LEAST_EXPONENT = 1e-7
+"""Lower end of the logarithmic axis of the Lyapunov exponent."""
+
+MOST_LINE_POINTS = 20_000
+"""Paths with more points are drawn as density images."""
+
+TRAIL = 25.0
+"""Length of the trail behind the moving point in time, about four periods of the well."""
+
+# Twice the pixels of the plot, for high-density screens.
+_SHADED_PIXELS = 600
+_FAINTEST = 50
+# Half the side of the window of a path: in units of its reach, and at most in units of the distance of the farthest saddle.
+_AROUND_PATH, _FARTHEST_SHOWN = 1.1, 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class OrbitCurves:
+    """An orbit and its curves.
+
+    Attributes
+    ----------
+    orbit
+        The orbit.
+    window
+        Window of the (x, y) plane that contains the interior at its energy.
+    sali, exponent, r2
+        Its histories, from the first sample after t = 0 on.
+    section
+        (n, 2) x and px of its upward crossings of y = 0.
+    visits
+        (n, n) uint8 opacity of the density of a long path over the window, row 0 lowest; None for shorter paths.
+    part
+        Samples of the orbit that path and histories show; all by default.
+    """
+
+    orbit: Orbit
+    window: Window
+    sali: History
+    exponent: History
+    r2: History
+    section: np.ndarray
+    visits: np.ndarray | None
+    part: slice = slice(None)
+
+    @property
+    def path(self) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of the path."""
+        return self.orbit.x[self.part], self.orbit.y[self.part]
+
+    def shaded(self, colour: str) -> np.ndarray:
+        """RGBA image of the visits, (n, n) uint32."""
+        assert self.visits is not None
+        red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+        ink = np.array([red, green, blue, 0], np.uint8).view(np.uint32)
+        return ink | (self.visits.astype(np.uint32) << 24)
+
+
+def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: bool = True) -> OrbitCurves:
+    """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock.
+
+    with_visits: whether a long path gets its density image, which needs the extra ``page``.
+    """
+    window = _path_window(potential, orbit) if orbit.exits_unknown else find_well_window(potential, orbit.energy)
+    everything = slice(None)
+    section = orbit.find_section_crossings()
+    visits = _visits(orbit, window, everything) if with_visits else None
+    return OrbitCurves(orbit, window, *_histories(orbit, everything), section, visits)
+
+
+def find_well_window(potential: Potential, energy: float) -> Window:
+    """The window of the interior; below the minimum of the well, where an orbit can only be outside, that of the whole well."""
+    try:
+        return default_window(potential, SPACE, energy)
+    except ValueError:
+        if not potential.channels:
+            raise
+        return default_window(potential, SPACE, potential.escape_energy)
+
+
+def _path_window(potential: Potential, orbit: Orbit) -> Window:
+    """A square around the origin and the path near it, for an orbit without known exits, which need not stay in a well."""
+    reach = float(max(np.abs(orbit.x).max(), np.abs(orbit.y).max()))
+    half = min(_AROUND_PATH * reach, _FARTHEST_SHOWN * float(np.hypot(*potential.saddles.T).max()))
+    return Window(-half, half, -half, half)
+
+
+def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurves:
+    """Restrict path and histories to an interval of time, at full resolution; slow like `compute_orbit_curves`.
+
+    Parameters
+    ----------
+    curves
+        Curves of an orbit, restricted or not.
+    begin, end
+        The interval, ``begin < end``; without samples in it, path and histories are empty.
+    """
+    t = curves.orbit.t
+    part = slice(int(np.searchsorted(t, begin)), int(np.searchsorted(t, end, side="right")))
+    sali, exponent, r2 = _histories(curves.orbit, part)
+    visits = _visits(curves.orbit, curves.window, part)
+    return replace(curves, sali=sali, exponent=exponent, r2=r2, visits=visits, part=part)
+
+
+def _histories(orbit: Orbit, part: slice) -> tuple[History, History, History]:
+    """SALI, the Lyapunov exponent and R² over some samples, from the first one after t = 0 on."""
+    later = slice(max(part.start or 0, int(orbit.t[0] == 0.0)), part.stop)
+    sali = np.maximum(orbit.sali[later], LEAST_SALI)
+    exponent = np.maximum(orbit.lyapunov_exponent[later], LEAST_EXPONENT)
+    return (
+        reduce_history(orbit.t[later], sali, logarithmic=True),
+        reduce_history(orbit.t[later], exponent, logarithmic=True),
+        reduce_history(orbit.t[later], orbit.r2[later], logarithmic=False),
+    )
+
+
+def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
+    """(x, y, px, py) of the start of an orbit."""
+    return float(orbit.x[0]), float(orbit.y[0]), float(orbit.px[0]), float(orbit.py[0])
+
+
+def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
+    """Density image of a long path; None for a short one. ModuleNotFoundError without the extra ``page``."""
+    x, y = orbit.x[part], orbit.y[part]
+    if x.size <= MOST_LINE_POINTS:
+        return None
+    require_package("datashader", "page")
+    # Slow to import, and needed for long paths only.
+    import datashader
+    import pandas as pd
+    from datashader import transfer_functions
+
+    canvas = datashader.Canvas(
+        _SHADED_PIXELS, _SHADED_PIXELS, (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
+    )
+    counts = canvas.line(pd.DataFrame({"x": x, "y": y}), "x", "y")
+    shaded = transfer_functions.shade(counts, cmap="#000000", how="eq_hist", min_alpha=_FAINTEST)
+    image = transfer_functions.dynspread(shaded, max_px=1).to_numpy()
+    return np.ascontiguousarray((image >> 24).astype(np.uint8))
+
+
+@dataclass(frozen=True)
+class Moment:
+    """(n,) x and y of the trail of an orbit, which ends at its current position."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+
+def moment(orbit: Orbit, t: float) -> Moment:
+    """Trail of an orbit at a time; at its start for earlier times, at its end for later ones."""
+    last = max(int(np.searchsorted(orbit.t, t, side="right")) - 1, 0)
+    first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
+    trail = slice(first, last + 1)
+    return Moment(orbit.x[trail], orbit.y[trail])

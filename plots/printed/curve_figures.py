@@ -1,0 +1,166 @@
+"""Curves against energy and time drawn with Matplotlib: shares, decay laws, and single lines."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from engine import DecayLaws, EscapeStatistics, Fate, Outcome, Sweep
+from engine.measures.decay_laws import LawFit
+from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
+from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
+from plots.pictures.sweep_panels import CURVE_PANELS, SHARES_TITLE, CurvePanel
+from plots.printed.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
+from plots.printed.figure_style import SCREEN, FigureStyle
+
+# Equal curves, such as those of channels that are mirror images, coincide: the second is dashed.
+_DASHED = (0, (4.0, 3.0))
+_SAMPLES = 300
+# Height of the figure of curves, in units of its width: with two columns and with one.
+_HEIGHT, _HEIGHT_OF_COLUMN = 1.2, 4.5
+# If more than this share remains, the curve is in the upper half of its panel.
+_MOST_STAY = 0.4
+_SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}
+# Longer curves have no markers.
+_MOST_MARKERS = 60
+_DASHES = {"exponential": "--", "power law": "-."}
+
+
+def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
+    """Draw the shares and the other measures of a sweep against the energy or a parameter, with their error bars.
+
+    Raises
+    ------
+    ValueError
+        If there is no point yet.
+    """
+    if not curves.values.size:
+        raise ValueError("curves: must have at least one point")
+    columns = style.columns(2)
+    request = curves.dataset.attrs
+    starts = " × ".join(str(side) for side in request["resolution"])
+    title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
+    figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _HEIGHT_OF_COLUMN), title)
+    shown = [panel for panel in CURVE_PANELS if panel.is_of(curves)]
+    grid = np.ravel(figure.subplots(math.ceil((1 + len(shown)) / columns), columns)).tolist()
+    draw_shares(grid[0], curves.values, curves["share"], curves.outcomes, style)
+    label_axes(grid[0], curves.symbol, "percentage of starts", style)
+    name_panel(grid[0], SHARES_TITLE, style)
+    add_panel_legend(grid[0], "best", style)
+    for axes, panel in zip(grid[1:], shown, strict=False):
+        _draw_panel(axes, curves, panel, style)
+    for axes in grid[1 + len(shown) :]:
+        axes.remove()
+    return figure
+
+
+def _draw_panel(axes: Axes, curves: Sweep, panel: CurvePanel, style: FigureStyle) -> None:
+    for (name, label), colour in zip(panel.labels.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
+        words = re.sub(r"_(\w+)", r"$_{\1}$", label)
+        axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=words)
+        axes.fill_between(curves.values, *curves.interval(name), color=colour, alpha=0.25, linewidth=0.0)
+    if panel.level is not None:
+        axes.axhline(panel.level[0], color=THRESHOLD, linestyle="--", linewidth=1.2, label=panel.level[1])
+    if panel.logarithmic:
+        axes.set_yscale("log")
+    axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
+    style_axes(axes, style, grid=True)
+    label_axes(axes, curves.symbol, panel.axis, style)
+    name_panel(axes, panel.title, style)
+    if len(axes.lines) > 1:
+        add_panel_legend(axes, "best", style)
+
+
+def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> Figure:
+    """Draw the histogram of escape times, and the probability of escape after each number of crossings."""
+    columns = style.columns(2)
+    figure = new_figure(style, style.width * (0.45 if columns == 2 else 1.6), "Statistics of the escapes")
+    times, probabilities = figure.subplots(2 // columns, columns).ravel().tolist()
+    draw_escape_times(times, statistics, style)
+    name_panel(times, "Escape times", style)
+    chances = statistics.escape_probabilities[: MOST_CROSSINGS + 1]
+    probabilities.bar(np.arange(len(chances)), chances, color=MEASURED)
+    probabilities.set_xlim(-0.6, MOST_CROSSINGS + 0.6)
+    probabilities.set_ylim(0.0, 1.0)
+    style_axes(probabilities, style, grid=True)
+    label_axes(probabilities, "upward crossings n", "p", style)
+    name_panel(probabilities, "Escapes after n crossings", style)
+    return figure
+
+
+def draw_escape_times(axes: Axes, statistics: EscapeStatistics, style: FigureStyle = SCREEN) -> None:
+    """Draw the histogram of the escape times."""
+    edges, counts = statistics.time_histogram(BINS)
+    axes.stairs(counts, edges, fill=True, color=MEASURED)
+    axes.set_xscale("log")
+    style_axes(axes, style, grid=True)
+    label_axes(axes, "escape time", "starts", style)
+
+
+def draw_shares(
+    axes: Axes, energies: np.ndarray, shares: np.ndarray, outcomes: Sequence[Outcome], style: FigureStyle = SCREEN
+) -> None:
+    """Draw percentages (m, outcomes + 1), of bounded starts and of each outcome, against energy (m,)."""
+    for code, share in enumerate(shares.T):
+        if code == Fate.BOUNDED:
+            line: dict[str, Any] = {"color": PAPER.bounded, "linewidth": 2.2, "label": PAPER.outcomes[Fate.BOUNDED].label}
+        else:
+            dashed = any(np.array_equal(share, other) for other in shares.T[1:code])
+            entry = PAPER.entry(code, outcomes)
+            line = {"color": entry.colour, "linewidth": 1.7, "label": entry.label}
+            line |= {"linestyle": _DASHED, "zorder": 3} if dashed else {}
+        axes.plot(energies, 100.0 * share, marker="o", markersize=2.2, **line)
+    axes.set_ylim(0.0, 100.0)
+    axes.set_xlim(float(energies[0]), float(energies[-1]))
+    style_axes(axes, style, grid=True)
+
+
+def draw_decay_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
+    """Draw the share of starts that have not escaped against time until t_max, and its fits."""
+    times = np.concatenate([[1.0], laws.times[laws.times > 1.0], [t_max]])
+    steps = np.concatenate([[1.0], laws.survival[laws.times > 1.0], laws.survival[-1:] if laws.times.size else [1.0]])
+    positive = steps > 0.0
+    axes.step(times[positive], steps[positive], where="post", color=MEASURED, linewidth=1.8, label="starts")
+    for fit in (laws.exponential, laws.power_law):
+        if fit is not None:
+            _draw_law(axes, fit, preferred=laws.preferred is fit.law)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(1.0, t_max)
+    # At least a decade, so that the axis has labels.
+    axes.set_ylim(10.0 ** np.floor(np.log10(0.99 * steps[positive].min())), 1.4)
+    style_axes(axes, grid=True)
+    add_panel_legend(axes, "lower left" if steps[-1] > _MOST_STAY else "upper right")
+
+
+def _draw_law(axes: Axes, fit: LawFit, *, preferred: bool) -> None:
+    name = str(fit.law)
+    label = f"{name}, ${_SYMBOLS[name]} = {_mathtext(fit.rate)}$" + (" (preferred)" if preferred else "")
+    t = np.geomspace(fit.t_low, fit.t_high, _SAMPLES)
+    curve = fit.curve(t)
+    axes.plot(
+        t, np.where(curve > 0.0, curve, np.nan), color=LAW_COLOURS[name], linewidth=1.8, linestyle=_DASHES[name], label=label
+    )
+
+
+def _mathtext(number: float) -> str:
+    """Number to three digits, with a power of ten if it is small or large."""
+    digits, _, power = f"{number:.2e}".partition("e")
+    return f"{number:.3g}" if abs(int(power)) < 3 else rf"{digits} \times 10^{{{int(power)}}}"
+
+
+def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, across: str, up: str, *, logarithmic: str = "") -> None:
+    """Draw one measured curve; `logarithmic` has the letters of the axes with a logarithmic scale."""
+    axes.plot(x, y, color=MEASURED, linewidth=1.4, marker="o" if x.size <= _MOST_MARKERS else "", markersize=3.0)
+    if "x" in logarithmic:
+        axes.set_xscale("log")
+    if "y" in logarithmic:
+        axes.set_yscale("log")
+    style_axes(axes, grid=True)
+    label_axes(axes, across, up)

@@ -1,0 +1,154 @@
+"""Movies of many orbits that leave the well, beside the share of them that is still inside."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+from matplotlib.ticker import LogLocator
+
+from engine import Fate, Potential, SampledOrbits, Window, compute_flux
+from engine.foundations.extras import require_package
+from plots.pictures.orbit_curves import find_well_window
+from plots.pictures.palette import LIGHT, Palette
+from plots.printed.figure_axes import RENDER_LOCK, label_axes, name_panel, new_figure, set_font, style_axes
+from plots.printed.figure_style import FigureStyle
+from plots.printed.map_figure import show_window
+from plots.printed.potential_figure import draw_well
+
+FRAMES_PER_SECOND = 25
+"""Of all movies."""
+
+_HEIGHT = 0.55
+_PARTICLE = 3.0
+_LEAST_SHARE = 0.5
+_MIXED_DASHES = (0, (4, 3))
+
+
+class MovieFormat(StrEnum):
+    """Format of a movie, by file ending."""
+
+    WEBP = "webp"
+    GIF = "gif"
+    MP4 = "mp4"
+
+
+@dataclass(frozen=True)
+class _Stage:
+    """What changes from frame to frame."""
+
+    figure: Figure
+    window: Window
+    particles: PathCollection
+    survival: Line2D
+    count: Text
+
+
+def ensemble_movie_bytes(
+    potential: Potential, orbits: SampledOrbits, palette: Palette, format: MovieFormat, style: FigureStyle
+) -> bytes:
+    """File of a movie with one frame for each of the common times of the orbits.
+
+    Parameters
+    ----------
+    potential
+        The potential of the orbits.
+    orbits
+        Of one energy, at common times.
+    palette
+        Colours of the exits; a particle has that of the exit through which it leaves, others that of bounded orbits.
+    format
+        MP4 needs the extra ``movies``.
+    style
+        Width, resolution and letters.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If the encoder of MP4 is not installed.
+    """
+    with tempfile.TemporaryDirectory() as folder, RENDER_LOCK, _options(format):
+        path = Path(folder, f"movie.{format}")
+        stage, writer = _draw_stage(potential, orbits, palette, style), _make_writer(format)
+        with writer.saving(stage.figure, str(path), style.dpi):
+            for place in range(orbits.t.shape[1]):
+                _show(stage, orbits, place)
+                writer.grab_frame()
+        return path.read_bytes()
+
+
+def _options(format: MovieFormat) -> Any:
+    """Matplotlib's settings for the encoder."""
+    if format is not MovieFormat.MP4:
+        return rc_context()
+    require_package("imageio_ffmpeg", "movies")
+    import imageio_ffmpeg
+
+    return rc_context({"animation.ffmpeg_path": imageio_ffmpeg.get_ffmpeg_exe()})
+
+
+def _make_writer(format: MovieFormat) -> AbstractMovieWriter:
+    kind = FFMpegWriter if format is MovieFormat.MP4 else PillowWriter
+    return kind(fps=FRAMES_PER_SECOND, metadata={"title": "Escape Explorer"})
+
+
+def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, style: FigureStyle) -> _Stage:
+    energy = float(orbits.energy[0])
+    figure = new_figure(style, _HEIGHT * style.width, f"{potential.name}, h = {energy:.6g}")
+    well, chart = figure.subplots(1, 2, width_ratios=[1.15, 1.0])
+    window = find_well_window(potential, energy)
+    draw_well(well, potential, energy, window, palette)
+    show_window(well, window, "x", "y", style, equal=True)
+    count = well.set_title(" ", loc="left", fontsize=style.font_size, color=LIGHT.text)
+    colours = [palette.entry(max(fate, Fate.BOUNDED), orbits.outcomes).colour for fate in orbits.fate.tolist()]
+    particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE, c=colours, linewidths=0, zorder=3)
+    survival = _draw_chart(chart, potential, orbits, style)
+    set_font(figure)
+    # Laid out once: the frames differ in nothing that moves an axis.
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    return _Stage(figure, window, particles, survival, count)
+
+
+def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
+    """The axes of the share inside, with the law of mixed motion; the line that grows."""
+    last, least = float(orbits.t[0, -1]), _LEAST_SHARE / len(orbits.fate)
+    times = np.linspace(0.0, last, 200)
+    rate = compute_flux(potential, float(orbits.energy[0])).decay_rate
+    axes.plot(times, np.exp(-rate * times), color=LIGHT.quiet, linewidth=1.0, linestyle=_MIXED_DASHES, label="flux over volume")
+    (survival,) = axes.plot([], [], color=LIGHT.text, linewidth=1.5, drawstyle="steps-post", label="share inside")
+    axes.set_yscale("log")
+    axes.set_xlim(0.0, last)
+    axes.set_ylim(max(least, 0.5 * np.exp(-rate * last)), 1.2)
+    axes.yaxis.set_major_locator(LogLocator())
+    style_axes(axes, style, grid=True)
+    label_axes(axes, "t", "share inside", style)
+    name_panel(axes, "Share still inside", style)
+    axes.legend(loc="upper right", fontsize=style.small_size, frameon=False)
+    line: Line2D = survival
+    return line
+
+
+def _show(stage: _Stage, orbits: SampledOrbits, place: int) -> None:
+    """Show the time of a place."""
+    window, t = stage.window, float(orbits.t[0, place])
+    across = (orbits.x[:, place] - window.x_low) / (window.x_high - window.x_low)
+    up = (orbits.y[:, place] - window.ordinate_low) / (window.ordinate_high - window.ordinate_low)
+    stage.particles.set_offsets(np.column_stack([across, up]))
+    left = np.sort(orbits.escape_time[orbits.fate > Fate.BOUNDED])
+    left = left[left <= t]
+    count = len(orbits.fate)
+    inside = np.concatenate([[1.0], 1.0 - np.arange(1, len(left) + 1) / count])
+    stage.survival.set_data(np.concatenate([[0.0], left, [t]]), np.concatenate([inside, inside[-1:]]))
+    stage.count.set_text(f"t = {t:.1f}: {count - len(left)} of {count} inside")

@@ -1,0 +1,259 @@
+"""Shared style of all figures: text sizes, axes, panel titles, legends and reproducible files.
+
+Figures use Matplotlib's object-oriented API. Matplotlib is not thread-safe: threads draw and save under `RENDER_LOCK`.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Iterable, Mapping, Sequence
+from importlib import metadata
+from io import BytesIO
+from textwrap import fill
+from typing import Any, Literal
+
+from matplotlib import rc_context
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.legend import Legend
+from matplotlib.patches import Patch
+from matplotlib.text import Text
+from matplotlib.ticker import MaxNLocator, NullFormatter
+from matplotlib.transforms import Bbox, ScaledTranslation, Transform
+
+from plots.pictures.palette import LIGHT, PATCH_EDGE, Entry
+from plots.printed.figure_style import CM_PER_INCH, POINTS_PER_INCH, SCREEN, FigureFormat, FigureStyle
+
+RENDER_LOCK = threading.Lock()
+"""Held by a thread while it draws and saves a figure."""
+
+MOST_PIXELS = 20_000_000
+"""Of a PNG file, as of four maps 16 cm wide at 600 pixels per inch. A single map takes up to 50 bytes each to draw."""
+
+# The STIX fonts are part of Matplotlib; they have Greek letters, fractions and mathematical symbols.
+_FAMILY, _MATHS = ["STIXGeneral", "serif"], "stix"
+_FILE_OPTIONS: Any = {
+    # Text stays text. Programs without the STIX fonts show that of SVG files in another font of about the same width.
+    "svg.fonttype": "none",
+    "font.serif": ["STIXGeneral", "Times New Roman", "Times", "Liberation Serif", "DejaVu Serif"],
+    "pdf.fonttype": 42,
+    # The names of elements are the same each time.
+    "svg.hashsalt": "escape-explorer",
+}
+_FRAME = 0.7
+_MOST_TICKS = 5
+# In a line of text, about.
+_LETTERS_PER_EM = 2.0
+# Of a legend below a panel.
+_MOST_COLUMNS = 6
+# Padding around panels, in inches.
+_GAP = 0.07
+
+Corner = Literal["upper left", "upper right", "lower left", "lower right", "center right", "best"]
+"""Position of a legend in its panel."""
+
+
+def new_figure(style: FigureStyle, height: float, title: str = "", *, equal: bool = False) -> Figure:
+    """Empty figure, `height` cm high; `equal` packs panels that have equal scales on both axes."""
+    layout = ConstrainedLayoutEngine(h_pad=_GAP, w_pad=_GAP, compress=equal)
+    figure = Figure(figsize=(style.inches, height / CM_PER_INCH), dpi=style.dpi, layout=layout)
+    if style.titles and title:
+        figure.suptitle(title, fontsize=style.title_size, color=LIGHT.text)
+    return figure
+
+
+def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: float | None = None) -> None:
+    """Write lines below all panels, broken so that they fit in the width of the figure; `size` of the letters in points."""
+    size = size or style.small_size
+    letters = int(_LETTERS_PER_EM * style.inches * POINTS_PER_INCH / size)
+    text = "\n".join(fill(line, letters, break_on_hyphens=False) for line in lines)
+    figure.supxlabel(text, x=_GAP / style.inches, ha="left", fontsize=size, color=LIGHT.text)
+
+
+def fit_height(figure: Figure) -> None:
+    """Make a figure as high as its panels and the lines below them, whose sizes follow from the width of the figure."""
+    figure.draw_without_rendering()
+    panels = Bbox.union([box for axes in figure.axes if (box := axes.get_tightbbox()) is not None])
+    lines = sum(text.get_window_extent().height for text in figure.texts)
+    gaps = 2 + len(figure.texts)
+    figure.set_figheight((panels.height + lines) / figure.dpi + gaps * _GAP)
+
+
+def label_axes(axes: Axes, across: str, up: str, style: FigureStyle = SCREEN) -> None:
+    """Name both axes."""
+    axes.set_xlabel(across, fontsize=style.font_size)
+    axes.set_ylabel(up, fontsize=style.font_size)
+
+
+def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -> None:
+    """Thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid."""
+    axes.tick_params(direction="out", labelsize=style.small_size, width=_FRAME, length=3.0, which="major")
+    axes.tick_params(direction="out", width=0.6 * _FRAME, length=1.8, which="minor")
+    for spine in axes.spines.values():
+        spine.set_linewidth(_FRAME)
+    for axis, scale in ((axes.xaxis, axes.get_xscale()), (axes.yaxis, axes.get_yscale())):
+        if scale == "log":
+            axis.set_minor_formatter(NullFormatter())
+        else:
+            axis.set_major_locator(MaxNLocator(_MOST_TICKS, steps=[1, 2, 5, 10]))
+    if grid:
+        axes.grid(alpha=0.25, linewidth=0.5)
+
+
+def name_panel(axes: Axes, words: str, style: FigureStyle = SCREEN) -> None:
+    """Write the title of a panel above its left end, if the figure has titles."""
+    if style.titles:
+        axes.set_title(words, loc="left", fontsize=style.font_size, color=LIGHT.text, pad=4.0)
+
+
+def name_panels(panels: Iterable[Axes], words: Sequence[str]) -> None:
+    """Title panels (a), (b), …"""
+    for letter, axes, word in zip("abcdefghi", panels, words, strict=False):
+        name_panel(axes, f"({letter}) {word}")
+
+
+def patches(entries: Iterable[Entry]) -> list[Artist]:
+    """Legend handles of colours."""
+    return [Patch(facecolor=entry.colour, edgecolor=PATCH_EDGE, linewidth=0.5, label=entry.label) for entry in entries]
+
+
+def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureStyle = SCREEN, columns: int | None = None) -> None:
+    """Add one legend for the whole figure, below all panels; by default in one row."""
+    columns = columns or len(handles)
+    _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, **_legend_style(style)))
+
+
+def below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
+    """Shares of a panel, moved down and to the left by so many points."""
+    move = ScaledTranslation(-left / POINTS_PER_INCH, -depth / POINTS_PER_INCH, figure_of(axes).dpi_scale_trans)
+    return axes.transAxes + move
+
+
+def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, float], width: float, style: FigureStyle) -> None:
+    """Add a legend below a panel, in as many columns as fit.
+
+    Parameters
+    ----------
+    axes
+        The panel.
+    handles
+        Of the entries.
+    place
+        Of its upper left corner, from the lower left corner of the panel to the left and down, in points.
+    width
+        Available, in points; longer entries are broken into lines.
+    style
+        Of the figure.
+    """
+    left, depth = place
+    options = {
+        "loc": "upper left", "bbox_to_anchor": (0.0, 0.0), "bbox_transform": below(axes, depth, left),
+        "borderaxespad": 0.0, "borderpad": 0.0, **_legend_style(style),
+    }  # fmt: skip
+    names = [str(handle.get_label()) for handle in handles]
+    for columns in range(min(len(names), _MOST_COLUMNS), 0, -1):
+        legend = axes.legend(list(handles), names, ncols=columns, **options)
+        share = width * figure_of(axes).dpi / POINTS_PER_INCH / legend.get_window_extent().width
+        if share >= 1.0:
+            break
+    else:
+        names = [fill(name, max(1, int(share * max(map(len, names))))) for name in names]
+        legend = axes.legend(list(handles), names, **options)
+    _colour_text(legend)
+
+
+def size_in_points(axes: Axes) -> tuple[float, float]:
+    """Width and height of a panel."""
+    box, scale = axes.get_window_extent(), POINTS_PER_INCH / figure_of(axes).dpi
+    return float(box.width * scale), float(box.height * scale)
+
+
+def figure_of(artist: Artist) -> Figure:
+    """Figure of a panel or a text."""
+    figure = artist.get_figure(root=True)
+    assert figure is not None
+    return figure
+
+
+def _legend_style(style: FigureStyle) -> dict[str, Any]:
+    font = {"family": _FAMILY, "size": style.font_size * 11.0 / 12.0}
+    return {"frameon": False, "prop": font, "handlelength": 1.4, "handleheight": 0.9, "columnspacing": 1.3}
+
+
+def add_panel_legend(axes: Axes, corner: Corner, style: FigureStyle = SCREEN, columns: int = 1) -> None:
+    """Add a legend inside a panel."""
+    legend = axes.legend(
+        loc=corner, ncols=columns, fontsize=style.small_size, framealpha=0.85, edgecolor="none",
+        handlelength=1.7, labelspacing=0.3, columnspacing=1.2, borderaxespad=0.4,
+    )  # fmt: skip
+    _colour_text(legend)
+
+
+def _colour_text(legend: Legend) -> None:
+    for text in legend.get_texts():
+        text.set_color(LIGHT.text)
+
+
+def set_font(figure: Figure) -> None:
+    """Set one font family on every text of a figure; Matplotlib's rcParams would change it for the whole process."""
+    for axes in figure.axes:
+        axes.tick_params(labelfontfamily=_FAMILY, which="both")
+    for text in figure.findobj(Text):
+        text.set_fontfamily(_FAMILY)
+        text.set_math_fontfamily(_MATHS)
+
+
+def software() -> str:
+    """Name and version of this program, for the metadata of files."""
+    return f"escape-explorer {metadata.version('escape-explorer')}"
+
+
+def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) -> bytes:
+    """Save a figure to bytes; equal figures give equal bytes.
+
+    Parameters
+    ----------
+    figure
+        What to save.
+    format
+        Of the file.
+    facts
+        What the metadata of the file say about the figure.
+
+    Raises
+    ------
+    ValueError
+        If a PNG file would have more than `MOST_PIXELS`.
+    """
+    if format is FigureFormat.PNG:
+        _check_pixels(figure)
+    set_font(figure)
+    file = BytesIO()
+    with rc_context(_FILE_OPTIONS):
+        figure.savefig(file, format=format, dpi=figure.dpi, metadata=_metadata(format, facts))
+    # Freeze the layout for the next file.
+    figure.set_layout_engine("none")
+    return file.getvalue()
+
+
+def _check_pixels(figure: Figure) -> None:
+    width, height = figure.get_size_inches()
+    most = math.sqrt(MOST_PIXELS / (width * height))
+    if figure.dpi > most:
+        size = f"{width * CM_PER_INCH:.3g} × {height * CM_PER_INCH:.3g} cm"
+        raise ValueError(f"dpi={figure.dpi:g}: must be at most {math.floor(most)} for a figure of {size}")
+
+
+def _metadata(format: FigureFormat, facts: Mapping[str, str]) -> dict[str, str | None]:
+    """The facts in the fields that a format has; without the date."""
+    sentence = ", ".join(f"{name}: {value}" for name, value in facts.items())
+    match format:
+        case FigureFormat.PNG:
+            return {"Software": software(), **facts}
+        case FigureFormat.SVG:
+            return {"Creator": software(), "Description": sentence, "Date": None}
+        case FigureFormat.PDF:
+            return {"Creator": software(), "Producer": software(), "Subject": sentence, "CreationDate": None}

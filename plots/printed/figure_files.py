@@ -1,0 +1,96 @@
+"""Figures as files: PNG, SVG or PDF. Matplotlib, slow to import, is loaded with the first one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from engine import EscapeMap, Potential, Sweep, Window, compute_statistics
+from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.pictures.orbit_curves import OrbitCurves, initial_state
+from plots.pictures.palette import Palette
+from plots.pictures.time_scale import TimeScale
+from plots.printed.figure_style import FigureFormat, FigureStyle
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def map_figure_bytes(
+    frame: EscapeMap,
+    pictures: Sequence[str],
+    palette: Palette,
+    format: FigureFormat,
+    style: FigureStyle,
+    *,
+    analyses: MapAnalyses = NO_ANALYSES,
+    starts: Sequence[tuple[float, float]] = (),
+    times: TimeScale | None = None,
+) -> bytes:
+    """File of some pictures of a map, with the map's provenance in its metadata.
+
+    Parameters and errors are those of `plots.printed.map_figure.draw_map_figure` and `plots.printed.figure_axes.save_figure`.
+    """
+    from plots.printed.map_figure import draw_map_figure
+
+    return _file(
+        lambda: draw_map_figure(frame, pictures, palette, style, analyses=analyses, starts=starts, times=times),
+        format,
+        {name: str(value) for name, value in frame.provenance().items()},
+    )
+
+
+def orbits_figure_bytes(
+    potential: Potential,
+    orbits: Sequence[OrbitCurves],
+    palette: Palette,
+    verdicts: Sequence[str],
+    format: FigureFormat,
+    style: FigureStyle,
+) -> bytes:
+    """File of `plots.printed.orbit_figure.draw_orbits_figure`, with the starts and the verdicts in its metadata."""
+    from plots.printed.orbit_figure import draw_orbits_figure
+
+    facts = {"potential": potential.name}
+    for number, (curves, verdict) in enumerate(zip(orbits, verdicts, strict=True), 1):
+        facts[f"start {number}"] = ", ".join(map(repr, initial_state(curves.orbit)))
+        facts |= {f"energy {number}": repr(curves.orbit.energy), f"verdict {number}": verdict}
+    return _file(lambda: draw_orbits_figure(potential, orbits, palette, verdicts, style), format, facts)
+
+
+def well_figure_bytes(
+    potential: Potential,
+    energy: float,
+    orbits: Sequence[OrbitCurves],
+    palette: Palette,
+    format: FigureFormat,
+    style: FigureStyle,
+) -> bytes:
+    """File of `plots.printed.orbit_figure.draw_well_figure`."""
+    from plots.printed.orbit_figure import draw_well_figure
+
+    facts = {"potential": potential.name, "energy": repr(energy)}
+    return _file(lambda: draw_well_figure(potential, energy, orbits, palette, style), format, facts)
+
+
+def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: FigureFormat, style: FigureStyle) -> bytes:
+    """File of `plots.printed.curve_figures.draw_statistics_figure`; `box` as for `engine.compute_statistics`."""
+    from plots.printed.curve_figures import draw_statistics_figure
+
+    facts = {name: str(value) for name, value in frame.provenance().items()} | ({} if box is None else {"box": str(box)})
+    return _file(lambda: draw_statistics_figure(compute_statistics(frame, box), style), format, facts)
+
+
+def curves_figure_bytes(curves: Sweep, format: FigureFormat, style: FigureStyle) -> bytes:
+    """File of `plots.printed.curve_figures.draw_curves_figure`."""
+    from plots.printed.curve_figures import draw_curves_figure
+
+    facts = {str(name): str(value) for name, value in curves.dataset.attrs.items()}
+    return _file(lambda: draw_curves_figure(curves, style), format, facts)
+
+
+def _file(draw: Callable[[], Figure], format: FigureFormat, facts: Mapping[str, str]) -> bytes:
+    from plots.printed.figure_axes import RENDER_LOCK, save_figure
+
+    with RENDER_LOCK:
+        return save_figure(draw(), format, facts)

@@ -1,0 +1,382 @@
+"""Maps drawn with Matplotlib: pixels, limiting curve, exits, manifolds, marks of starts, legend and provenance.
+
+Maps are drawn in shares of the window that their axes show, 0 to 1 from its lower left corner: in plane coordinates the transform
+to pixels would lose all digits in a deep zoom.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import shapely
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import ListedColormap, LogNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
+
+from engine import (
+    CASES,
+    EscapeMap,
+    Fate,
+    Potential,
+    Slice,
+    StableManifolds,
+    Window,
+    trace_zero_velocity_curve,
+)
+from engine.exits.lyapunov_orbits import find_known_exits
+from engine.slices.energies import common_energy
+from plots.pictures.axis_labels import label_axis
+from plots.pictures.manifold_strokes import Stroke, manifold_strokes
+from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.pictures.map_images import (
+    CROSSED_BY_MANIFOLDS,
+    DOUBTED,
+    TITLES,
+    picture_pixels,
+)
+from plots.pictures.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
+from plots.pictures.time_scale import TimeScale, fitted_scale
+from plots.printed.figure_axes import (
+    add_legend_below,
+    below,
+    figure_of,
+    fit_height,
+    label_axes,
+    name_panel,
+    new_figure,
+    patches,
+    set_font,
+    size_in_points,
+    style_axes,
+    write_below,
+)
+from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
+
+# In units of the font size: from the lower edge of a map to what is below the name of its axis, from a colour bar to what is
+# below its labels, and from the left edge of a map to that of its legend.
+_BELOW_AXIS, _BELOW_BAR, _LEFT_OF_AXIS = 3.7, 3.4, 3.0
+# Of a colour bar, in units of the side of its map.
+_BAR_HEIGHT = 0.04
+# Of a row of maps with its legends before its height is fitted, in units of the width of a map with its labels.
+_ROW_HEIGHT = 2.0
+# Of a legend, as a share of the width of a map with its labels.
+_LEGEND_WIDTH = 0.9
+# In a line of a title, about.
+_LETTERS_PER_EM = 2.6
+# Of tick labels, in units of their font size.
+_LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
+# Least distance of the times at a colour bar, as a share of it.
+_BETWEEN_TIMES = 0.15
+_EXIT_DASHES = (0, (2.0, 1.5))
+# Of the widths of manifolds on the page, in a file.
+_LINE_SCALE = 0.6
+_HALO_ORDER = 1.5
+# Curves are cut this far outside the window, in shares of it.
+_RIM = 0.02
+# Numbers of starts are moved to the inside of the picture this close to its right and upper edge, in shares of it.
+_EDGE = 0.06
+
+
+def draw_map_figure(
+    frame: EscapeMap,
+    pictures: Sequence[str],
+    palette: Palette,
+    style: FigureStyle,
+    *,
+    analyses: MapAnalyses = NO_ANALYSES,
+    starts: Sequence[tuple[float, float]] = (),
+    times: TimeScale | None = None,
+) -> Figure:
+    """Draw pictures of a map in rows, each with title, axes, curves and legend; the provenance is below them.
+
+    Parameters
+    ----------
+    frame
+        The map, finished or not. Its window is stretched to a square.
+    pictures
+        Some of `TITLES`.
+    palette
+        Colours.
+    style
+        Width of the figure, resolution, letters and titles.
+    analyses
+        Results of follow-up analyses: regularity, origins, doubtful pixels and stable manifolds.
+    starts
+        (x, ordinate) of each chosen orbit, numbered from 1; those outside the window keep their number.
+    times
+        Scale of the escape times; None for `fitted_scale`.
+
+    Raises
+    ------
+    ValueError
+        If no picture is given, or a picture is invalid.
+    """
+    if not pictures:
+        raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
+    times = times or fitted_scale(frame)
+    columns = style.columns(len(pictures))
+    rows = math.ceil(len(pictures) / columns)
+    figure = new_figure(style, rows * _ROW_HEIGHT * style.width / columns, equal=True)
+    # Texts are measured in few pixels: Matplotlib allocates all pixels of the figure to measure one.
+    figure.set_dpi(POINTS_PER_INCH)
+    grid = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
+    for axes in grid[len(pictures) :]:
+        axes.remove()
+    for axes, picture in zip(grid, pictures, strict=False):
+        axes.set_label(picture)
+        axes.set_box_aspect(1.0)
+        draw_picture(axes, frame, picture, palette, analyses, times, style)
+        mark_starts(axes, starts, palette, frame.spec.find_window(), style)
+        _explain_picture(axes, frame, picture, palette, analyses, times, style.inches / columns, style)
+    if style.titles:
+        write_below(figure, [provenance_line(frame)], style, style.smallest_size)
+    set_font(figure)
+    fit_height(figure)
+    figure.set_dpi(style.dpi)
+    return figure
+
+
+def draw_picture(
+    axes: Axes,
+    frame: EscapeMap,
+    picture: str,
+    palette: Palette,
+    analyses: MapAnalyses = NO_ANALYSES,
+    times: TimeScale | None = None,
+    style: FigureStyle = SCREEN,
+) -> None:
+    """Title, pixels, curves and axes of one of `TITLES`; `times` as for `picture_pixels`."""
+    spec, window = frame.spec, frame.spec.find_window()
+    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
+    draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
+    if picture in CROSSED_BY_MANIFOLDS and analyses.manifolds is not None:
+        draw_manifolds(axes, analyses.manifolds, window, palette)
+    show_window(axes, window, *spec.plane.axis_symbols, style)
+    letters = int(_LETTERS_PER_EM * size_in_points(axes)[0] / style.font_size)
+    name_panel(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
+
+
+def _explain_picture(
+    axes: Axes,
+    frame: EscapeMap,
+    picture: str,
+    palette: Palette,
+    analyses: MapAnalyses,
+    times: TimeScale,
+    width: float,
+    style: FigureStyle,
+) -> None:
+    """Colour bar and legend below a map, whose column is `width` inches wide."""
+    depth = _BELOW_AXIS * style.font_size
+    if picture == "times":
+        bar = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
+        add_time_bar(figure_of(axes), times, palette, style, cax=bar, orientation="horizontal")
+        bar.get_xticklabels()[-1].set_horizontalalignment("right")
+        depth += _BELOW_BAR * style.font_size
+    handles = [*patches(picture_entries(frame, picture, palette, analyses)), *_doubt_handle(picture, analyses)]
+    # Matplotlib names curves without a label "_child…".
+    handles += [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
+    handles += _manifold_handles(picture, palette, analyses)
+    add_legend_below(axes, handles, (_LEFT_OF_AXIS * style.font_size, depth), _LEGEND_WIDTH * width * POINTS_PER_INCH, style)
+
+
+def draw_pixels(axes: Axes, pixels: np.ndarray, window: Window, shown: Window) -> None:
+    """Draw the pixels of a window, row 0 on top, in axes that show `shown`."""
+    (left, low), (right, high) = _shares(shown, _corners(window))
+    axes.imshow(pixels, extent=(left, right, low, high), origin="upper", interpolation="none", aspect="auto", zorder=1)
+
+
+def draw_limits(
+    axes: Axes,
+    potential: Potential,
+    plane: Slice,
+    energy: float | tuple[float, float],
+    shown: Window,
+    channel_colours: Sequence[str] | None = None,
+) -> None:
+    """Draw the limiting curve of a slice and, on (x, y), the Lyapunov orbits, where they are known.
+
+    The orbits have the colours of their channels; without colours they are black and dashed.
+    """
+    limit: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
+    draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit)
+    h = common_energy(energy)
+    orbits = find_known_exits(potential, h) if plane.shows_positions and h is not None else ()
+    if channel_colours is None:
+        paths = [orbit.half_path for orbit in orbits]
+        draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit)
+        return
+    for orbit in orbits:
+        style: dict[str, Any] = {"colors": channel_colours[orbit.channel - 1], "linewidths": 2.2}
+        draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.name}", halo=True, **style)
+
+
+def draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window, palette: Palette) -> None:
+    """Draw the manifolds in the colours of their channels."""
+    strokes = manifold_strokes(manifolds)
+    for stroke in strokes:
+        if stroke.halo_width:
+            halo: dict[str, Any] = {"colors": LIGHT.halo, "linewidths": _LINE_SCALE * stroke.halo_width}
+            draw_curve(axes, _points(stroke), shown, zorder=_HALO_ORDER, **halo)
+    for stroke in strokes:
+        line: dict[str, Any] = {"colors": palette.channels[stroke.channel - 1], "linewidths": _LINE_SCALE * stroke.width}
+        draw_curve(axes, _points(stroke), shown, alpha=stroke.alpha, **line)
+
+
+def _points(stroke: Stroke) -> list[np.ndarray]:
+    return [np.column_stack([arc.x, arc.px]) for arc in stroke.arcs]
+
+
+def _manifold_handles(picture: str, palette: Palette, analyses: MapAnalyses) -> list[Artist]:
+    """The legend of the stable manifolds."""
+    if picture not in CROSSED_BY_MANIFOLDS or analyses.manifolds is None:
+        return []
+    entries = palette.manifold_entries(analyses.manifolds)
+    return [Line2D([], [], color=entry.colour, linewidth=1.2, label=entry.label) for entry in entries]
+
+
+def _doubt_handle(picture: str, analyses: MapAnalyses) -> list[Artist]:
+    """The legend of doubtful pixels."""
+    if picture not in DOUBTED or analyses.trust is None:
+        return []
+    dark, light = DOUBT
+    return [Patch(facecolor=light, edgecolor=dark, hatch="xxxxx", linewidth=0.5, label="doubtful")]
+
+
+def draw_curve(
+    axes: Axes, pieces: Iterable[np.ndarray], shown: Window, label: str = "", *, halo: bool = False, **style: Any
+) -> None:
+    """Draw a curve, (n, 2) points of the plane for each piece; nothing if none of it is in view.
+
+    Parameters
+    ----------
+    axes
+        Axes that show `shown`.
+    pieces
+        (n, 2) points of the plane each; pieces of a single point are skipped.
+    shown
+        Window of the axes.
+    label
+        For the legend.
+    halo
+        Whether the curve has a light rim, so that it is visible on any colour.
+    style
+        Properties of `matplotlib.collections.LineCollection`.
+    """
+    # Matplotlib clips lines only after a transform to pixels, which has too few digits for what a deep zoom leaves outside.
+    lines = [shapely.LineString(_shares(shown, piece)) for piece in pieces if len(piece) > 1]
+    visible = shapely.get_parts(shapely.clip_by_rect(lines, -_RIM, -_RIM, 1.0 + _RIM, 1.0 + _RIM))
+    if not len(visible):
+        return
+    if halo:
+        style["path_effects"] = [withStroke(linewidth=1.8 * style["linewidths"], foreground=LIGHT.halo)]
+    axes.add_collection(
+        LineCollection([shapely.get_coordinates(part) for part in visible], label=label, **({"zorder": 2} | style)), autolim=False
+    )
+
+
+def mark_starts(
+    axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown: Window, style: FigureStyle = SCREEN
+) -> None:
+    """Mark (x, ordinate) of starts by numbered crosses in the colours of their orbits; starts outside keep their number."""
+    scale = style.font_size / SCREEN.font_size
+    for number, start in enumerate(starts, 1):
+        x, y = _shares(shown, np.array(start))
+        if not (0.0 <= x <= 1.0 and 0.0 <= y <= 1.0):
+            continue
+        # From back to front: light on a dark picture, dark on a light one, and the colour of the orbit.
+        for colour, width in ((LIGHT.halo, 7.0), (MARK_EDGE, 4.8), (palette.orbits[(number - 1) % len(palette.orbits)], 2.4)):
+            size: dict[str, Any] = {"markersize": scale * (9.6 + width), "markeredgewidth": scale * width}
+            axes.plot(x, y, "+", color=colour, zorder=3, **size)
+        right, high = x > 1.0 - _EDGE, y > 1.0 - _EDGE
+        aside = (-6.0 * scale if right else 6.0 * scale, -3.6 * scale if high else 3.6 * scale)
+        axes.annotate(
+            str(number), (x, y), aside, textcoords="offset points",
+            ha="right" if right else "left", va="top" if high else "bottom", fontsize=style.font_size, color=LIGHT.text, zorder=4,
+            path_effects=[withStroke(linewidth=4.0, foreground=LIGHT.halo)],
+        )  # fmt: skip
+
+
+def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
+    """Limit, tick and name axes that show a window; `equal` gives both axes the same scale."""
+    style_axes(axes, style)
+    x, y = label_axis(across, shown.x_low, shown.x_high), label_axis(up, shown.ordinate_low, shown.ordinate_high)
+    axes.set_xticks(*zip(*_spaced(x.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
+    axes.set_yticks(*zip(*y.ticks, strict=True))
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(0.0, 1.0)
+    if equal:
+        axes.set_box_aspect((shown.ordinate_high - shown.ordinate_low) / (shown.x_high - shown.x_low))
+    label_axes(axes, x.name, y.name, style)
+
+
+def _spaced(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
+    """Every tick, or one in several, so that the labels do not touch in a width, in units of their font size."""
+    needed = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
+    return ticks[:: max(1, math.ceil(needed / width))]
+
+
+def add_time_bar(figure: Figure, times: TimeScale, palette: Palette, style: FigureStyle = SCREEN, **place: Any) -> Colorbar:
+    """Add a logarithmic colour bar of escape times; `place` as for `matplotlib.figure.Figure.colorbar`."""
+    scale = ScalarMappable(LogNorm(times.low, times.high), ListedColormap(list(palette.escape_time)))
+    bar = figure.colorbar(scale, **place)
+    powers = [10.0**k for k in range(math.ceil(math.log10(times.low)), math.floor(math.log10(times.high)) + 1)]
+    room = (times.high / times.low) ** _BETWEEN_TIMES
+    ticks = [times.low, *(power for power in powers if times.low * room < power < times.high / room), times.high]
+    # The colours at the ends stand for all shorter and all longer times.
+    signs = {times.low: "≤ ", times.high: "≥ "}
+    bar.set_ticks(ticks, labels=[f"{signs.get(tick, '')}{tick:g}" for tick in ticks])
+    bar.ax.minorticks_off()
+    bar.ax.tick_params(labelsize=style.small_size)
+    return bar
+
+
+def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
+    """(n, 2) points of the plane in shares of a window's width and height."""
+    low, high = _corners(shown)
+    shares: np.ndarray = (points - low) / (high - low)
+    return shares
+
+
+def _corners(window: Window) -> np.ndarray:
+    """(2, 2) lower left and upper right corner."""
+    return np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])
+
+
+def picture_entries(frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> list[Entry]:
+    """Legend of the colours: all classes of the picture, and the outcomes that occur."""
+    judged = analyses.regularity is not None and analyses.regularity.complete
+    occurring = set(np.unique(frame.fate).tolist())
+    outcomes = [entry for fate, entry in reversed(palette.outcomes.items()) if fate in occurring]
+    if picture == "characters":
+        characters = palette.character_entries[:-1] if judged else palette.character_entries
+        return [*characters, *(entry for entry in outcomes if entry != palette.outcomes[Fate.BOUNDED])]
+    if picture == "origins":
+        return [*palette.passage_entries(frame.spec.outcomes), *outcomes]
+    classes = {"basins": palette.legend_entries(frame.spec.outcomes), "crossings": palette.crossing_entries}
+    return [*classes.get(picture, []), *outcomes]
+
+
+def provenance_line(frame: EscapeMap) -> str:
+    """Provenance of a map in a line: potential, h, plane, window, resolution, t_max and version."""
+    facts, plane = frame.provenance(), frame.spec.plane
+    x_low, x_high, low, high = (repr(float(edge)) for edge in facts["window"])
+    name, (columns, rows) = facts["potential"], facts["resolution"]
+    energy = "" if frame.spec.common_energy is None else f"h = {facts['energy']!r}, "
+    abscissa, ordinate = plane.axis_symbols
+    return (
+        f"{'Case' if name in CASES else 'Potential'} {name}, {energy}plane {plane.title}, {abscissa} from {x_low} to {x_high}, "
+        f"{ordinate} from {low} to {high}, {columns} × {rows} starts, t_max = {facts['t_max']:g}, "
+        f"{'' if frame.complete else 'not finished, '}escape-explorer {facts['version']}"
+    )

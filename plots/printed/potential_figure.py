@@ -1,0 +1,48 @@
+"""A potential drawn with Matplotlib: its equipotentials, the one at the escape energy in red."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from engine import Potential, Window
+from engine.slices.limiting_curves import trace_equipotentials
+from engine.slices.planes import SPACE
+from engine.systems.review.energy_ranges import depth_levels
+from engine.systems.review.potential_review import critical_energies
+from plots.pictures.palette import LIGHT, Palette
+from plots.printed.map_figure import draw_curve, draw_limits
+
+# Equipotentials in units of the depth of the well, from its bottom: dense inside the well, sparse outside.
+_LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)
+_INNER_LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
+# Side of the panels in units of the side of the interior.
+_ENLARGED = 1.35
+
+
+def draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> None:
+    """Draw equipotentials of a potential with exits in axes with equal scales."""
+    for pieces in trace_equipotentials(potential, SPACE, depth_levels(potential, _LEVELS), window):
+        draw_pieces(axes, pieces, LIGHT.quiet, 0.6)
+    for pieces in trace_equipotentials(potential, SPACE, critical_energies(potential), window):
+        draw_pieces(axes, pieces, LIGHT.critical_equipotential, 1.6)
+
+
+def draw_well(axes: Axes, potential: Potential, energy: float, window: Window, palette: Palette) -> None:
+    """Draw equipotentials, zero-velocity curve and Lyapunov orbits of an energy in shares of a window."""
+    for pieces in trace_equipotentials(potential, SPACE, depth_levels(potential, _INNER_LEVELS), window):
+        draw_curve(axes, pieces, window, colors=LIGHT.equipotential, linewidths=0.6)
+    draw_limits(axes, potential, SPACE, energy, window, palette.channels)
+
+
+def draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float) -> None:
+    """Draw a curve in pieces, (n, 2) points each."""
+    for piece in pieces:
+        axes.plot(*piece.T, color=colour, linewidth=width)
+
+
+def enlarge(window: Window) -> Window:
+    """A square window around a window, larger than it."""
+    across, up = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
+    half = 0.5 * _ENLARGED * (window.x_high - window.x_low)
+    return Window(across - half, across + half, up - half, up + half)

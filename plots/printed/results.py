@@ -1,0 +1,304 @@
+"""The pictures of results of the engine on Matplotlib axes, as HTML for notebooks, and as HoloViews elements."""
+
+from __future__ import annotations
+
+import base64
+import html
+import inspect
+from collections.abc import Iterable
+from functools import singledispatch
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from engine import (
+    BirkhoffDigits,
+    DecayLaws,
+    EscapeFlux,
+    EscapeMap,
+    EscapeStatistics,
+    LyapunovOrbit,
+    Orbit,
+    OriginFateMap,
+    Potential,
+    PotentialReview,
+    RegularityMap,
+    Result,
+    SampledOrbits,
+    Separation,
+    StableManifolds,
+    Sweep,
+    Trust,
+    TrustMap,
+    UncertaintyExponent,
+    WadaTest,
+    Window,
+    default_window,
+)
+from engine.foundations.extras import require_package
+from engine.slices.planes import SPACE
+from engine.slices.section import SECTION
+from plots.pictures.image_columns import passage_column
+from plots.pictures.map_analyses import MapAnalyses
+from plots.pictures.map_images import TITLES
+from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.pictures.palette import LIGHT, PALETTES, Entry, Palette, rgba
+from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
+from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
+from plots.printed.map_figure import draw_limits, draw_manifolds, draw_picture, draw_pixels, picture_entries, show_window
+from plots.printed.orbit_figure import draw_path, draw_r2, draw_sali
+from plots.printed.potential_figure import draw_equipotentials, enlarge
+
+_INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
+# In shares of the axes: the middle of the legend of a map, below the name of its abscissa.
+_BELOW_AXES = (0.5, -0.13)
+_SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
+TRUST_COLOURS = ("#ffffff", "#dfe6ee", "#7da7c9", "#d1495b", "#b0b0b0")
+"""Of the codes of `Trust`."""
+_MOST_DECADES = 16
+
+
+def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:
+    """Draw a result, as `engine.foundations.result.Result.plot` describes."""
+    if palette not in PALETTES:
+        raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
+    legal = list(inspect.signature(_draw.dispatch(type(result))).parameters)[3:]
+    if unknown := [name for name in options if name not in legal]:
+        legal_here = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal])}"
+        raise TypeError(f"{unknown[0]}: no such option; {legal_here}")
+    if ax is None:
+        from matplotlib import pyplot
+
+        _, ax = pyplot.subplots(figsize=_INCHES, layout="constrained")
+    if not isinstance(ax, Axes):
+        raise TypeError(f"ax={ax!r}: must be Matplotlib axes or None")
+    _draw(result, ax, PALETTES[palette], **options)
+    return ax
+
+
+def to_html(result: Result) -> str:
+    """What a notebook shows: the picture if there is one, the sentence that describes the result, and a table of its numbers."""
+    describe = getattr(result, "describe", None)
+    shown = result.shown_numbers().items()
+    rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in shown)
+    sentence = f"<p>{html.escape(describe())}</p>" if describe is not None else ""
+    return (
+        f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='{_SIDE_BY_SIDE}'>"
+        f"{_picture(result)}<table>{rows}</table></div></div>"
+    )
+
+
+def to_holoviews(result: Result) -> Any:
+    """The HoloViews element of `engine.foundations.result.Result.to_holoviews`."""
+    require_package("holoviews", "page")
+    import holoviews as hv
+
+    if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):
+        return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
+    table = result.to_pandas()
+    if result.row_dimension:
+        table = table.rename_axis(result.row_dimension).reset_index()
+    index, *others = table.columns
+    return hv.Overlay([hv.Curve(table, index, name, label=name) for name in others if table[name].dtype.kind in "if"])
+
+
+def _picture(result: Result) -> str:
+    file = BytesIO()
+    figure = Figure(figsize=_INCHES, dpi=_NOTEBOOK_DPI, layout="constrained")
+    with RENDER_LOCK:
+        try:
+            _draw(result, figure.subplots(), PALETTES["paper"])
+        except TypeError:
+            return ""
+        except ModuleNotFoundError as error:
+            return f"<p>No picture: {html.escape(str(error))}</p>"
+        set_font(figure)
+        figure.savefig(file, format="png")
+    return f"<img alt='{type(result).__name__}' src='data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}'>"
+
+
+@singledispatch
+def _draw(result: Result, axes: Axes, palette: Palette) -> None:
+    raise TypeError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
+
+
+def _panel(axes: Axes, window: Window) -> Axes:
+    """Axes behind `axes` for drawings in shares of a window; `axes` itself gets the coordinates of the window."""
+    panel = axes.inset_axes((0.0, 0.0, 1.0, 1.0), zorder=-1.0)
+    axes.set_xlim(window.x_low, window.x_high)
+    axes.set_ylim(window.ordinate_low, window.ordinate_high)
+    axes.patch.set_visible(False)
+    axes.tick_params(bottom=False, left=False, labelbottom=False, labelleft=False)
+    return panel
+
+
+@_draw.register
+def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str = "basins") -> None:
+    if picture not in TITLES:
+        raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
+    panel = _panel(axes, result.spec.find_window())
+    draw_picture(panel, result, picture, palette)
+    if entries := picture_entries(result, picture, palette, MapAnalyses()):
+        _add_legend_below(panel, entries)
+
+
+def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:
+    axes.legend(
+        handles=patches(entries), loc="upper center", bbox_to_anchor=_BELOW_AXES, ncols=3, fontsize="small", frameon=False
+    )
+
+
+def _draw_codes(axes: Axes, result: Any, codes: np.ndarray, colours: list[str], palette: Palette) -> Axes:
+    """Draw the codes of the pixels of an analysis in their colours."""
+    spec = result.spec
+    window = spec.find_window()
+    panel = _panel(axes, window)
+    draw_pixels(panel, rgba(colours)[codes][::-1], window, window)
+    draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
+    show_window(panel, window, *spec.plane.axis_symbols)
+    return panel
+
+
+@_draw.register
+def _draw_regularity(result: RegularityMap, axes: Axes, palette: Palette) -> None:
+    entries = palette.character_entries
+    panel = _draw_codes(axes, result, result.character, [entry.colour for entry in entries], palette)
+    panel.legend(handles=patches(entries[1:3]))
+
+
+@_draw.register
+def _draw_trust(result: TrustMap, axes: Axes, palette: Palette) -> None:
+    panel = _draw_codes(axes, result, result.trust, list(TRUST_COLOURS), palette)
+    names = [code.name.lower().replace("_", " ") for code in Trust]
+    panel.legend(handles=patches(Entry(name, colour) for name, colour in zip(names[1:4], TRUST_COLOURS[1:4], strict=True)))
+
+
+@_draw.register
+def _draw_origins(result: OriginFateMap, axes: Axes, palette: Palette) -> None:
+    panel = _draw_codes(axes, result, passage_column(result)["passage"][0], palette.passage_colours, palette)
+    name_panel(panel, TITLES["origins"])
+
+
+@_draw.register
+def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
+    if result.potential is None:
+        raise TypeError("this orbit has no potential, so its exits are unknown")
+    curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
+    if show == "path":
+        axes.set_box_aspect(1.0)
+        draw_path(_panel(axes, curves.window), result.potential, [curves], palette)
+        axes.set_box_aspect(axes.child_axes[-1].get_box_aspect())
+    elif show in ("sali", "r2"):
+        (draw_sali if show == "sali" else draw_r2)(axes, curves, palette.orbits[0])
+    else:
+        raise ValueError(f"show={show!r}: must be one of path, sali, r2")
+
+
+@_draw.register
+def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) -> None:
+    entries = []
+    for fate in np.unique(result.fate).tolist():
+        entries.append(palette.entry(fate, result.outcomes))
+        # A NaN ends each path.
+        x, y = (np.pad(path[result.fate == fate], ((0, 0), (0, 1)), constant_values=np.nan) for path in (result.x, result.y))
+        axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
+    axes.set_aspect("equal")
+    style_axes(axes)
+    label_axes(axes, "x", "y")
+    name_panel(axes, "Paths")
+    _add_legend_below(axes, entries)
+
+
+@_draw.register
+def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
+    axes.plot(*result.half_path.T, color=palette.channels[result.channel - 1], linewidth=2.2)
+    axes.set_aspect("equal", adjustable="datalim")
+    style_axes(axes)
+    label_axes(axes, "x", "y")
+    name_panel(axes, f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
+
+
+@_draw.register
+def _draw_flux(result: EscapeFlux, axes: Axes, palette: Palette) -> None:
+    names = [str(channel) for channel in result.channels]
+    axes.bar(names, result.flux, color=[palette.channels[channel - 1] for channel in result.channels])
+    style_axes(axes)
+    label_axes(axes, "channel", "flux")
+    name_panel(axes, f"Flux through the exits at h = {result.energy:.6g}")
+
+
+@_draw.register
+def _draw_stable_manifolds(result: StableManifolds, axes: Axes, palette: Palette) -> None:
+    window = default_window(result.potential, SECTION.plane, result.energy)
+    panel = _panel(axes, window)
+    draw_limits(panel, result.potential, SECTION.plane, result.energy, window, palette.channels)
+    draw_manifolds(panel, result, window, palette)
+    show_window(panel, window, *SECTION.plane.axis_symbols)
+    name_panel(panel, f"Stable manifolds at h = {result.energy:.6g}")
+
+
+@_draw.register
+def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
+    if not result.channels:
+        raise TypeError(f"the potential {result.name} has no exits and therefore no window to draw")
+    window = enlarge(default_window(result, SPACE, result.escape_energy))
+    draw_equipotentials(axes, result, window)
+    for channel, (x, y) in enumerate(result.saddles.tolist(), 1):
+        axes.plot(x, y, "o", color=palette.channels[channel - 1], markeredgecolor=LIGHT.halo, zorder=3)
+    axes.set_xlim(window.x_low, window.x_high)
+    axes.set_ylim(window.ordinate_low, window.ordinate_high)
+    axes.set_aspect("equal")
+    style_axes(axes)
+    label_axes(axes, "x", "y")
+    name_panel(axes, f"{result.name}: escape energy {result.escape_energy:.6g}")
+
+
+@_draw.register
+def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
+    if result.refusal is not None:
+        raise TypeError("a potential that cannot be used has no picture")
+    _draw_potential(result.potential, axes, palette)
+
+
+@_draw.register
+def _draw_sweep(result: Sweep, axes: Axes, palette: Palette) -> None:
+    if "share" not in result.dataset:
+        raise TypeError("a sweep has a picture with the measure 'shares' only")
+    draw_shares(axes, result.values, result["share"], result.outcomes)
+    label_axes(axes, result.symbol, "percentage of starts")
+    add_panel_legend(axes, "center right")
+
+
+@_draw.register
+def _draw_laws(result: DecayLaws, axes: Axes, palette: Palette) -> None:
+    draw_decay_laws(axes, result, float(max(result.times[-1:], default=10.0)))
+    label_axes(axes, "t", "S(t)")
+
+
+@_draw.register
+def _draw_statistics(result: EscapeStatistics, axes: Axes, palette: Palette) -> None:
+    draw_escape_times(axes, result)
+
+
+@_draw.register
+def _draw_uncertainty(result: UncertaintyExponent, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, result.separations, result.shares, "ε", "share of uncertain pairs", logarithmic="xy")
+    axes.plot(result.separations, result.amplitude * result.separations**result.exponent, "--", color=LIGHT.text, linewidth=1.2)
+
+
+@_draw.register
+def _draw_wada(result: WadaTest, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, np.arange(result.shares.size), result.shares, "r (pixels)", "share of the boundary within r")
+
+
+@_draw.register
+def _draw_separation(result: Separation, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, result.t, np.maximum(result.distance, 10.0**-_MOST_DECADES), "t", "distance", logarithmic="y")
+
+
+@_draw.register
+def _draw_digits(result: BirkhoffDigits, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, result.windows, result.digits, "window", "digits", logarithmic="x")

@@ -1,0 +1,199 @@
+"""Files of results: maps and other datasets as NetCDF, orbits as CSV, and a Python script that reproduces them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from importlib import metadata
+from typing import TYPE_CHECKING, Any
+
+from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, Sweep, System, judge_orbit
+from engine.foundations.extras import require_package
+from engine.systems.system import TYPED
+from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+
+MOST_ROWS = 100_000
+"""Default number of rows that a table of orbits has at most."""
+
+_COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
+
+
+def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
+    """NetCDF-4 file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
+    dataset = analyses.add_to(frame.to_xarray())
+    # Shuffled and compressed, a map has a quarter of the size and is written faster.
+    return dataset_bytes(dataset, {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars})
+
+
+def dataset_bytes(dataset: xr.Dataset, encoding: Mapping[Any, Any] | None = None) -> bytes:
+    """NetCDF-4 file of a dataset; `encoding` as in xarray. ModuleNotFoundError without the extra ``files``."""
+    require_package("h5netcdf", "files")
+    return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
+
+
+def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Sequence[OrbitVerdict] = ()) -> str:
+    """CSV table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent, r2, at full precision.
+
+    Comment lines (#) at the top hold the start, energy and verdict of each orbit, and which of its samples follow.
+
+    Parameters
+    ----------
+    orbits
+        The orbits; none for an empty table.
+    most_rows
+        Rows at most, at least 1 per orbit; longer orbits are thinned to every k-th sample.
+    verdicts
+        One per orbit; by default those of `engine.judge_orbit` without Birkhoff digits.
+
+    Raises
+    ------
+    ValueError
+        If `most_rows` is less than the number of orbits.
+    """
+    if most_rows < max(1, len(orbits)):
+        raise ValueError(f"most_rows={most_rows}: must be at least 1, and one for each of {len(orbits)} orbits")
+    strides = [math.ceil(orbit.t.size / (most_rows // len(orbits))) for orbit in orbits]
+    lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
+    for number, (orbit, stride, verdict) in enumerate(zip(orbits, strides, verdicts or map(judge_orbit, orbits), strict=True), 1):
+        lines += _header(number, orbit, stride, verdict)
+    lines.append(",".join(("orbit", *_COLUMNS)))
+    for number, (orbit, stride) in enumerate(zip(orbits, strides, strict=True), 1):
+        lines += _rows(number, orbit, stride)
+    return "\n".join(lines) + "\n"
+
+
+def _header(number: int, orbit: Orbit, stride: int, verdict: OrbitVerdict) -> list[str]:
+    start = ", ".join(f"{name} = {float(getattr(orbit, name)[0])!r}" for name in ("x", "y", "px", "py"))
+    samples = f"one in {stride} of {orbit.t.size} samples" if stride > 1 else f"all {orbit.t.size} samples"
+    return [
+        f"# orbit {number}: start {start}",
+        f"# orbit {number}: energy {orbit.energy!r}",
+        f"# orbit {number}: {verdict.describe()}",
+        f"# orbit {number}: {samples}",
+    ]
+
+
+def _rows(number: int, orbit: Orbit, stride: int) -> Iterator[str]:
+    columns = [getattr(orbit, name)[::stride].tolist() for name in _COLUMNS]
+    return (f"{number}," + ",".join(map(repr, row)) for row in zip(*columns, strict=True))
+
+
+def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:
+    """Python script that reproduces a map and orbits with the engine, bit for bit, and draws them.
+
+    Parameters
+    ----------
+    spec
+        The map.
+    system
+        Its potential.
+    starts
+        (x, y, px, py) of each orbit, finite.
+
+    Raises
+    ------
+    ValueError
+        If a start is not four finite numbers.
+    """
+    source, expression = _potential_expression(system)
+    if spec.plane.parameter is not None:
+        # Each of its orbits belongs to another potential.
+        starts = ()
+    names = [source, "MapSpec", *_slice_names(spec.plane), "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
+    window = spec.find_window()
+    edges = (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)
+    energy = repr(spec.energy)
+    lines = [
+        "from matplotlib import pyplot",
+        "",
+        f"from escape_explorer import {', '.join(dict.fromkeys(names))}",
+        "",
+        f"potential = {expression}",
+        "spec = MapSpec(",
+        "    potential,",
+        f"    {spec.plane},",
+        f"    energy={energy},",
+        f"    resolution={spec.resolution!r},",
+        f"    window=Window{_numbers(edges)},",
+        f"    t_max={spec.t_max!r},",
+        f"    certify={spec.certify!r},",
+        ")",
+        "escape_map = compute_map(spec)",
+        "escape_map.plot()",
+    ]
+    if starts:
+        lines += ["starts = [", *(f"    {_state(start)}," for start in starts), "]"]
+        lines += ["orbits = [integrate_orbit(potential, start, spec.t_max) for start in starts]"]
+        lines += ["for orbit in orbits:", "    orbit.plot()"]
+    lines.append("pyplot.show()")
+    return "\n".join(lines) + "\n"
+
+
+def _slice_names(plane: Slice) -> list[str]:
+    """Names to import for the expression of a slice."""
+    if isinstance(plane, Plane):
+        return ["Plane"]
+    kinds = {type(axis).__name__ for axis in plane.axes} | {"Coordinate", "Slice"}
+    return sorted(kinds | ({"System"} if plane.parameter is not None else set()))
+
+
+def _potential_expression(system: System) -> tuple[str, str]:
+    """Name to import, and the expression of the potential."""
+    if system.parameters and not system.entry.is_well:
+        return "System", f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
+    parameters = ", ".join(f"{name}={value!r}" for name, value in system.well_parameters.items())
+    changed = f".with_parameters({parameters})" if parameters else ""
+    rotation = system.value_of("rotation") if system.entry.is_well else 0.0
+    changed += f".in_rotating_frame({rotation!r})" if rotation else ""
+    if system.case == TYPED:
+        letters = f", parameters={system.letter_parameters!r}" if system.letter_parameters else ""
+        return "parse_formula", f"parse_formula({system.formula!r}{letters}){changed}"
+    if system.case in CASES:
+        return "CASES", f"CASES[{system.case!r}]{changed}"
+    return "POTENTIALS", f"POTENTIALS[{system.case!r}]{changed}"
+
+
+def _state(start: Sequence[float]) -> str:
+    if len(start) != 4 or not all(map(math.isfinite, start)):
+        raise ValueError(f"start={tuple(start)!r}: must be four finite numbers x, y, px, py")
+    return _numbers(start)
+
+
+def _numbers(numbers: Sequence[float]) -> str:
+    return f"({', '.join(repr(float(number)) for number in numbers)})"
+
+
+def file_stem(spec: MapSpec, case: str) -> str:
+    """File name for a map, without an ending: letters, digits and ``_ . + -`` only.
+
+    It has the case, plane, energy, t_max and, unless the map shows the whole plane, the window.
+    """
+    energy = repr(spec.energy).strip("()").replace(", ", "-")
+    stem = f"escapes-{case}-{spec.plane.key}-h{energy}-t{spec.t_max:g}"
+    window = spec.given_window
+    if window is not None:
+        x, ordinate = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
+        stem += "".join(f"-{low!r}_{high!r}" for low, high in (x, ordinate))
+    return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
+
+
+def curve_columns(curves: Sweep) -> dict[str, np.ndarray]:
+    """The numbers of a sweep by name, shares by the labels of their outcomes: ``share_bounded``, ``share_channel_1``."""
+    labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in curves.outcomes)]
+    codes = re.compile(r"(share(?:_low|_high)?)_(\d+)")
+    return {codes.sub(lambda found: f"{found[1]}_{labels[int(found[2])]}", name): c for name, c in curves.columns().items()}
+
+
+def curves_csv(curves: Sweep) -> str:
+    """CSV table of a sweep, one row per energy or value of the parameter: it, a share per outcome, and all other measures."""
+    columns = curve_columns(curves)
+    lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
+    lines += [f"# {name}: {value}" for name, value in curves.dataset.attrs.items()]
+    lines.append(",".join(columns))
+    lines += [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns.values()), strict=True)]
+    return "\n".join(lines) + "\n"

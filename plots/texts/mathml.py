@@ -1,0 +1,165 @@
+"""Formulas of a system as MathML, derived from its potential."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from html import escape
+from xml.etree import ElementTree
+
+from engine import Potential
+from engine.systems.forms.expression_form import ExpressionForm
+from engine.systems.forms.form import Form
+from engine.systems.forms.polynomial_form import PolynomialForm
+from plots.texts.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, raised, row, var
+from plots.texts.mathml_expressions import signed_parts
+
+_SPOKEN = {"+": "plus", "−": "minus", "=": "equals", "∂": "partial", "˙": "dot", "¨": "double dot"}
+_POWERS = {"2": "squared", "3": "cubed"}
+
+
+_INTEGRAL = {False: "Energy integral", True: "Jacobi integral"}
+
+
+def equations(potential: Potential) -> str:
+    """HTML list of Hamiltonian, potential, equations of motion, energy integral, escape energy and saddles."""
+    rows = {
+        **_hamiltonian(potential),
+        "Effective potential" if potential.rotation else "Potential": [_potential(potential)],
+        "Equations of motion": [_motion(axis, potential) for axis in ("x", "y")],
+        _INTEGRAL[bool(potential.rotation)]: [
+            _energy(potential, raised(_above("x", "˙"), 2), raised(_above("y", "˙"), 2)) + op("=") + var("h")
+        ],
+        **_exits(potential),
+    }
+    style = "font-size:17px;margin:2px 0 8px 12px;display:flex;flex-wrap:wrap;align-items:center;gap:4px 28px;overflow-x:auto"
+    body = "".join(f"<dt>{name}</dt><dd style='{style}'>{''.join(map(_math, row))}</dd>" for name, row in rows.items())
+    return f"<dl style='margin:0;font-size:13px;color:inherit'>{body}</dl>"
+
+
+def potential_formula(potential: Potential) -> str:
+    """V(x, y) = … as text with one MathML element for each term, because browsers do not wrap long ones."""
+    first, *others = _signed_terms(potential.form)
+    # A sign at the start of an element has the space of a unary one by default.
+    terms = [first, *(term.replace("<mo>", "<mo form='infix'>", 1) for term in others)]
+    shown = " ".join(f"<math aria-hidden='true'>{part}</math>" for part in (_at_point(potential) + op("="), *terms))
+    return f"<span role='math' aria-label='{_spoken(_potential(potential))}'>{shown}</span>"
+
+
+def _potential(potential: Potential) -> str:
+    return _at_point(potential) + op("=") + _sum(potential.form)
+
+
+def potential_symbol(potential: Potential) -> str:
+    """V, or Φ for the effective potential of a rotating frame."""
+    return "Φ" if potential.rotation else "V"
+
+
+def _at_point(potential: Potential) -> str:
+    return var(potential_symbol(potential)) + _ARGUMENTS
+
+
+def _hamiltonian(potential: Potential) -> dict[str, list[str]]:
+    """H in momenta; in a rotating frame the integral in velocities says it all."""
+    if potential.rotation:
+        return {}
+    return {"Hamiltonian": [var("H") + op("=") + _energy(potential, _momentum_squared("x"), _momentum_squared("y"))]}
+
+
+def _exits(potential: Potential) -> dict[str, list[str]]:
+    """Escape energy, and saddles in the order of the channels; empty if there are no channels."""
+    if not potential.channels:
+        return {}
+    escape_energy = f"<msub>{var('h')}<mtext>esc</mtext></msub>" + op("=") + number(potential.escape_energy)
+    points = (op("(") + number(x) + op(",") + number(y) + op(")") for x, y in potential.saddles)
+    saddles = [f"<mtext>channel {k}:\u00a0</mtext>{point}" for k, point in enumerate(points, start=1)]
+    return {"Escape energy": [escape_energy], "Saddles (x, y) of the potential": saddles}
+
+
+def _motion(axis: str, potential: Potential) -> str:
+    """Acceleration = −∂V/∂axis, with the derivative written out, and the Coriolis term in a rotating frame."""
+    force = potential.form.force("xy".index(axis))
+    partial = f"<mfrac>{row(op('∂') + var(potential_symbol(potential)))}{row(op('∂') + var(axis))}</mfrac>"
+    acceleration = _above(axis, "¨") + op("=") + row(_coriolis(axis, potential) + op("−") + partial)
+    return acceleration if potential.rotation else acceleration + op("=") + _sum(force)
+
+
+def _coriolis(axis: str, potential: Potential) -> str:
+    """2Ωẏ or −2Ωẋ; nothing in a frame that does not rotate."""
+    if not potential.rotation:
+        return ""
+    rate = number(2.0 * abs(potential.rotation))
+    is_negative = (potential.rotation > 0.0) == (axis == "y")
+    return (op("−") if is_negative else "") + rate + _above("y" if axis == "x" else "x", "˙")
+
+
+def _energy(potential: Potential, first: str, second: str) -> str:
+    """½(first + second) + V(x, y)."""
+    squares = op("(") + first + op("+") + second + op(")")
+    return number(0.5) + squares + op("+") + _at_point(potential)
+
+
+def _sum(form: Form) -> str:
+    """A formula, in the order of its terms."""
+    return row("".join(_signed_terms(form)))
+
+
+def _signed_terms(form: Form) -> list[str]:
+    """The terms with their signs, the first without a plus."""
+    signed = _parts(form) or [number(0.0)]
+    return [term.removeprefix(op("+")) if place == 0 else term for place, term in enumerate(signed)]
+
+
+@singledispatch
+def _parts(form: Form) -> list[str]:
+    """The terms with their signs."""
+    raise TypeError(form)
+
+
+@_parts.register
+def _parts_of_polynomial(form: PolynomialForm) -> list[str]:
+    return [_signed(c, raised(var("x"), i) + raised(var("y"), j)) for i, j, c in form.terms]
+
+
+@_parts.register
+def _parts_of_expression(form: ExpressionForm) -> list[str]:
+    return signed_parts(form.expression)
+
+
+def _signed(coefficient: float, monomial: str) -> str:
+    size = abs(coefficient)
+    factor = "" if size == 1.0 and monomial else number(size, COEFFICIENT_DIGITS)
+    return op("−" if coefficient < 0.0 else "+") + factor + monomial
+
+
+def _math(formula: str) -> str:
+    words = _spoken(formula)
+    return f'<math display="block" alttext="{words}" aria-label="{words}">{formula}</math>'
+
+
+def _spoken(formula: str) -> str:
+    """A formula in words, escaped for attributes."""
+    return escape(_words(ElementTree.fromstring(f"<math>{formula}</math>")))
+
+
+def _words(node: ElementTree.Element) -> str:
+    """Text of a formula for screen readers."""
+    parts = [_words(child) for child in node]
+    if node.tag == "mfrac":
+        return "/".join(parts) if all(part.isdecimal() for part in parts) else " over ".join(parts)
+    if node.tag == "msup":
+        return f"{parts[0]} {_POWERS.get(parts[1], f'to the power of {parts[1]}')}"
+    if node.tag in ("msub", "msubsup"):
+        return " ".join((parts[0], "sub", parts[1], *(_POWERS[power] for power in parts[2:])))
+    text = (node.text or "").strip().replace("√", " square root of ").strip()
+    return " ".join([_SPOKEN.get(text, text), *parts]).strip()
+
+
+def _above(name: str, dots: str) -> str:
+    return f"<mover accent='true'>{var(name)}{op(dots)}</mover>"
+
+
+def _momentum_squared(axis: str) -> str:
+    return f"<msubsup>{var('p')}{var(axis)}{digits(2)}</msubsup>"
+
+
+_ARGUMENTS = "<mo stretchy='false'>(</mo>" + var("x") + op(",") + var("y") + "<mo stretchy='false'>)</mo>"

@@ -1,0 +1,59 @@
+"""Parts of formulas as MathML."""
+
+from __future__ import annotations
+
+from math import isqrt
+
+from engine.foundations.wording import short_fraction
+
+# Numbers this close to a short fraction, or to the square root of one, are shown as such.
+_ROUNDING = 1e-10
+COORDINATE_DIGITS, COEFFICIENT_DIGITS = 4, 12
+"""Significant digits of decimal numbers."""
+
+
+def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
+    """Fraction, square root of a fraction, or decimal number."""
+    if value < 0.0:
+        return row(op("−") + number(-value, shown))
+    for power in (1, 2):
+        exact = short_fraction(value**power, _ROUNDING)
+        if exact is not None and (exact or not value):
+            numerator, denominator = (_root(n) if power == 2 else digits(n) for n in exact.as_integer_ratio())
+            return numerator if denominator == digits(1) else f"<mfrac>{numerator}{denominator}</mfrac>"
+    return digits(f"{value:.{shown}g}")
+
+
+def _root(number: int) -> str:
+    """Square root of an integer, with square factors taken out."""
+    outside = max(k for k in range(1, isqrt(number) + 1) if number % k**2 == 0)
+    inside = number // outside**2
+    if inside == 1:
+        return digits(outside)
+    # Some browsers do not draw the sign of <msqrt> without a mathematical font.
+    return digits(f"√{inside}" if outside == 1 else f"{outside}√{inside}")
+
+
+def var(name: str) -> str:
+    """A variable."""
+    return f"<mi>{name}</mi>"
+
+
+def op(sign: str) -> str:
+    """An operator."""
+    return f"<mo>{sign}</mo>"
+
+
+def digits(written: int | str) -> str:
+    """A number as it is to be read."""
+    return f"<mn>{written}</mn>"
+
+
+def row(formula: str) -> str:
+    """Group a formula, so that a sign at its start is unary."""
+    return f"<mrow>{formula}</mrow>"
+
+
+def raised(base: str, power: int) -> str:
+    """A base to a power of at least 0; empty for the power 0."""
+    return "" if power == 0 else base if power == 1 else f"<msup>{base}{digits(power)}</msup>"

@@ -1,0 +1,52 @@
+"""Expressions as MathML: fractions for negative powers, √ for square roots."""
+
+from __future__ import annotations
+
+from engine.expressions.nodes import Coordinate as CoordinateNode
+from engine.expressions.nodes import Expression, Function, Product, Sum
+from plots.texts.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, row, var
+
+
+def signed_parts(expression: Expression) -> list[str]:
+    """The terms of a sum, each with its sign in front."""
+    whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    parts = [_signed(c, part) for part, c in whole.terms]
+    if whole.constant or not parts:
+        parts.append(op("−" if whole.constant < 0.0 else "+") + number(abs(whole.constant), COEFFICIENT_DIGITS))
+    return parts
+
+
+def _signed(coefficient: float, part: Expression) -> str:
+    factors = part.factors if isinstance(part, Product) else ((part, 1.0),)
+    factors = tuple(sorted(factors, key=lambda factor: _place(factor[0])))
+    above = "".join(_raised(base, exponent) for base, exponent in factors if exponent > 0.0)
+    below = "".join(_raised(base, -exponent) for base, exponent in factors if exponent < 0.0)
+    size = "" if abs(coefficient) == 1.0 and above else number(abs(coefficient), COEFFICIENT_DIGITS)
+    written = f"<mfrac>{row(size + above)}{row(below)}</mfrac>" if below else size + above
+    return op("−" if coefficient < 0.0 else "+") + written
+
+
+def _place(base: Expression) -> int:
+    """Coordinates first, functions last."""
+    return 0 if isinstance(base, CoordinateNode) else 2 if isinstance(base, Function) else 1
+
+
+def _raised(base: Expression, exponent: float) -> str:
+    match base:
+        case CoordinateNode(axis):
+            written = var("xy"[axis])
+        case Function(name, argument):
+            written = row(var(name) + _bracketed(argument))
+        case _:
+            written = row(_bracketed(base))
+    if exponent == 1.0:
+        return written
+    if exponent == 0.5:
+        return row(op("√") + written)
+    power = digits(int(exponent)) if exponent == int(exponent) else number(exponent)
+    return f"<msup>{written}{power}</msup>"
+
+
+def _bracketed(expression: Expression) -> str:
+    parts = "".join(signed_parts(expression)).removeprefix(op("+"))
+    return "<mo stretchy='false'>(</mo>" + row(parts) + "<mo stretchy='false'>)</mo>"

@@ -1,0 +1,83 @@
+"""What rests on the symmetry of time reversal, on tori as evidence or on fixed steps is refused or off where it does not hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from engine import (
+    CASES,
+    MapSpec,
+    Plane,
+    Potential,
+    compute_birkhoff_digits,
+    compute_flux,
+    compute_map,
+    compute_regularity,
+    find_lyapunov_orbits,
+    find_stable_manifolds,
+    integrate_orbit,
+    judge_orbit,
+    parse_formula,
+    sample_entrances,
+)
+from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS
+from engine.maps.run import certifies_tori
+from engine.periodic.exit_entry_points import find_entry_points
+from engine.periodic.unstable_manifold import UnstableManifold
+from engine.propagation.certificates import Certificate
+from engine.systems.outcomes import Centre
+
+ROTATING = parse_formula("½(x² + y²) + ½(x² + y²) - x² y").in_rotating_frame(0.5)
+ENERGY = 1.2 * ROTATING.escape_energy
+WITH_CENTRE = replace(CASES["I"], centres=(Centre(0.3, 0.0, 0.01),))
+WITH_RADIUS = replace(CASES["I"], escape_radius=3.0)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        compute_flux,
+        find_stable_manifolds,
+        find_entry_points,
+        lambda potential, energy: sample_entrances(potential, energy, 10),
+        lambda potential, energy: UnstableManifold.from_orbit(find_lyapunov_orbits(potential, energy)[0]),
+    ],
+)
+def test_what_rests_on_time_reversal_refuses_rotating_frames(call: Callable[[Potential, float], Any]) -> None:
+    with pytest.raises(ValueError, match="its frame rotates"):
+        call(ROTATING, ENERGY)
+
+
+@pytest.mark.parametrize(
+    ("potential", "certifies"), [(CASES["I"], True), (ROTATING, False), (WITH_CENTRE, False), (WITH_RADIUS, False)]
+)
+def test_tori_are_evidence_in_wells_at_rest_only(potential: Potential, certifies: bool) -> None:
+    spec = MapSpec(potential, Plane.X_PX, 0.12, (4, 4), t_max=1e5)
+    assert certifies_tori(spec) == certifies
+
+
+def test_a_quasi_periodic_orbit_in_a_rotating_frame_is_bounded_by_integration_only() -> None:
+    state = (0.0, -0.1, np.sqrt(2.0 * (1.02 * ROTATING.escape_energy - ROTATING.value(0.0, -0.1))), 0.0)
+    digits = compute_birkhoff_digits(ROTATING, state, t_max=3000.0)
+    assert digits.digits[-1] > CERTIFIED_DIGITS
+    assert judge_orbit(integrate_orbit(ROTATING, state, t_max=3000.0), digits).certificate is Certificate.INTEGRATED
+
+
+def test_orbits_below_all_saddles_are_closed_unless_they_can_collide() -> None:
+    assert CASES["I"].well.is_closed_at(0.1)
+    assert ROTATING.well.is_closed_at(0.9 * ROTATING.escape_energy)
+    assert not CASES["I"].well.is_closed_at(0.13)
+    assert not WITH_CENTRE.well.is_closed_at(0.1)
+    assert not WITH_RADIUS.well.is_closed_at(0.1)
+    assert CASES["I"].well.is_closed_at(np.array([0.1, 0.2])).tolist() == [True, False]
+
+
+def test_regularity_of_maps_refuses_centres() -> None:
+    escapes = compute_map(MapSpec(WITH_CENTRE, Plane.X_PX, 0.12, (4, 4), t_max=100.0))
+    with pytest.raises(ValueError, match="has centres; regular and chaotic orbits of a map are computed with fixed steps"):
+        compute_regularity(escapes)

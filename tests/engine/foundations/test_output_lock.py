@@ -1,0 +1,100 @@
+"""Locks of output: one holder, named to all others, released by the end of its process."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import re
+import signal
+import sys
+from multiprocessing.synchronize import Event
+from pathlib import Path
+
+import pytest
+
+from engine.foundations.output_lock import hold_lock
+from tests.forked import fork_context, start
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such locks")
+
+
+def hold(path: Path, held: Event, end: Event) -> None:
+    with hold_lock(path):
+        held.set()
+        end.wait()
+
+
+def test_the_second_process_learns_who_holds_the_lock(tmp_path: Path) -> None:
+    held, end = fork_context().Event(), fork_context().Event()
+    process = start(hold, tmp_path / "out", held, end)
+    assert held.wait(60)
+    with (
+        pytest.raises(BlockingIOError, match=rf"out: is being written by process {process.pid} on .* since"),
+        hold_lock(tmp_path / "out"),
+    ):
+        pass
+    end.set()
+    process.join(60)
+    with hold_lock(tmp_path / "out"):
+        pass
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_killed_process_holds_no_lock(tmp_path: Path) -> None:
+    held, end = fork_context().Event(), fork_context().Event()
+    process = start(hold, tmp_path / "out", held, end)
+    assert held.wait(60)
+    assert process.pid is not None
+    os.kill(process.pid, signal.SIGKILL)
+    process.join(60)
+    assert any(tmp_path.iterdir())
+    with hold_lock(tmp_path / "out"):
+        pass
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_link_to_the_same_place_has_the_same_lock(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "store")
+    with hold_lock(tmp_path / "store"), pytest.raises(BlockingIOError), hold_lock(tmp_path / "link"):
+        pass
+
+
+def append_alone(path: Path, turns: int) -> None:
+    """Hold the lock for a number of turns; in each, create a file that must not exist."""
+    marker = path.with_name("marker")
+    while turns:
+        with contextlib.suppress(BlockingIOError), hold_lock(path):
+            marker.touch(exist_ok=False)
+            marker.unlink()
+            turns -= 1
+
+
+def test_processes_that_take_turns_never_hold_the_lock_together(tmp_path: Path) -> None:
+    """Each holder deletes the file of the lock, which others may have opened."""
+    processes = [start(append_alone, tmp_path / "out", 50) for _ in range(3)]
+    for process in processes:
+        process.join(60)
+    assert [process.exitcode for process in processes] == [0, 0, 0]
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("reason", [errno.ENOLCK, errno.ENOTSUP])
+def test_a_file_system_without_locks_reserves_nothing(reason: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*arguments: object) -> None:
+        raise OSError(reason, os.strerror(reason))
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    with hold_lock(tmp_path / "out"), hold_lock(tmp_path / "out"):
+        pass
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("reason", [errno.EIO])
+def test_other_errors_of_the_disk_are_raised(reason: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*arguments: object) -> None:
+        raise OSError(reason, os.strerror(reason))
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    with pytest.raises(OSError, match=re.escape(os.strerror(reason))), hold_lock(tmp_path / "out"):
+        pass

@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from engine.foundations.wording import format_count, format_decimals, format_number, format_time, format_whole, short_fraction
+
+
+@pytest.mark.parametrize(("value", "text"), [(999.0, "999"), (1e3, "1 000"), (123456.7, "123 457"), (1e6, "1 000 000")])
+def test_whole_numbers_are_grouped(value: float, text: str) -> None:
+    assert format_whole(value) == text
+    assert format_count(round(value), "box", "boxes").startswith(text)
+
+
+@pytest.mark.parametrize(
+    ("t", "text"),
+    [(0.01, "0.01"), (12.34567, "12.3457"), (100.0, "100"), (12345.678, "12 345.7"), (1e5, "100 000"), (1e7, "10 000 000")],
+)
+def test_times_are_grouped_and_never_in_exponent_notation(t: float, text: str) -> None:
+    assert format_time(t) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(-2.2, "−2.2"), (42.16, "42.16"), (1e-7, "1e−7"), (2e12, "2e12"), (float("inf"), "∞"), (-float("inf"), "−∞")],
+)
+def test_numbers_have_typographic_signs(value: float, text: str) -> None:
+    assert format_number(value) == text
+
+
+@pytest.mark.parametrize(("value", "text"), [(0.3123, "0.31"), (-0.3, "−0.30"), (-0.001, "0.00")])
+def test_decimals_are_fixed_and_zero_has_no_sign(value: float, text: str) -> None:
+    assert format_decimals(value, 2) == text
+
+
+@pytest.mark.parametrize("text", ["0", "1/2", "3/4", "121/8", "1/3", "1/120", "10/81"])
+def test_short_fractions_stay_fractions(text: str) -> None:
+    assert short_fraction(float(Fraction(text)), 0.0) == Fraction(text)
+
+
+def test_a_fraction_is_as_close_as_the_tolerance() -> None:
+    assert short_fraction(1.0 / 3.0 + 1e-9, 1e-10) is None
+    assert short_fraction(1.0 / 3.0 + 1e-9, 1e-8) == Fraction(1, 3)

@@ -1,0 +1,187 @@
+from __future__ import annotations
+
+import threading
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+
+from engine import CASES, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, start_states
+from engine.foundations.execution import Execution
+from engine.periodic.stable_manifolds import MOST_IMAGES, StableManifolds, find_stable_manifolds
+from engine.propagation.section_points import find_section_points
+
+# The original orientation of the Hénon-Heiles potential (Case II): not even in y, so that orbits can touch y = 0.
+TURNED = Potential("turned", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3)))
+NEVER = 1e9
+# Distance to either side of an arc. Successive turns of an arc that winds around another are less than 1e-8 apart.
+STEP = 1e-10
+SYSTEMS = [("I", 0.15), ("II", 0.2), ("III", 0.45)]
+each_case = pytest.mark.parametrize("name", CASES)
+each = pytest.mark.parametrize(("name", "energy"), SYSTEMS)
+
+
+@cache
+def manifolds(potential: Potential, energy: float, images: int = 2) -> StableManifolds:
+    return find_stable_manifolds(potential, energy, images=images)
+
+
+def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.ndarray:
+    """(n, 4) points x, px of the arcs, without their ends, and unit normals."""
+    rows = [np.empty((0, 4))]
+    for arc in found.arcs:
+        if (arc.channel, arc.image) == (channel, image):
+            point = np.column_stack([arc.x, arc.px])
+            step = np.diff(point, axis=0)
+            length = np.hypot(*step.T)[:, None]
+            tangent = step[:-1] / length[:-1] * length[1:] + step[1:] / length[1:] * length[:-1]
+            tangent /= np.maximum(np.hypot(*tangent.T), np.finfo(float).tiny)[:, None]
+            rows.append(np.column_stack([point[1:-1], -tangent[:, 1], tangent[:, 0]]))
+    return np.concatenate(rows)
+
+
+def separating_share(potential: Potential, energy: float, channel: int, image: int, most: int = 60) -> float:
+    """Share of the points of an image where orbits `STEP` to one side escape and those `STEP` to the other turn back."""
+    points = points_with_normals(manifolds(potential, energy), channel, image)
+    points = points[:: -(-len(points) // most)]
+    sides = []
+    pairs = [start_states(potential, Plane.X_PX, energy, *(points[:, :2] + s * points[:, 2:]).T) for s in (STEP, -STEP)]
+    exist = np.isfinite(pairs).all(axis=(0, 2))
+    for starts in pairs:
+        outcomes = classify_orbits(potential, energy, starts[exist], 200.0)
+        leaves = (outcomes.fate == channel) & (outcomes.crossings == image - 1)
+        sides.append(np.where(leaves, outcomes.escape_time, NEVER))
+    one, other = sides
+    # An orbit that turns back may return to the same exit later without crossing y = 0 upward.
+    return float(np.mean((np.minimum(one, other) < NEVER) & (np.abs(one - other) > 1.0)))
+
+
+def crosses_axis(name: str, channel: int) -> bool:
+    """Whether the channel's Lyapunov orbit crosses y = 0."""
+    return name == "II" and channel == 1
+
+
+# Separation of basins.
+
+
+@each
+@pytest.mark.parametrize("image", [1, 2])
+def test_arcs_separate_escapes_after_n_crossings_from_orbits_that_turn_back(name: str, energy: float, image: int) -> None:
+    for channel in range(1, CASES[name].channels + 1):
+        if not crosses_axis(name, channel):
+            assert separating_share(CASES[name], energy, channel, image) >= 0.99
+
+
+def test_arcs_of_a_channel_on_the_axis_separate_earlier_escapes_from_later_ones() -> None:
+    image = 2
+    points = points_with_normals(manifolds(CASES["II"], 0.2), 1, image)
+    times = []
+    for step in (STEP, -STEP):
+        starts = start_states(CASES["II"], Plane.X_PX, 0.2, *(points[:, :2] + step * points[:, 2:]).T)
+        outcomes = classify_orbits(CASES["II"], 0.2, starts, 200.0)
+        times.append(np.where(outcomes.fate == 1, outcomes.escape_time, NEVER))
+    assert np.all(np.minimum(*times) < NEVER)
+    assert np.all(np.abs(times[0] - times[1]) > 1.0)
+
+
+def test_arcs_separate_basins_without_symmetry_in_y() -> None:
+    assert separating_share(TURNED, 0.2, 2, 1) >= 0.99
+
+
+@pytest.mark.parametrize(("name", "energy", "channel"), [("II", 0.2, 3), ("III", 0.45, 1)])
+def test_all_basin_boundaries_lie_on_arcs(name: str, energy: float, channel: int) -> None:
+    spec = MapSpec(CASES[name], Plane.X_PX, energy, resolution=(101, 101), t_max=100.0)
+    found = compute_map(spec)
+    column = found.x[1] - found.x[0]
+    for image in (1, 2):
+        basin = (found.fate == channel) & (found.crossings == image - 1)
+        row, left = np.nonzero((basin[:, 1:] != basin[:, :-1]) & (found.fate >= 0)[:, 1:] & (found.fate >= 0)[:, :-1])
+        arcs = [a for a in manifolds(CASES[name], energy).arcs if (a.channel, a.image) == (channel, image)]
+        lines = shapely.MultiLineString([np.column_stack([a.x, a.px]) for a in arcs])
+        distance = shapely.distance(lines, shapely.points(0.5 * (found.x[left] + found.x[left + 1]), found.ordinate[row]))
+        assert np.mean(distance < 0.55 * column) > 0.97
+        assert distance.max() < 1.5 * column
+
+
+# Points of the arcs.
+
+
+@pytest.mark.parametrize(("name", "energy", "channel"), [("II", 0.2, 2), ("III", 0.45, 3)])
+def test_points_of_an_image_are_mapped_to_the_previous_image(name: str, energy: float, channel: int) -> None:
+    found = manifolds(CASES[name], energy)
+    second = points_with_normals(found, channel, 2)[:, :2]
+    second = second[:: -(-len(second) // 200)]
+    next_points = find_section_points(CASES[name], start_states(CASES[name], Plane.X_PX, energy, *second.T), 1, 30.0)[:, 0]
+    first = shapely.MultiLineString([np.column_stack([a.x, a.px]) for a in found.arcs if (a.channel, a.image) == (channel, 1)])
+    assert np.mean(shapely.distance(first, shapely.points(next_points)) < 1e-3) > 0.98
+
+
+def test_mirrored_channels_have_mirrored_arcs() -> None:
+    by_channel = {c: [a for a in manifolds(CASES["III"], 0.45).arcs if a.channel == c] for c in (1, 2, 3, 4)}
+    for one, other in ((1, 2), (4, 3)):
+        assert len(by_channel[one]) == len(by_channel[other])
+        for arc, image in zip(by_channel[one], by_channel[other], strict=True):
+            np.testing.assert_array_equal([arc.x, arc.px], [-image.x, -image.px])
+
+
+def test_first_images_are_closed_curves_and_not_truncated() -> None:
+    found = find_stable_manifolds(CASES["I"], 0.15, images=1)
+    assert not found.truncated
+    for arc in found.arcs:
+        assert (arc.x[0], arc.px[0]) == (arc.x[-1], arc.px[-1])
+
+
+# The unstable manifold.
+
+
+# Arguments.
+
+
+def test_there_are_no_arcs_at_the_escape_energy() -> None:
+    found = find_stable_manifolds(CASES["II"], CASES["II"].escape_energy)
+    assert (found.arcs, found.truncated, found.nbytes) == ((), False, 0)
+
+
+@pytest.mark.parametrize("images", [0, MOST_IMAGES + 1])
+def test_number_of_images_out_of_range_raises(images: int) -> None:
+    with pytest.raises(ValueError, match=f"images={images}"):
+        find_stable_manifolds(CASES["I"], 0.15, images=images)
+
+
+def test_result_does_not_depend_on_the_executor() -> None:
+    with ThreadPoolExecutor(3) as pool:
+        found = find_stable_manifolds(CASES["I"], 0.15, images=2, execution=Execution(pool))
+    for arc, other in zip(found.arcs, manifolds(CASES["I"], 0.15).arcs, strict=True):
+        np.testing.assert_array_equal([arc.x, arc.px], [other.x, other.px])
+
+
+def test_cancelling_raises() -> None:
+    cancel = threading.Event()
+    cancel.set()
+    with pytest.raises(CancelledError):
+        find_stable_manifolds(CASES["I"], 0.15, execution=Execution(cancel=cancel))
+
+
+# Zooms.
+
+
+def window_on_an_arc(half: float) -> Window:
+    """A square of side 2 `half` around a point of an arc of I at h = 0.19."""
+    arc = next(arc for arc in find_stable_manifolds(CASES["I"], 0.19, images=1).arcs if arc.channel == 1)
+    x, px = float(arc.x[arc.x.size // 3]), float(arc.px[arc.x.size // 3])
+    return Window(x - half, x + half, px - half, px + half)
+
+
+def test_curves_separate_the_basins_in_a_deep_zoom() -> None:
+    half = 1e-6
+    window = window_on_an_arc(half)
+    zoomed = find_stable_manifolds(CASES["I"], 0.19, images=1, window=window)
+    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (40, 40), window, t_max=500.0))
+    direct = (frame.fate == 1) & (frame.crossings == 0)
+    assert 0.2 < direct.mean() < 0.8
+    line = shapely.MultiLineString([np.column_stack([one.x, one.px]) for one in zoomed.arcs if one.channel == 1])
+    rows, columns = np.nonzero(direct[:, 1:] != direct[:, :-1])
+    boundary = shapely.points(0.5 * (frame.x[columns] + frame.x[columns + 1]), frame.ordinate[rows])
+    assert shapely.distance(line, boundary).max() < 2.0 * half / 40

@@ -1,0 +1,63 @@
+"""Saddles that lead out of the well at the origin, and the maxima beside them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_well
+from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.potential import Potential
+from tests.peers.random_systems import random_well
+
+# A ring-shaped valley around a hill, lowest at the origin; its highest point is a saddle with the origin below on both sides.
+RING = parse_formula("((x − 1.1)² + y² − 1)² + 0.924x")
+# Wells at x = 0, 2 and 4.
+ROW = parse_formula("(x(x − 2)(x − 4))²/10 + y²")
+
+# One saddle is at (-0.007, 1897), in a valley whose curvature is 10^11 times the one along it.
+NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4 + 0.082*x^4*y - 0.084*x^2*y^2 + 0.184*x*y^2"
+
+
+def exits(potential: Potential) -> np.ndarray:
+    """(n, 2) the saddles that lead out."""
+    points = potential.critical_points
+    return points[leads_out_of_well(potential.form.downhill, potential.hessian, points, potential.well.critical_indices)]
+
+
+def test_a_saddle_with_the_origin_below_on_both_sides_is_no_exit() -> None:
+    assert exits(RING).size == 0
+
+
+def test_a_saddle_between_two_other_wells_is_no_exit() -> None:
+    np.testing.assert_allclose(exits(ROW), [[2.0 - 2.0 / np.sqrt(3.0), 0.0]], atol=1e-12)
+
+
+def test_the_hill_lies_beside_the_saddle_behind_it() -> None:
+    points = RING.critical_points
+    hill, saddle = np.argsort(points[:, 0])[1:]
+    beside = find_maxima_beside(RING.form.downhill, RING.hessian, points, RING.well.critical_indices, np.array([saddle]))
+    assert np.flatnonzero(beside).tolist() == [hill]
+
+
+def test_a_saddle_at_the_end_of_a_long_narrow_valley_is_an_exit() -> None:
+    potential = parse_formula(NARROW_VALLEY)
+    valley = potential.saddles[np.argmax(potential.saddles[:, 1])]
+    assert valley[1] == pytest.approx(1896.55543)
+    # Along the bottom of the valley, where V_x = 0, V rises from the well to the saddle.
+    y = np.linspace(1.0, valley[1], 1000)
+    x = np.zeros_like(y)
+    for _ in range(50):
+        x -= potential.gradient(x, y)[0] / potential.hessian(x, y)[0]
+    assert (np.diff(potential.value(x, y)) > 0.0).all()
+
+
+def test_descents_that_need_an_implicit_method_from_the_start_end() -> None:
+    potential = random_well(100, 10)
+    farthest = potential.saddles[np.argmax(potential.saddles[:, 0])]
+    np.testing.assert_allclose(farthest, [717.83953, -0.02207], atol=1e-5)
+
+
+def test_descents_whose_first_method_fails_end_without_a_warning() -> None:
+    text = "½(x²+y²) − 1.295xy³ − 6x⁶y − 2.133xy² − 1.746x⁴y² + 4x³y³ − 1.67x⁵y⁴ + 0.957x²y + 3x⁵y⁶ − 0.184x² + 9y² + 0.35x⁴y⁵"
+    assert len(exits(parse_formula(text))) == 3

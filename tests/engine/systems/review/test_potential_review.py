@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.known_potentials import POTENTIALS, channel_family
+from engine.systems.potential import Potential
+from engine.systems.review.potential_review import review_potential
+
+
+@pytest.mark.parametrize(
+    ("formula", "reason"),
+    [
+        ("x²y²", "along a curve"),
+        ("r²/2", "No saddle leads out"),
+        ("−r²/2", "a maximum there"),
+        ("xy", "a saddle there"),
+        ("x² + y⁴", "a degenerate point there"),
+        ("x + r²", "linear terms"),
+    ],
+)
+def test_invalid_potentials_are_refused_with_the_reason(formula: str, reason: str) -> None:
+    refusal = review_potential(parse_formula(formula)).refusal
+    assert refusal is not None
+    assert reason in refusal
+
+
+@pytest.mark.parametrize(
+    ("formula", "well"),
+    [
+        ("((x−1)² + y²)/2 − (x−1)y²", (1.0, 0.0)),
+        ("x + r²", (-0.5, 0.0)),
+        # The nearer of two minima, at x = −1 and x = 2.
+        ("y²/2 + x⁴/4 − x³/3 − x²", (-1.0, 0.0)),
+        ("r²/2", None),
+    ],
+)
+def test_the_nearest_well_elsewhere_is_offered(formula: str, well: tuple[float, float] | None) -> None:
+    assert review_potential(parse_formula(formula)).well == well
+
+
+def test_degenerate_point_outside_the_well_is_refused() -> None:
+    # V_x = x (1 − x)² touches 0 at x = 1.
+    refusal = review_potential(parse_formula("y²/2 + x²/2 − 2x³/3 + x⁴/4")).refusal
+    assert refusal is not None
+    assert "degenerate critical point at (1, 0)" in refusal
+
+
+@pytest.mark.parametrize("n", [5, 8])
+def test_family_symmetries(n: int) -> None:
+    review = review_potential(channel_family(n))
+    assert (review.mirror_in_x, review.mirror_in_y, review.rotations) == (n % 2 == 0, True, n)
+
+
+def test_a_far_saddle_in_a_narrow_valley_is_reviewed() -> None:
+    # It is 27 000 units away, and the curvatures across and along the valley have the ratio 550.
+    terms = (
+        *((2, 0, 0.5303), (0, 2, 0.7672), (1, 1, -0.1449), (2, 1, -0.4607), (1, 4, -0.0938), (1, 3, -0.2776), (0, 5, -0.0645)),
+        *((3, 0, 0.3398), (4, 0, 0.3995), (2, 3, -0.2132), (0, 4, 0.0443), (1, 2, -0.7503), (3, 2, 0.0155)),
+    )
+    review = review_potential(Potential("", terms))
+    assert [point.channel for point in review.critical_points] == [0, 1, 2]
+
+
+def test_maximum_between_two_exits_sets_the_highest_energy() -> None:
+    # In u = x + y and v = x − y, V = ¼(u² + v²) + (u³ + v³)/6: the exits merge at the maximum u = v = −1, at energy 1/6.
+    assert review_potential(POTENTIALS["Separable"]).highest_energy == pytest.approx(1 / 6, rel=1e-12)
+
+
+@pytest.mark.parametrize("formula", ["(x²y² − 1)² + (x − y)²", "(r² − 1)²(r² − 4)²/50 + x²/9"])
+def test_review_is_fast(formula: str) -> None:
+    potential = parse_formula(formula)
+    begin = time.process_time()
+    review_potential(potential)
+    assert time.process_time() - begin < 3.0
+
+
+@pytest.mark.parametrize(
+    ("terms", "channels", "escape_energy"),
+    [
+        # Saddles at x = −1 and 150.
+        (((2, 0, 0.5), (0, 2, 0.5), (3, 0, (1 - 1 / 150) / 3), (4, 0, -1 / 600)), 2, 1 / 6 + 1 / 1800),
+        # A well 140 times as long as wide.
+        (((2, 0, 0.5), (0, 2, 0.5), (1, 1, -0.9999), (2, 2, -1.0)), 4, 2.5e-9),
+        # Saddles at (0, 1/9) and (33.3, 0).
+        (((2, 0, 0.5), (0, 2, 0.5), (3, 0, -0.01), (0, 3, -3.0)), 2, 1 / 486),
+        # ½y² + ½x²(1 − xy)² tends to 0 along xy = 1, where rounding errors exceed its slope.
+        (((0, 2, 0.5), (2, 0, 0.5), (3, 1, -1.0), (4, 2, 0.5)), 2, 0.25),
+    ],
+    ids=["far apart", "narrow", "far saddle", "valley"],
+)
+def test_unusual_wells_are_accepted_with_all_exits(
+    terms: tuple[tuple[int, int, float], ...], channels: int, escape_energy: float
+) -> None:
+    review = review_potential(Potential("", terms))
+    assert review.refusal is None
+    assert review.channels == channels
+    assert review.escape_energy == pytest.approx(escape_energy, rel=1e-9)

@@ -1,0 +1,32 @@
+"""Outcomes: order, words, and as attributes of files."""
+
+from __future__ import annotations
+
+from engine.systems.outcomes import Centre, OutcomeKind, outcomes_of, read_outcomes, write_outcomes
+
+ALL = outcomes_of(2, (Centre(0.0, 0.0, 0.1, "the Moon"), Centre(1.0, 0.0, 0.1)), has_escape_radius=True)
+
+
+def test_exits_come_first_then_centres_then_the_escape_radius() -> None:
+    assert [outcome.label for outcome in ALL] == [
+        "channel 1",
+        "channel 2",
+        "collision with the Moon",
+        "collision with centre 2",
+        "escape",
+    ]
+    kinds = [OutcomeKind.EXIT, OutcomeKind.EXIT, OutcomeKind.COLLISION, OutcomeKind.COLLISION, OutcomeKind.ESCAPE]
+    assert [outcome.kind for outcome in ALL] == kinds
+
+
+def test_each_has_a_sentence_and_what_an_orbit_does() -> None:
+    channel, _, moon, _, escape = ALL
+    assert [each.sentence for each in (channel, moon, escape)] == [
+        "Escaped through channel 1.", "Collided with the Moon.", "Escaped beyond the escape radius.",
+    ]  # fmt: skip
+    assert [each.present for each in (channel, moon)] == ["escapes through channel 1", "collides with the Moon"]
+    assert [each.event for each in (channel, moon, escape)] == ["escape", "collision", "escape"]
+
+
+def test_files_keep_them() -> None:
+    assert read_outcomes(write_outcomes(ALL)) == ALL

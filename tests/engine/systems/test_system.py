@@ -1,0 +1,58 @@
+"""The selected system: its potential, name and energy range."""
+
+from __future__ import annotations
+
+import pytest
+
+from engine import CASES, POTENTIALS, System, parse_formula, review_potential
+from engine.systems.catalogue.table import CATALOGUE
+from engine.systems.review.potential_review import review_system
+from engine.systems.system import TYPED
+
+HENON_HEILES = "½(x² + y²) + x²y − y³/3"
+
+
+def test_parameters_change_the_potential_and_its_energies() -> None:
+    system = System("I", parameters={"epsilon": 0.5})
+    assert system.potential == CASES["I"].with_parameters(epsilon=0.5)
+    assert system.parameters == {"epsilon": 0.5}
+    # With half the perturbation the saddles are at twice the distance and four times the energy.
+    energies = review_system(system).energies
+    assert energies.low == pytest.approx(0.8 * 0.5)
+    assert energies.marked == ()
+
+
+@pytest.mark.parametrize("system", [System(TYPED, "x y %"), System(TYPED), System("I", parameters={"omega_1": 1e3})])
+def test_an_invalid_system_has_no_potential(system: System) -> None:
+    with pytest.raises(ValueError, match=r"formula|omega_1"):
+        _ = system.potential
+
+
+@pytest.mark.parametrize("name", POTENTIALS)
+def test_the_slider_contains_the_escape_energy_below_the_initial_energy(name: str) -> None:
+    energies, escape = review_system(System(name)).energies, POTENTIALS[name].escape_energy
+    assert max(energies.low, escape) < energies.first < energies.high <= review_potential(POTENTIALS[name]).highest_energy
+    assert energies.low < escape or POTENTIALS[name].escape_radius is not None
+
+
+def test_the_formula_contains_the_parameters() -> None:
+    assert System("III").formula_shown == CATALOGUE["III"].formula
+    assert (
+        parse_formula(System("III", parameters={"omega_2": 1.5}).formula_shown)
+        == System("III", parameters={"omega_2": 1.5}).potential
+    )
+
+
+def test_letters_are_parameters_beside_those_of_the_well() -> None:
+    system = System(TYPED, "½r² − a x y² + b₂ x³", {"a": 1.5, "b2": 1.0, "omega_1": 1.1})
+    assert system.parameters == {"omega_1": 1.1, "a": 1.5}
+    assert system.letters == {"a": 1.5, "b2": 1.0}
+    assert system.potential == parse_formula("½r² − 1.5 x y² + x³").with_parameters(omega_1=1.1)
+    assert system.title == "Typed potential with ω1 = 1.1, a = 1.5"
+    assert hash(system) == hash(System(TYPED, system.formula, {"omega_1": 1.1, "a": 1.5}))
+
+
+@pytest.mark.parametrize("parameters", [{"b": 2.0}, {"a": float("nan")}, {"a": 1e10}])
+def test_an_illegal_value_of_a_letter_is_named(parameters: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match=r"b.* is no letter of the formula; its letters are a|a=.*: must be"):
+        _ = System(TYPED, "½r² − a x y²", parameters).potential

@@ -1,0 +1,84 @@
+"""Colours with different meanings are distinguishable, also with a colour-vision deficiency."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from plots.pictures.palette import (
+    DARK,
+    DOUBT,
+    LIGHT,
+    PALETTES,
+    Palette,
+)
+from tests.plots.colour_vision import VISIONS, contrast, differences
+
+# Differences CIEDE2000: 2 is just visible, 10 is clear at a glance.
+CLEAR = 10.0
+PAGES = {"light": "#f5f6f8", "dark": "#13161a"}
+of_each_palette = pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
+for_each_vision = pytest.mark.parametrize("vision", VISIONS)
+
+
+def closest(colours: list[str] | tuple[str, ...], vision: str = "normal") -> float:
+    """The least difference of two of the colours."""
+    apart = differences(colours, colours, vision)
+    return float(apart[np.triu_indices(len(colours), 1)].min())
+
+
+@of_each_palette
+def test_channels_crossing_classes_characters_and_orbits_have_no_colour_in_common(palette: Palette) -> None:
+    kinds = (
+        palette.channels,
+        (*palette.collisions, palette.escape),
+        palette.classes,
+        palette.characters[1:],
+        palette.orbits,
+        (palette.bounded,),
+    )
+    for ones, others in itertools.combinations(kinds, 2):
+        assert differences(ones, others).min() > CLEAR
+
+
+@of_each_palette
+@for_each_vision
+def test_colours_of_one_kind_differ_from_each_other(palette: Palette, vision: str) -> None:
+    for kind in ([*palette.classes, palette.bounded], [*palette.characters, palette.bounded], palette.orbits):
+        assert closest(kind, vision) > CLEAR
+
+
+@for_each_vision
+def test_channels_of_the_safe_palette_are_distinguishable(vision: str) -> None:
+    safe = PALETTES["safe"]
+    assert closest([*safe.channels[:4], safe.bounded], vision) > CLEAR
+
+
+@of_each_palette
+@for_each_vision
+def test_collisions_and_escape_differ_from_each_other_and_from_exits_and_bounded_orbits(palette: Palette, vision: str) -> None:
+    others = (*palette.collisions, palette.escape)
+    assert closest(others, vision) > CLEAR
+    assert differences(others, [*palette.channels, palette.bounded], vision).min() > CLEAR
+
+
+@of_each_palette
+@pytest.mark.parametrize("page", PAGES)
+def test_orbits_collisions_and_escape_are_visible_on_the_page(palette: Palette, page: str) -> None:
+    assert min(contrast(colour, PAGES[page]) for colour in palette.orbits) > 2.0
+    assert min(contrast(colour, PAGES[page]) for colour in (*palette.collisions, palette.escape)) > 1.5
+
+
+@of_each_palette
+def test_one_of_the_tones_of_doubtful_pixels_is_visible_on_any_colour(palette: Palette) -> None:
+    for colour in (*palette.channels, *palette.classes, palette.bounded):
+        assert max(contrast(tone, colour) for tone in DOUBT) > 4.5
+
+
+@of_each_palette
+@pytest.mark.parametrize(("inks", "page"), [(LIGHT, "light"), (DARK, "dark")], ids=PAGES)
+def test_the_curve_of_the_escape_energy_is_visible_and_no_channel(palette: Palette, inks, page: str) -> None:
+    assert contrast(inks.critical_equipotential, PAGES[page]) > 4.5
+    assert differences([inks.critical_equipotential], palette.channels).min() > CLEAR

@@ -1,0 +1,125 @@
+"""Figures are the same bytes each time, have text and provenance, and are as wide as asked."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from io import BytesIO
+
+import pytest
+from PIL import Image
+
+from engine import (
+    CASES,
+    EscapeMap,
+    MapSpec,
+    Plane,
+    Sweep,
+    SweepSpec,
+    compute_map,
+    compute_sweep,
+    integrate_orbit,
+)
+from engine.sweeps.measures import CURVES
+from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
+from plots.pictures.palette import PAPER
+from plots.printed.figure_axes import MOST_PIXELS
+from plots.printed.figure_files import curves_figure_bytes, map_figure_bytes, orbits_figure_bytes
+from plots.printed.figure_style import CM_PER_INCH, FigureFormat, FigureStyle
+
+NARROW = FigureStyle(8.5, dpi=100.0)
+Draw = Callable[[FigureFormat, FigureStyle], bytes]
+
+
+@pytest.fixture(scope="module")
+def escape_map() -> EscapeMap:
+    return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.18, (20, 15), window=(-1.0, 1.4, -0.8, 0.8), t_max=200.0))
+
+
+@pytest.fixture(scope="module")
+def orbits() -> list[OrbitCurves]:
+    states = ((0.1, 0.0, 0.05, 0.6), (0.1, 0.0, 0.05, 0.3))
+    return [compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], state, 100.0)) for state in states]
+
+
+@pytest.fixture(scope="module")
+def curves() -> Sweep:
+    return compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures=CURVES))
+
+
+@pytest.fixture(params=["maps", *(pytest.param(name, marks=pytest.mark.slow) for name in ("orbits", "curves"))])
+def draw(request: pytest.FixtureRequest, escape_map: EscapeMap, orbits: list[OrbitCurves], curves: Sweep) -> Draw:
+    """A function that draws one of the figures."""
+    drawers: dict[str, Draw] = {
+        "maps": lambda format, style: map_figure_bytes(escape_map, ["basins", "times"], PAPER, format, style),
+        "orbits": lambda format, style: orbits_figure_bytes(CASES["I"], orbits, PAPER, ["regular", "chaotic"], format, style),
+        "curves": lambda format, style: curves_figure_bytes(curves, format, style),
+    }
+    return drawers[request.param]
+
+
+@pytest.mark.parametrize("format", FigureFormat)
+def test_files_are_the_same_each_time(format: FigureFormat, draw: Draw) -> None:
+    assert draw(format, NARROW) == draw(format, NARROW)
+
+
+def test_files_have_the_given_width(draw: Draw) -> None:
+    with Image.open(BytesIO(draw(FigureFormat.PNG, NARROW))) as image:
+        assert image.width == int(8.5 / CM_PER_INCH * 100.0)
+        assert image.info["dpi"] == pytest.approx((100.0, 100.0), abs=0.1)
+    points = re.search(rb'<svg [^>]*width="([0-9.]+)pt"', draw(FigureFormat.SVG, NARROW))
+    assert points is not None
+    assert float(points[1]) == pytest.approx(8.5 / CM_PER_INCH * 72.0, abs=1e-3)
+    box = re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", draw(FigureFormat.PDF, NARROW))
+    assert box is not None
+    assert float(box[1]) == pytest.approx(8.5 / CM_PER_INCH * 72.0, abs=1e-3)
+
+
+def test_text_stays_text_in_svg_files_and_nothing_has_a_date(draw: Draw) -> None:
+    svg = draw(FigureFormat.SVG, FigureStyle()).decode()
+    assert svg.count("<text") > 10
+    assert "STIXGeneral" in svg
+    assert "dc:date" not in svg
+    assert b"CreationDate" not in draw(FigureFormat.PDF, NARROW)
+
+
+def test_pixels_of_a_map_are_embedded_as_they_are(escape_map: EscapeMap) -> None:
+    svg = map_figure_bytes(escape_map, ["basins"], PAPER, FigureFormat.SVG, NARROW).decode()
+    image = re.search(r"<image [^>]*>", svg)
+    assert image is not None
+    assert 'width="20" height="15"' in image[0]
+    assert "pixelated" in image[0]
+    pdf = map_figure_bytes(escape_map, ["basins"], PAPER, FigureFormat.PDF, NARROW)
+    assert b"/Width 20" in pdf
+    assert b"/Height 15" in pdf
+
+
+def test_a_png_has_a_field_for_each_fact(escape_map: EscapeMap) -> None:
+    with Image.open(BytesIO(map_figure_bytes(escape_map, ["basins"], PAPER, FigureFormat.PNG, NARROW))) as image:
+        notes = image.info
+    assert notes["Software"].startswith("escape-explorer ")
+    assert {name: notes[name] for name in escape_map.provenance()} == {k: str(v) for k, v in escape_map.provenance().items()}
+
+
+def test_a_png_with_too_many_pixels_is_refused_and_the_same_figure_as_svg_is_not(escape_map: EscapeMap) -> None:
+    dpi = 1200
+    large = FigureStyle(100.0, dpi)
+    with pytest.raises(ValueError, match=rf"dpi={dpi}: must be at most \d+ for a figure of 100 × \d+ cm") as caught:
+        map_figure_bytes(escape_map, ["basins"], PAPER, FigureFormat.PNG, large)
+    most = int(re.findall(r"at most (\d+)", str(caught.value))[0])
+    assert (most * 100.0 / CM_PER_INCH) ** 2 <= MOST_PIXELS
+    assert map_figure_bytes(escape_map, ["basins"], PAPER, FigureFormat.SVG, large)
+
+
+def test_a_figure_without_pictures_or_orbits_is_refused(escape_map: EscapeMap) -> None:
+    with pytest.raises(ValueError, match=r"pictures=\[\]: must be at least one of curves"):
+        map_figure_bytes(escape_map, [], PAPER, FigureFormat.PNG, NARROW)
+    with pytest.raises(ValueError, match=r"orbits=\[\]: must be at least one"):
+        orbits_figure_bytes(CASES["I"], [], PAPER, [], FigureFormat.PNG, NARROW)
+
+
+@pytest.mark.parametrize("format", FigureFormat)
+def test_files_contain_their_provenance(format: FigureFormat, escape_map: EscapeMap) -> None:
+    data = map_figure_bytes(escape_map, ["basins"], PAPER, format, FigureStyle(titles=False))
+    assert b"escape-explorer" in data
+    assert b"Taylor series" in data

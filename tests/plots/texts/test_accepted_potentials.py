@@ -1,0 +1,21 @@
+"""Potentials that cannot be shown are refused with a reason."""
+
+from __future__ import annotations
+
+from engine import POTENTIALS, channel_family, parse_formula, review_potential
+from plots.pictures.palette import MOST_CHANNELS
+from plots.texts.accepted_potentials import refusal
+
+HENON_HEILES = "½(x² + y²) + x²y − y³/3"
+
+
+def test_more_exits_than_colours_are_rejected() -> None:
+    assert "colours" in str(refusal(review_potential(channel_family(MOST_CHANNELS + 1))))
+
+
+def test_an_escape_energy_beyond_the_largest_number_is_refused() -> None:
+    assert "energies up to 1e+09" in str(refusal(review_potential(parse_formula("(x² + y²)/2 + 1e-7y³"))))
+
+
+def test_known_potentials_are_accepted() -> None:
+    assert [name for name in POTENTIALS if refusal(review_potential(POTENTIALS[name]))] == []

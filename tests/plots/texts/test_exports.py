@@ -1,0 +1,156 @@
+"""Downloaded files contain the same numbers as the results."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib import pyplot
+
+from engine import (
+    CASES,
+    MapSpec,
+    Orbit,
+    Plane,
+    SweepSpec,
+    System,
+    compute_map,
+    compute_origin_fates,
+    compute_sweep,
+    compute_trust,
+    integrate_orbit,
+    judge_orbit,
+)
+from engine.systems.system import TYPED
+from plots.pictures.map_analyses import MapAnalyses
+from plots.texts.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
+
+START = (0.1, 0.0, 0.05, 0.6)
+SPECS = {
+    "a window": MapSpec(CASES["II"], Plane.X_PX, 0.18, (20, 15), window=(-1.0, 1.4, -0.8, 0.8), t_max=200.0),
+    "the whole interior": MapSpec(CASES["II"], Plane.X_Y, 0.1 + 0.2, (11, 11), t_max=100.0),
+    "energies": MapSpec(CASES["II"], Plane.X_H, (1 / 6, 0.4), (11, 11), t_max=100.0),
+    "a deep zoom": MapSpec(CASES["II"], Plane.X_PX, 0.18, (7, 7), (0.1, 0.1 + 1e-10, 1 / 3, 1 / 3 + 1e-10), 100.0, certify=False),
+    "NumPy's numbers": MapSpec(
+        CASES["II"], Plane.X_PX, np.float64(0.2), (np.int64(9), 9), tuple(np.linspace(-0.3, 0.3, 2)) * 2, np.float64(50.0)
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def orbit() -> Orbit:
+    return integrate_orbit(CASES["I"], START, 100.0)
+
+
+@pytest.mark.parametrize("name", ["a window", "energies"])
+def test_netcdf_contains_the_map(name: str) -> None:
+    dataset = compute_map(SPECS[name]).to_xarray()
+    with xr.open_dataset(BytesIO(netcdf_bytes(compute_map(SPECS[name]))), engine="h5netcdf") as back:
+        xr.testing.assert_equal(back, dataset)
+        assert {name: variable.dtype for name, variable in back.items()} == {name: v.dtype for name, v in dataset.items()}
+        assert set(back.attrs) == set(dataset.attrs)
+        for key, value in dataset.attrs.items():
+            np.testing.assert_array_equal(back.attrs[key], value)
+        for key, variable in dataset.variables.items():
+            assert back[key].attrs == variable.attrs
+
+
+def test_netcdf_contains_follow_up_analyses() -> None:
+    frame = compute_map(SPECS["a window"])
+    analyses = MapAnalyses(trust=compute_trust(frame), origins=compute_origin_fates(frame.spec))
+    with xr.open_dataset(BytesIO(netcdf_bytes(frame, analyses)), engine="h5netcdf") as back:
+        np.testing.assert_array_equal(back["trust"], analyses.trust.trust)
+        np.testing.assert_array_equal(back["origin"], analyses.origins.origin)
+        assert "character" not in back
+        assert "3: doubtful" in back["trust"].attrs["codes"]
+
+
+def table(text: str) -> tuple[list[str], list[dict[str, str]]]:
+    lines = text.splitlines()
+    comments = [line for line in lines if line.startswith("#")]
+    return comments, list(csv.DictReader(lines[len(comments) :]))
+
+
+def test_a_table_of_orbits_contains_them_bit_for_bit(orbit: Orbit) -> None:
+    other = integrate_orbit(CASES["III"], (0.1, 0.0, 0.05, 0.9), 50.0)
+    comments, rows = table(orbits_csv([orbit, other]))
+    for number, one in enumerate((orbit, other), 1):
+        own = [row for row in rows if row["orbit"] == str(number)]
+        for column in ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2"):
+            np.testing.assert_array_equal([float(row[column]) for row in own], getattr(one, column))
+        assert f"# orbit {number}: {judge_orbit(one).describe()}" in comments
+        assert f"# orbit {number}: energy {one.energy!r}" in comments
+    assert "# orbit 1: start x = 0.1, y = 0.0, px = 0.05, py = 0.6" in comments
+
+
+def test_a_long_orbit_is_thinned_evenly_with_a_note(orbit: Orbit) -> None:
+    comments, rows = table(orbits_csv([orbit, orbit], most_rows=100))
+    assert 50 < len(rows) <= 100
+    times = np.array([float(row["t"]) for row in rows if row["orbit"] == "2"])
+    assert times[0] == 0.0
+    np.testing.assert_allclose(np.diff(times), times[1], rtol=1e-9)
+    stride = int(np.flatnonzero(orbit.t == times[1])[0])
+    assert f"# orbit 2: one in {stride} of {orbit.t.size} samples" in comments
+
+
+def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
+    measures = ("shares", "basin_entropy")
+    curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), (20, 20), t_max=100.0, measures=measures))
+    comments, rows = table(curves_csv(curves))
+    assert "# t_max: 100.0" in comments
+    assert [float(row["h"]) for row in rows] == [0.13, 0.2]
+    np.testing.assert_array_equal([float(row["share_channel_2"]) for row in rows], curves["share"][:, 2])
+    np.testing.assert_array_equal([float(row["s_b"]) for row in rows], curves["s_b"])
+
+
+@pytest.mark.parametrize("name", ["energies", "a deep zoom", "NumPy's numbers"])
+def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    spec = SPECS[name]
+    made: dict[str, Any] = {}
+    drawn: list[int] = []
+    pyplot.close("all")
+    monkeypatch.setattr(pyplot, "show", lambda: drawn.extend(pyplot.get_fignums()))
+    exec(python_lines(spec, System("II"), [START, (np.float64(1 / 3), 0.0, 0.0, 0.3)]), made)
+    assert made["spec"] == replace(spec, window=spec.find_window())
+    whole = compute_map(spec)
+    for image in ("fate", "escape_time", "crossings", "x", "ordinate"):
+        np.testing.assert_array_equal(getattr(made["escape_map"], image), getattr(whole, image))
+    for one, start in zip(made["orbits"], (START, (1 / 3, 0.0, 0.0, 0.3)), strict=True):
+        expected = integrate_orbit(CASES["II"], start, spec.t_max)
+        assert one.fate == expected.fate
+        np.testing.assert_array_equal(one.x, expected.x)
+    # One figure of the map, one of each orbit.
+    assert len(drawn) == 3
+    pyplot.close("all")
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        System("C5"),
+        System("III", parameters={"omega_1": 1.1}),
+        System(TYPED, "x²/2 + y²/2 − x²y", {"omega_2": 0.9}),
+    ],
+)
+def test_the_script_reproduces_the_potential(system: System) -> None:
+    head = python_lines(SPECS["a window"], system).split("spec = ")[0]
+    made: dict[str, Any] = {}
+    exec(head, made)
+    assert made["potential"] == system.potential
+
+
+@pytest.mark.parametrize(
+    ("name", "stem"),
+    [
+        ("a window", "escapes-II-x_px-h0.18-t200--1.0_1.4--0.8_0.8"),
+        ("the whole interior", "escapes-II-x_y-h0.30000000000000004-t100"),
+        ("energies", "escapes-II-x_h-h0.16666666666666666-0.4-t100"),
+    ],
+)
+def test_files_are_named_after_case_plane_energy_duration_and_window(name: str, stem: str) -> None:
+    assert file_stem(SPECS[name], "II") == stem
