@@ -52,12 +52,10 @@ def import_page() -> None:
     os.environ["ESCAPE_EXPLORER_THREADS"] = "0"
     import app.app_hooks
     import app.session.page  # noqa: F401
-    from app.runtime.process_state import start_process_state
-    from app.runtime.settings import Settings
+    from app.runtime import process_state
 
     list_imported("app.session.explorer", "matplotlib.figure")
-    # Nobody has started it.
-    start_process_state(Settings())
+    assert process_state._started is None
 
 
 def serve_with_an_invalid_setting() -> None:

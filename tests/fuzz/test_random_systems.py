@@ -76,7 +76,7 @@ def test_exits_found_by_continuation_or_from_both_ends(seed: int, factor: float)
 def test_exits_of_several_channels(seed: int) -> None:
     potential = random_well(seed, HIGHEST_DEGREE)
     energy = random_energies(potential, seed)[-1]
-    assert potential.merged_exits(energy)
+    assert potential.well.merged_exits(energy)
     assert not compare_with_heyoka(potential, energy, seed).wrong
 
 

@@ -177,11 +177,12 @@ def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_m
     assert len(jobs.listeners) == 3
 
 
-@pytest.mark.usefixtures("compiled")
 def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits_first() -> None:
     state, recorder, jobs, session = ViewState(), Recorder(), ManualJobs(), LatestCalls()
     requests = MapRequests(state, jobs, recorder, session.locked)
-    state.show_system(review_system(System(TYPED, "½(x² + y²) − a x²y + y³/3")))
+    reviewed = review_system(System(TYPED, "½(x² + y²) − a x²y + y³/3"))
+    prepare_for_maps(reviewed.potential)
+    state.show_system(reviewed)
     state.plane = read_slice("x,a=0.5:1.5", "", state.system)
     assert jobs.jobs[-1].queue is Queue.LIMITED
     requested = len(jobs.jobs)

@@ -44,7 +44,7 @@ def arrays_of(result: Any) -> Iterator[np.ndarray]:
     elif isinstance(result, tuple):
         for part in result:
             yield from arrays_of(part)
-    elif is_dataclass(result):
+    elif is_dataclass(result) and not isinstance(result, type):
         for field in fields(result):
             if field.name != "batch":
                 yield from arrays_of(getattr(result, field.name))

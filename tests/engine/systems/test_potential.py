@@ -58,8 +58,8 @@ def test_saddles_are_ordered_counterclockwise_and_open_above_the_escape_energy(n
     potential, escape_energy = CASES[name], ESCAPE_ENERGY[name]
     np.testing.assert_allclose(potential.saddles, SADDLES[name], atol=1e-13)
     assert potential.escape_energy == pytest.approx(escape_energy, rel=1e-14)
-    assert potential.open_channels(escape_energy + 1e-9) == tuple(range(1, potential.channels + 1))
-    assert potential.open_channels(escape_energy) == ()
+    assert potential.well.open_channels(escape_energy + 1e-9) == tuple(range(1, potential.channels + 1))
+    assert potential.well.open_channels(escape_energy) == ()
 
 
 def test_saddles_of_different_energies_open_separately() -> None:

@@ -10,6 +10,7 @@ from bokeh.models import HoverTool
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.curves import CurvesView
 from app.views.analysis.statistics import StatisticsView
+from plots.pictures.sweep_panels import CURVE_PANELS
 
 
 @pytest.fixture(scope="module")
@@ -20,11 +21,16 @@ def chart_hovers() -> list[HoverTool]:
     statistics.build()
     curves = CurvesView(lambda: None, lambda energy: None)
     plots = [statistics._times.state, statistics._probabilities.state, measures._draw_survival(), measures._draw_uncertainty()]
-    return [tool for plot in (*plots, *curves._draw().values()) for tool in plot.tools if isinstance(tool, HoverTool)]
+    return [
+        tool
+        for plot in (*plots, curves._draw_shares(), *map(curves._draw_panel, CURVE_PANELS))
+        for tool in plot.tools
+        if isinstance(tool, HoverTool)
+    ]
 
 
 def test_every_chart_has_a_hover(chart_hovers: list[HoverTool]) -> None:
-    # Two charts of statistics, two of measures, the shares, and seven curves.
+    # Two charts of statistics, two of measures, the shares, and all curves of the other panels.
     assert len(chart_hovers) == 14
 
 
