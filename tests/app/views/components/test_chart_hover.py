@@ -21,12 +21,8 @@ def chart_hovers() -> list[HoverTool]:
     statistics.build()
     curves = CurvesView(lambda: None, lambda energy: None)
     plots = [statistics._times.state, statistics._probabilities.state, measures._draw_survival(), measures._draw_uncertainty()]
-    return [
-        tool
-        for plot in (*plots, curves._draw_shares(), *map(curves._draw_panel, CURVE_PANELS))
-        for tool in plot.tools
-        if isinstance(tool, HoverTool)
-    ]
+    plots += [curves._draw_shares(), *map(curves._draw_panel, CURVE_PANELS)]
+    return [tool for plot in plots for tool in plot.tools if isinstance(tool, HoverTool)]
 
 
 def test_every_chart_has_a_hover(chart_hovers: list[HoverTool]) -> None:
