@@ -17,7 +17,7 @@ from engine.integrator.jit.compiled_operations import charged_to
 from engine.jobs.cache import ABSENT, ResultCache
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_priority import MapPriority
-from engine.jobs.orbit_semaphore import OrbitSemaphore
+from engine.jobs.orbit_semaphore import SMALL_JOB, OrbitSemaphore
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
@@ -62,18 +62,23 @@ class _Run:
         subscriptions, self.subscriptions, self.executors, self.latest = self.subscriptions, [], {}, None
         return subscriptions
 
+    @property
+    def measured(self) -> MapPriority | None:
+        """Of a map whose wait is measured; None for large maps, which wait for each other on idle machines, too."""
+        return self.map_priority if self.job.orbits_held <= SMALL_JOB else None
+
     def waited(self) -> float:
         """Seconds that a map without a frame has waited, apart from what was computed for it; call on the coordinating thread."""
-        if self.map_priority is None or self.map_priority() is not Priority.FIRST_FRAME or self.begun is None:
+        if self.measured is None or self.measured() is not Priority.FIRST_FRAME or self.begun is None:
             return 0.0
         calls = self.executors[Queue.FIRST_FRAME].computed if self.executors else 0.0
-        return max(0.0, self.map_priority.seconds() - calls - (time.thread_time() - self.begun))
+        return max(0.0, self.measured.seconds() - calls - (time.thread_time() - self.begun))
 
     def waiting(self) -> float:
         """Seconds that a map has waited for its first call to begin."""
-        if self.map_priority is None or any(executor.has_begun for executor in self.executors.values()):
+        if self.measured is None or any(executor.has_begun for executor in self.executors.values()):
             return 0.0
-        return self.map_priority.seconds()
+        return self.measured.seconds()
 
     def priority(self) -> Priority:
         """Of the short calls."""
@@ -190,7 +195,7 @@ class Jobs:
 
         It counts from the request, apart from the processor time of the map itself: a visitor with costly maps makes nobody wait,
         but whoever keeps the threads, the interpreter or the processors busy does, also another program. Maps none of whose calls
-        has begun count, too.
+        has begun count, too; large maps do not, as they wait until others release their memory.
         """
         with self._lock:
             waiting = [run.waiting() for run in self._in_flight.values()]

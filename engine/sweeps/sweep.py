@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_curves
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
@@ -174,7 +174,8 @@ def compute_sweep(
     """
     if spec.along is None:
         for energy in (spec.values[0], spec.values[-1]):
-            exit_curves(spec.potential, energy)
+            # Undefined exits are an error before anything is computed.
+            find_lyapunov_orbits(spec.potential, energy)
     run = partial(_measure_all, spec, on_frame=on_frame, measure=measure, execution=execution)
     if store is None:
         return run(_InMemory(spec, earlier), _coarse_to_fine(list(spec.values)))

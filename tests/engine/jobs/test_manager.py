@@ -30,6 +30,7 @@ from engine.jobs import map_priority, scheduler
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.map_jobs import map_job, regularity_job
+from engine.jobs.orbit_semaphore import SMALL_JOB
 from tests.app.clock import Clock
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
 
@@ -288,6 +289,19 @@ def test_maps_that_wait_for_a_thread_count(clock: Clock) -> None:
     end.set()
     assert inbox.done.wait(30)
     assert jobs.take_first_frame_wait() == 4.0
+
+
+def test_large_maps_that_wait_for_each_other_do_not_count(clock: Clock) -> None:
+    jobs, begun, end, inbox = Jobs(threads=1, most_orbits=2 * SMALL_JOB), threading.Event(), threading.Event(), Inbox()
+    jobs.request(Job(wait_for, (begun, end), orbits=2 * SMALL_JOB), Inbox().result, Inbox().error)
+    assert begun.wait(30)
+    jobs.request(Job(show_a_frame, (clock, 3), queue=Queue.FIRST_FRAME, orbits=2 * SMALL_JOB), inbox.result, inbox.error)
+    clock.now += 3.0
+    waiting = jobs.take_first_frame_wait()
+    end.set()
+    assert inbox.done.wait(30)
+    wait_until_idle(jobs)
+    assert (waiting, jobs.take_first_frame_wait()) == (0.0, 0.0)
 
 
 def test_finished_job_leaves_no_reference_cycles() -> None:
