@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,10 @@ from engine.systems.well_units import TIME
 if TYPE_CHECKING:
     import xarray as xr
 
-PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
+PixelArrays = Mapping[str, tuple[type, float]]
+"""Names of arrays with a value for each pixel, with their data types and the values of pixels not computed."""
+
+PIXEL_ARRAYS: PixelArrays = {
     "fate": (np.int8, Fate.NOT_COMPUTED),
     "escape_time": (np.float64, np.nan),
     "crossings": (np.int32, 0),
@@ -31,7 +34,12 @@ PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
     "outside": (np.int8, 0),
     "started": (np.bool_, False),
 }
-"""Names of the (rows, columns) arrays of a map, with their data types and the values of pixels not computed yet."""
+"""The (rows, columns) arrays of a map."""
+
+
+def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
+    """Arrays without any computed pixels, by name."""
+    return {name: np.full(shape, value, dtype) for name, (dtype, value) in names.items()}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
