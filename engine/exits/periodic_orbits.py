@@ -85,8 +85,8 @@ class _Parts(NamedTuple):
 def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: int) -> PeriodicOrbit | None:
     """The orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
 
-    In a frame at rest it is the orbit that `brake_orbits` finds up to rounding errors, about 1e-9. The exits there are made from
-    that one, which is at rest at its ends exactly; an orbit over several saddles does not begin with small oscillations.
+    In a frame at rest it is the orbit that `brake_orbits` finds, up to rounding errors. Exits there are made from that one, which
+    is at rest at its ends exactly; an orbit over several saddles does not begin with small oscillations.
 
     Parameters
     ----------

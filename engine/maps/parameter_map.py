@@ -17,7 +17,7 @@ import numpy as np
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import SERIAL_EXECUTION, Execution, count_cores
 from engine.maps.pixels import PixelAnalysis
-from engine.maps.result import PIXEL_ARRAYS, EscapeMap, empty_arrays, representative_indices
+from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays, representative_indices
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, Staged, run_stages, run_to_frame
@@ -127,7 +127,6 @@ class LineStack:
 
     def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, *, keeps_states: bool = True) -> None:
         self.spec, self._keeps_states = spec, keeps_states
-        self.x, self.ordinate = spec.pixel_centres()
         self._lines = find_lines(spec)
         self._found: dict[int, EscapeMap] = {}
         self._stride, self._horizon = _STRIDES[0], 0.0
@@ -199,12 +198,9 @@ class LineStack:
 
     def frame(self) -> EscapeMap:
         """The map so far."""
-        arrays: dict[str, Any] = {name: read_only(array.copy()) for name, array in self._arrays.items()}
-        complete = bool(self._arrays["started"].all() and not np.any(self._arrays["fate"] == Fate.NOT_COMPUTED))
-        return EscapeMap(
-            spec=self.spec, x=read_only(self.x), ordinate=read_only(self.ordinate), stride=self._stride, horizon=self._horizon,
-            progress=self.progress(), complete=complete, **arrays,
-        )  # fmt: skip
+        arrays = {name: array.copy() for name, array in self._arrays.items()}
+        stage = {"stride": self._stride, "horizon": self._horizon, "progress": self.progress()}
+        return collect_map(self.spec, self.spec.pixel_centres(), arrays, **stage)
 
     def result(self) -> EscapeMap:
         """The map so far, with the integration state for a later `resume`."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from engine.foundations.arrays import read_only
 from engine.foundations.codes import describe_codes
 from engine.foundations.result import MapResult
 from engine.foundations.validation import checked_flag
@@ -223,6 +224,16 @@ class EscapeMap(MapResult):
             "complete": int(self.complete),
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
         }
+
+
+def collect_map(
+    spec: MapSpec, centres: tuple[np.ndarray, np.ndarray], arrays: Mapping[str, np.ndarray], **stage: Any
+) -> EscapeMap:
+    """A map with read-only views of `PIXEL_ARRAYS`; `stage` is its `stride`, `horizon` and `progress`."""
+    x, ordinate = centres
+    complete = bool(arrays["started"].all() and not np.any(arrays["fate"] == Fate.NOT_COMPUTED))
+    pixels: dict[str, Any] = {name: read_only(array.reshape(ordinate.size, x.size)) for name, array in arrays.items()}
+    return EscapeMap(spec=spec, x=read_only(x), ordinate=read_only(ordinate), complete=complete, **pixels, **stage)
 
 
 def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, float]:

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import Execution
-from engine.maps.result import PIXEL_ARRAYS, EscapeMap, empty_arrays
+from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, run_stages
-from engine.propagation.fates import Fate
 
 
 def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
@@ -80,12 +77,8 @@ class BlockStack:
 
     def frame(self) -> EscapeMap:
         """The map so far, with views of the arrays; copies would need too much memory."""
-        x, ordinate = self.spec.pixel_centres()
-        arrays: dict[str, Any] = {name: read_only(array.view()) for name, array in self._arrays.items()}
-        complete = not np.any(self._arrays["fate"] == Fate.NOT_COMPUTED)
-        return EscapeMap(
-            self.spec, x, ordinate, stride=1, horizon=self._horizon, progress=self.progress(), complete=complete, **arrays
-        )
+        stage = {"stride": 1, "horizon": self._horizon, "progress": self.progress()}
+        return collect_map(self.spec, self.spec.pixel_centres(), self._arrays, **stage)
 
     def result(self) -> EscapeMap:
         """The map so far; it has no integration state."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from engine.evidence.boundedness_certifier import BoundednessCertifier
 from engine.exits.exit_rows import closed_exits, exit_curves
-from engine.foundations.arrays import read_only
 from engine.foundations.execution import Execution, run_parts
 from engine.maps.pixels import MirrorPixels
-from engine.maps.result import EscapeMap, find_interior, representative_indices
+from engine.maps.result import EscapeMap, collect_map, find_interior, representative_indices
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage
 from engine.propagation.batch import OrbitBatch, propagate_batch
@@ -221,15 +219,11 @@ class MapRun:
     def frame(self) -> EscapeMap:
         """The map so far."""
         outcomes = self._outcomes()
-        complete = bool(self._started.all() and not np.any(outcomes.fate == Fate.NOT_COMPUTED))
         arrays = {name: getattr(outcomes, name) for name in ("fate", "escape_time", "crossings", "energy_error")}
         arrays |= {"certificate": self._batch.certificates()}
         arrays |= {"outside": self._batch.outside.copy(), "started": self._started.copy()}
-        pixel_arrays: dict[str, Any] = {name: read_only(array.reshape(self.shape)) for name, array in arrays.items()}
-        return EscapeMap(
-            spec=self.spec, x=read_only(self.x), ordinate=read_only(self.ordinate),
-            stride=self.stride, horizon=self.horizon, progress=self.progress(), complete=complete, **pixel_arrays,
-        )  # fmt: skip
+        stage = {"stride": self.stride, "horizon": self.horizon, "progress": self.progress()}
+        return collect_map(self.spec, (self.x, self.ordinate), arrays, **stage)
 
     def _outcomes(self) -> Outcomes:
         """Outcomes of all pixels, (n,) arrays; second mirror images are copied from the first."""
