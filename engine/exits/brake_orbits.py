@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.exits.root_finding import find_root
+from engine.foundations.root_finding import find_root
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
 from engine.systems.compiled import kernels_of

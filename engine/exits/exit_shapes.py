@@ -6,6 +6,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.exits.brake_orbits import Axes, saddle_axes
+from engine.foundations.root_finding import bisect
 from engine.integrator.kernels import events
 from engine.systems.outcomes import Centre
 from engine.systems.potential import Potential
@@ -151,10 +152,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
     with np.errstate(all="ignore"):
         first = np.argmax(is_beyond(q), axis=-1)[..., None]
         low, high = np.take_along_axis(q, np.maximum(first - 1, 0), -1), np.take_along_axis(q, first, -1)
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * (low + high)
-            beyond = is_beyond(middle)
-            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+        low, high = bisect(is_beyond, low, high, _BISECTIONS)
     walls: np.ndarray = np.where(first > 0, 0.5 * (low + high), np.nan)[..., 0]
     return walls
 

@@ -23,7 +23,7 @@ from engine.exits.brake_orbits import (
 )
 from engine.exits.exit_shapes import curve_along, find_reach, line_across, line_points, mirrored_curve
 from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_returns
-from engine.exits.periodic_orbits import find_periodic_orbit, monodromy_matrix, multipliers_of
+from engine.exits.periodic_orbits import find_orbit_in_rotating_frame, monodromy_matrix, multipliers_of
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.foundations.validation import checked_number, checks_types, warn_of_method
@@ -344,7 +344,7 @@ def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
 
 def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
     """The orbit over a saddle in a rotating frame, and the line that touches it on the outer side."""
-    orbit = find_periodic_orbit(potential, energy, channel)
+    orbit = find_orbit_in_rotating_frame(potential, energy, channel)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
     curve = line_across(potential, energy, channel, orbit.edge)

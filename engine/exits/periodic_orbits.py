@@ -1,4 +1,4 @@
-"""Periodic orbits over a saddle of a potential in any frame, rotating or not, found by Newton's method and continuation.
+"""Periodic orbits over a saddle in a rotating frame, found by Newton's method and continuation.
 
 The motion linearised at a saddle of Φ has a pair of eigenvalues ±iν: small oscillations of period 2π/ν around the saddle, its
 centre direction. By Lyapunov's centre theorem a family of periodic orbits begins with them. With σ = √(h − E), E the energy of
@@ -82,13 +82,16 @@ class _Parts(NamedTuple):
     matrices: np.ndarray
 
 
-def find_periodic_orbit(potential: Potential, energy: float, channel: int) -> PeriodicOrbit | None:
+def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: int) -> PeriodicOrbit | None:
     """The orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
+
+    In a frame at rest it is the orbit that `brake_orbits` finds, up to rounding errors. Exits there are made from that one, which
+    is at rest at its ends exactly; an orbit over several saddles does not begin with small oscillations.
 
     Parameters
     ----------
     potential
-        The potential in units of its well, in any frame.
+        The potential in units of its well; tests compare orbits in a frame at rest, too.
     energy
         h, above the energy of the saddle, dimensionless.
     channel

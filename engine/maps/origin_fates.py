@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import ClassVar
 
 import numpy as np
 
-from engine.foundations.codes import describe_codes
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.validation import checks_types
 from engine.maps.compute import run_map
@@ -18,8 +18,8 @@ from engine.maps.spec import MapSpec
 from engine.propagation.fates import Fate
 from engine.systems.outcomes import OutcomeKind
 
-if TYPE_CHECKING:
-    import xarray as xr
+# What orbits do at the outcomes of each array.
+_VERBS = {"origin": "entered", "fate": "leaves"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,6 +41,12 @@ class OriginFateMap(PixelAnalysis):
     ordinate: np.ndarray
     origin: np.ndarray
     fate: np.ndarray
+    codes: ClassVar = {"origin": Fate, "fate": Fate}
+
+    @property
+    def fate_labels(self) -> Sequence[str]:
+        """Labels of the outcomes from 1 on."""
+        return [outcome.label for outcome in self.spec.outcomes]
 
     def count_passages(self) -> np.ndarray:
         """(outcomes + 1, outcomes + 1) int64: number of starts by origin (row) and fate (column); 0 is bounded, k outcome k."""
@@ -61,20 +67,8 @@ class OriginFateMap(PixelAnalysis):
             f"{counts[0, 0] / total:.1%} are bounded in both time directions, the rest in one."
         )
 
-    def to_xarray(self) -> xr.Dataset:
-        """The map as a dataset with named axes and provenance, which can be written as NetCDF."""
-        # Slow to import, and seldom used.
-        import xarray as xr
-
-        abscissa, ordinate = self.spec.plane.axis_names
-        dims = (ordinate, abscissa)
-        fates = describe_codes(Fate, [outcome.label for outcome in self.spec.outcomes])
-        variables: dict[str, Any] = {
-            name: (dims, codes, {"long_name": f"channel the orbit {verb} by (k >= 1) or outcome code", **fates})
-            for name, verb, codes in (("origin", "entered", self.origin), ("fate", "leaves", self.fate))
-        }
-        coordinates = {ordinate: self.ordinate, abscissa: self.x}
-        return xr.Dataset(variables, coordinates, {"result": "OriginFateMap", **self.spec.provenance()})
+    def _meaning(self, name: str, values: np.ndarray) -> dict[str, str]:
+        return {"long_name": f"channel the orbit {_VERBS[name]} by (k >= 1) or outcome code", **super()._meaning(name, values)}
 
 
 @checks_types(spec=MapSpec, execution=Execution)

@@ -6,21 +6,21 @@ whole map is computed line by line.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, fields, replace
 from functools import partial
-from operator import truediv
 from typing import Any
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import SERIAL_EXECUTION, Execution, count_cores
-from engine.maps.result import PIXEL_ARRAYS, EscapeMap, representative_indices
+from engine.maps.pixels import PixelAnalysis
+from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays, representative_indices
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
+from engine.maps.stages import OnChange, Stage, Staged, run_stages, run_to_frame
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.certificates import Certificate
 from engine.propagation.fates import Fate
@@ -36,14 +36,12 @@ _FIRST_HORIZON = 1000.0
 _STRIDES = (8, 4, 2, 1)
 # The arrays whose positive codes are numbers of outcomes.
 _NUMBERED = ("fate", "outside")
-# Pause between frames of an analysis, in seconds.
-_PAUSE = 0.5
 
 Place = tuple[Any, Any]
 """The index of a line in the arrays of a map."""
 
-Analyse = Callable[[Place, EscapeMap, Execution], Any]
-"""An analysis of a line of a map, given with its place."""
+ALL_PIXELS: Place = np.s_[:, :]
+"""The place of a map that is not divided into lines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,14 +127,10 @@ class LineStack:
 
     def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, *, keeps_states: bool = True) -> None:
         self.spec, self._keeps_states = spec, keeps_states
-        self.x, self.ordinate = spec.pixel_centres()
         self._lines = find_lines(spec)
         self._found: dict[int, EscapeMap] = {}
         self._stride, self._horizon = _STRIDES[0], 0.0
-        shape = self.ordinate.size, self.x.size
-        self._arrays: dict[str, np.ndarray] = {
-            name: np.full(shape, value, dtype) for name, (dtype, value) in PIXEL_ARRAYS.items()
-        }
+        self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
         for k, line in enumerate(self._lines):
             if line is None:
                 # There is no system of this value.
@@ -149,20 +143,16 @@ class LineStack:
     def _existing(self) -> list[tuple[int, Line]]:
         return [(k, line) for k, line in enumerate(self._lines) if line is not None]
 
-    def run(self, execution: Execution, on_change: Callable[[bool], None]) -> None:
-        """Compute all lines; `on_change(stage_over)` is called after each."""
+    def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
+        """See `Staged`: a stage integrates the orbits of some lines to a horizon."""
         first, last = _FIRST_HORIZON * self.spec.potential.units.time, self.spec.t_max
         is_divided = first < last and self._keeps_states and not self._found
         for horizon in (first, last) if is_divided else (last,):
-            for stride, lines in self._stages():
-                self._advance(lines, horizon, execution, on_change)
-                if execution.is_cancelled:
-                    return
-                self._stride = min(self._stride, stride)
-                on_change(True)
+            for stride, lines in self._refinements():
+                yield partial(self._advance, stride, lines, horizon, execution, on_change)
             self._horizon = horizon
 
-    def _stages(self) -> Iterator[tuple[int, list[int]]]:
+    def _refinements(self) -> Iterator[tuple[int, list[int]]]:
         """(stride, lines): coarse to fine, each line once."""
         seen: set[int] = set()
         existing = dict(self._existing)
@@ -171,26 +161,21 @@ class LineStack:
             seen |= set(chosen)
             yield stride, [k for k in chosen if k in existing]
 
-    def _advance(self, lines: list[int], horizon: float, execution: Execution, on_change: Callable[[bool], None]) -> None:
+    def _advance(self, stride: int, lines: list[int], horizon: float, execution: Execution, on_change: OnChange) -> None:
         """Integrate the orbits of some lines up to a time."""
         waiting = [k for k in lines if _continues(self._found.get(k))]
         arguments = [(self._lines[k], horizon, self._found.get(k)) for k in waiting]
-        if horizon <= _FIRST_HORIZON * self.spec.potential.units.time:
-            running = {execution.submit(_compute_line, *each): k for k, each in zip(waiting, arguments, strict=True)}
-            self._collect(running, execution, on_change)
-            return
-        alone = replace(execution, on_progress=None)
         with _coordinating_threads() as threads:
-            running = {threads.submit(_compute_line, *each, alone): k for k, each in zip(waiting, arguments, strict=True)}
-            self._collect(running, execution, on_change)
-
-    def _collect(self, running: dict[Future[EscapeMap], int], execution: Execution, on_change: Callable[[bool], None]) -> None:
-        """Take over lines as they are finished; those that are dropped when the computation is cancelled stay as they are."""
-        for future in as_completed(running):
-            found = execution.collect(future)
-            if found is not None:
-                self._put(running[future], found)
+            if horizon <= _FIRST_HORIZON * self.spec.potential.units.time:
+                futures = [execution.submit(_compute_line, *each) for each in arguments]
+            else:
+                alone = replace(execution, on_progress=None)
+                futures = [threads.submit(_compute_line, *each, alone) for each in arguments]
+            for k, found in _as_finished(dict(zip(futures, waiting, strict=True)), execution):
+                self._put(k, found)
                 on_change(False)
+        if not execution.is_cancelled:
+            self._stride = min(self._stride, stride)
 
     def _put(self, k: int, found: EscapeMap) -> None:
         line = self._lines[k]
@@ -213,12 +198,9 @@ class LineStack:
 
     def frame(self) -> EscapeMap:
         """The map so far."""
-        arrays: dict[str, Any] = {name: read_only(array.copy()) for name, array in self._arrays.items()}
-        complete = bool(self._arrays["started"].all() and not np.any(self._arrays["fate"] == Fate.NOT_COMPUTED))
-        return EscapeMap(
-            spec=self.spec, x=read_only(self.x), ordinate=read_only(self.ordinate), stride=self._stride, horizon=self._horizon,
-            progress=self.progress(), complete=complete, **arrays,
-        )  # fmt: skip
+        arrays = {name: array.copy() for name, array in self._arrays.items()}
+        stage = {"stride": self._stride, "horizon": self._horizon, "progress": self.progress()}
+        return collect_map(self.spec, self.spec.pixel_centres(), arrays, **stage)
 
     def result(self) -> EscapeMap:
         """The map so far, with the integration state for a later `resume`."""
@@ -236,50 +218,82 @@ class LineStack:
         return replace(frame, batch=joined.take(np.argsort(np.concatenate(pixels))))
 
 
-def analyse_lines[Result](
+def analyse_map[Analysis: PixelAnalysis](
     escape_map: EscapeMap,
-    analyse: Analyse,
-    result: Callable[..., Result],
-    arrays: dict[str, np.ndarray],
-    on_frame: Callable[[Result], None] | None,
+    begin: Callable[[EscapeMap, Place], Staged[Analysis]],
+    kind: type[Analysis],
+    on_frame: Callable[[Analysis], None] | None,
     execution: Execution,
-) -> Result:
-    """Analyse a complete map along a parameter line by line.
+) -> Analysis:
+    """Analyse a complete map; one along a parameter line by line.
 
     Parameters
     ----------
     escape_map
         The map.
-    analyse
-        Returns the analysis of a line, with its attribute `complete`.
-    result
-        Returns the analysis of a map, from its request, its arrays and whether it is complete.
-    arrays
-        (rows, columns) the values of pixels that are on no line, by the attribute of an analysis that has those of its pixels, in
-        the order in which `result` takes them; changed in place.
+    begin
+        Returns what computes the analysis of a map of one potential, or of a line, which is given with its place.
+    kind
+        What the analysis is.
     on_frame
-        Called with the analysis so far, now and then.
+        Called with the analysis so far, see `run_stages`, and with the complete one.
     execution
         How the computation runs.
 
     Returns
     -------
-    The analysis of the map, complete when all lines are.
+    The analysis of the map, complete when all its lines are.
     """
-    lines = [line for line in find_lines(escape_map.spec) if line is not None]
-    alone, complete, published = replace(execution, on_progress=None), True, time.monotonic()
-    with _coordinating_threads() as threads:
-        running = {threads.submit(analyse, line.place, line.of(escape_map), alone): line for line in lines}
-        for done, future in enumerate(as_completed(running), start=1):
-            found = future.result()
-            for name, values in arrays.items():
-                values[running[future].place] = getattr(found, name)
-            complete = complete and found.complete
-            execution.report(partial(truediv, done, len(lines)))
-            if on_frame is not None and time.monotonic() - published > _PAUSE:
-                on_frame(result(escape_map.spec, *(read_only(values.copy()) for values in arrays.values()), False))
-                published = time.monotonic()
-    return result(escape_map.spec, *map(read_only, arrays.values()), complete)
+    if escape_map.spec.plane.parameter is None:
+        return run_to_frame(begin(escape_map, ALL_PIXELS), execution, on_frame)
+    return run_to_frame(_LineAnalyses(escape_map, begin, kind), execution, on_frame)
+
+
+class _LineAnalyses[Analysis: PixelAnalysis]:
+    """The analyses of the lines of a map, which are computed at once; see `analyse_map`."""
+
+    def __init__(
+        self, escape_map: EscapeMap, begin: Callable[[EscapeMap, Place], Staged[Analysis]], kind: type[Analysis]
+    ) -> None:
+        self._map, self._begin, self._kind = escape_map, begin, kind
+        self._arrays = empty_arrays(kind.pixel_arrays, escape_map.fate.shape)
+        self._lines = [line for line in find_lines(escape_map.spec) if line is not None]
+        self._finished, self._complete = 0, True
+
+    def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
+        """See `Staged`: all lines are one stage."""
+        yield partial(self._analyse, execution, on_change)
+
+    def _analyse(self, execution: Execution, on_change: OnChange) -> None:
+        alone = replace(execution, on_progress=None)
+        with _coordinating_threads() as threads:
+            running = {threads.submit(self._analyse_line, line, alone): line for line in self._lines}
+            for line, found in _as_finished(running, execution):
+                for name, values in self._arrays.items():
+                    values[line.place] = getattr(found, name)
+                self._finished += 1
+                self._complete = self._complete and found.complete
+                on_change(True)
+
+    def _analyse_line(self, line: Line, execution: Execution) -> Analysis:
+        return run_to_frame(self._begin(line.of(self._map), line.place), execution)
+
+    def progress(self) -> float:
+        """Share of the lines that are finished."""
+        return self._finished / max(len(self._lines), 1)
+
+    def frame(self) -> Analysis:
+        """The analysis so far."""
+        arrays: dict[str, Any] = {name: read_only(values.copy()) for name, values in self._arrays.items()}
+        return self._kind(spec=self._map.spec, complete=self._complete and self._finished == len(self._lines), **arrays)
+
+
+def _as_finished[Key, Found](running: dict[Future[Found], Key], execution: Execution) -> Iterator[tuple[Key, Found]]:
+    """What has been computed, one after another; without calls that are dropped when the computation is cancelled."""
+    for future in as_completed(running):
+        found = execution.collect(future)
+        if found is not None:
+            yield running[future], found
 
 
 def _coordinating_threads() -> ThreadPoolExecutor:
@@ -300,7 +314,7 @@ def _compute_line(
     spec = replace(line.spec, t_max=t_max)
     run = MapRun(spec.in_well_units(), None if earlier is None else earlier.in_well_units(), coarse_first=False)
     try:
-        run.run(execution)
+        run_stages(run, execution)
     except ValueError as error:
         held = next(axis for axis in spec.plane.axes if isinstance(axis, HeldParameter))
         raise ValueError(f"{held.key}={held.value:.6g}, {error}") from None

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.result import MapResult
-from engine.maps.result import EscapeMap
+from engine.maps.result import EscapeMap, PixelArrays
 from engine.maps.spec import MapSpec
 
 if TYPE_CHECKING:
@@ -24,9 +24,14 @@ class PixelAnalysis(MapResult):
     ----------
     spec
         The map's request.
+    complete
+        Whether every pixel is decided.
     """
 
     spec: MapSpec
+    complete: bool = field(default=True, kw_only=True)
+    pixel_arrays: ClassVar[PixelArrays] = {}
+    """The arrays with a value for each pixel, as `empty_arrays` takes them."""
 
     def to_xarray(self) -> xr.Dataset:
         """The values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
@@ -38,7 +43,7 @@ class PixelAnalysis(MapResult):
         images = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray) and value.ndim == 2}
         dims = (ordinate_name, abscissa_name)
         variables = {name: (dims, image, self._meaning(name, image)) for name, image in images.items()}
-        attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(getattr(self, "complete", True))}
+        attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(self.complete)}
         return xr.Dataset(variables, {ordinate_name: ordinate, abscissa_name: x}, attributes)
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
@@ -12,9 +12,10 @@ import numpy as np
 from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
-from engine.maps.parameter_map import Place, analyse_lines
+from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
+from engine.maps.stages import OnChange, Stage
 from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.certificates import Certificate
 from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
@@ -47,8 +48,8 @@ class RegularityMap(PixelAnalysis):
 
     character: np.ndarray
     sali: np.ndarray
-    complete: bool
     codes: ClassVar = {"character": Regularity}
+    pixel_arrays: ClassVar = {"character": (np.int8, Regularity.NOT_APPLICABLE), "sali": (np.float64, np.nan)}
 
     @property
     def chaotic_share(self) -> float:
@@ -100,38 +101,19 @@ def compute_regularity(
     escape_map = as_map("escape_map", escape_map)
     escape_map.check_complete("escape_map")
     escape_map.spec.potential.check_without_centres("regular and chaotic orbits of a map")
-    if escape_map.spec.plane.parameter is None:
-        return _judge_regularity(escape_map, on_frame, execution)
-
-    def judge_line(place: Place, line: EscapeMap, alone: Execution) -> RegularityMap:
-        return _judge_regularity(line, None, alone)
-
-    shape = escape_map.fate.shape
-    arrays = {"character": np.full(shape, Regularity.NOT_APPLICABLE, np.int8), "sali": np.full(shape, np.nan)}
-    return analyse_lines(escape_map, judge_line, RegularityMap, arrays, on_frame, execution)
+    return analyse_map(escape_map, _begin_classification, RegularityMap, on_frame, execution)
 
 
-def _judge_regularity(
-    escape_map: EscapeMap, on_frame: Callable[[RegularityMap], None] | None, execution: Execution
-) -> RegularityMap:
-    """Judge the orbits of a map of one potential, or of a line of a map along a parameter."""
-    given_spec = escape_map.spec
-    classification = _RegularityClassification(escape_map.in_well_units(), execution)
-    for step in classification.steps():
-        if execution.is_cancelled:
-            break
-        step()
-        if on_frame is not None:
-            on_frame(replace(classification.result(), spec=given_spec))
-        execution.report(classification.progress)
-    return replace(classification.result(), spec=given_spec)
+def _begin_classification(escape_map: EscapeMap, _place: Place) -> _RegularityClassification:
+    return _RegularityClassification(escape_map)
 
 
 class _RegularityClassification:
-    """The orbits not judged yet, with their deviation vectors, and the time they have reached, in units of the well."""
+    """The orbits of a map not judged yet, with their deviation vectors, and the time they have reached, in units of the well."""
 
-    def __init__(self, escape_map: EscapeMap, execution: Execution) -> None:
-        self._map, self._spec, self._execution = escape_map, escape_map.spec, execution
+    def __init__(self, given: EscapeMap) -> None:
+        self._given_spec, escape_map = given.spec, given.in_well_units()
+        self._map, self._spec = escape_map, escape_map.spec
         codes = np.where(escape_map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
         codes[escape_map.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
         self._codes = PixelCodes(escape_map, codes, Regularity.NOT_JUDGED)
@@ -140,38 +122,38 @@ class _RegularityClassification:
         self._orbits = attach_deviations(self._spec.start_states(*escape_map.coordinates(self._pixels)))
         self._time = 0.0
 
-    def steps(self) -> Iterator[Callable[[], None]]:
-        """The parts of the work, to be called in order."""
+    def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
+        """See `Staged`: a stage judges orbits by one criterion, once they are integrated as long as it needs."""
         for time, window in zip(_SALI_TIMES, WINDOWS, strict=False):
             if 2.0 * time > self._spec.t_max:
                 break
-            yield partial(self._find_chaotic, time)
-            yield partial(self._find_tori, window)
+            yield partial(self._find_chaotic, time, execution)
+            yield partial(self._find_tori, window, execution)
         while self._pixels.size and self._time < self._spec.t_max:
-            yield partial(self._find_chaotic, min(self._time + _INTERVAL, self._spec.t_max))
+            yield partial(self._find_chaotic, min(self._time + _INTERVAL, self._spec.t_max), execution)
         if self._spec.t_max >= MIN_REGULAR_TIME:
-            yield self._compare_halves
+            yield partial(self._compare_halves, execution)
         yield self._judge_rest
 
-    def _find_chaotic(self, time: float) -> None:
+    def _find_chaotic(self, time: float, execution: Execution) -> None:
         """Integrate the deviation vectors up to `time`, and judge orbits by their smallest SALI."""
         if not self._pixels.size:
             return
-        orbits = propagate_deviations(self._spec.potential, self._orbits, time - self._time, execution=self._execution)
-        if self._execution.is_cancelled:
+        orbits = propagate_deviations(self._spec.potential, self._orbits, time - self._time, execution=execution)
+        if execution.is_cancelled:
             return
         self._orbits, self._time = orbits, time
         self._judge(is_chaotic(orbits[:, -1]), Regularity.CHAOTIC)
 
-    def _find_tori(self, window: float) -> None:
+    def _find_tori(self, window: float, execution: Execution) -> None:
         """Judge quasi-periodic orbits as regular."""
-        digits = count_agreeing_digits(self._spec.potential, self._orbits[:, :4], window, execution=self._execution)
+        digits = count_agreeing_digits(self._spec.potential, self._orbits[:, :4], window, execution=execution)
         self._judge(digits >= CERTIFIED_DIGITS, Regularity.REGULAR)
 
-    def _compare_halves(self) -> None:
+    def _compare_halves(self, execution: Execution) -> None:
         """Judge orbits as regular whose averages agree over both halves, from the start to t_max."""
         starts = self._spec.start_states(*self._map.coordinates(self._pixels))
-        digits = count_agreeing_digits(self._spec.potential, starts, 0.5 * self._spec.t_max, execution=self._execution)
+        digits = count_agreeing_digits(self._spec.potential, starts, 0.5 * self._spec.t_max, execution=execution)
         self._judge(digits >= REGULAR_DIGITS, Regularity.REGULAR)
 
     def _judge_rest(self) -> None:
@@ -187,7 +169,8 @@ class _RegularityClassification:
         """Share of the orbits that are judged."""
         return 1.0 - self._pixels.size / max(self._codes.pixels.size, 1)
 
-    def result(self) -> RegularityMap:
+    def frame(self) -> RegularityMap:
         """The result so far."""
         codes, complete = self._codes.snapshot()
-        return RegularityMap(self._spec, codes, self._codes.mirrored(self._sali.reshape(codes.shape)), complete)
+        sali = self._codes.mirrored(self._sali.reshape(codes.shape))
+        return RegularityMap(self._given_spec, codes, sali, complete=complete)

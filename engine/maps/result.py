@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from engine.foundations.arrays import read_only
 from engine.foundations.codes import describe_codes
 from engine.foundations.result import MapResult
 from engine.foundations.validation import checked_flag
@@ -22,7 +23,10 @@ from engine.systems.well_units import TIME
 if TYPE_CHECKING:
     import xarray as xr
 
-PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
+PixelArrays = Mapping[str, tuple[type, float]]
+"""Names of arrays with a value for each pixel, with their data types and the values of pixels not computed."""
+
+PIXEL_ARRAYS: PixelArrays = {
     "fate": (np.int8, Fate.NOT_COMPUTED),
     "escape_time": (np.float64, np.nan),
     "crossings": (np.int32, 0),
@@ -31,7 +35,12 @@ PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
     "outside": (np.int8, 0),
     "started": (np.bool_, False),
 }
-"""Names of the (rows, columns) arrays of a map, with their data types and the values of pixels not computed yet."""
+"""The (rows, columns) arrays of a map."""
+
+
+def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
+    """Arrays without any computed pixels, by name."""
+    return {name: np.full(shape, value, dtype) for name, (dtype, value) in names.items()}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -215,6 +224,16 @@ class EscapeMap(MapResult):
             "complete": int(self.complete),
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
         }
+
+
+def collect_map(
+    spec: MapSpec, centres: tuple[np.ndarray, np.ndarray], arrays: Mapping[str, np.ndarray], **stage: Any
+) -> EscapeMap:
+    """A map with read-only views of `PIXEL_ARRAYS`; `stage` is its `stride`, `horizon` and `progress`."""
+    x, ordinate = centres
+    complete = bool(arrays["started"].all() and not np.any(arrays["fate"] == Fate.NOT_COMPUTED))
+    pixels: dict[str, Any] = {name: read_only(array.reshape(ordinate.size, x.size)) for name, array in arrays.items()}
+    return EscapeMap(spec=spec, x=read_only(x), ordinate=read_only(ordinate), complete=complete, **pixels, **stage)
 
 
 def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, float]:

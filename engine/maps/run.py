@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
+from functools import partial
 
 import numpy as np
 
 from engine.evidence.boundedness_certifier import BoundednessCertifier
 from engine.exits.exit_rows import closed_exits, exit_curves
-from engine.foundations.arrays import read_only
-from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
+from engine.foundations.execution import Execution, run_parts
 from engine.maps.pixels import MirrorPixels
-from engine.maps.result import EscapeMap, find_interior, representative_indices
+from engine.maps.result import EscapeMap, collect_map, find_interior, representative_indices
 from engine.maps.spec import MapSpec
+from engine.maps.stages import OnChange, Stage
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.certificates import Certificate
 from engine.propagation.classification import Outcomes, collect_outcomes
@@ -107,26 +107,16 @@ class MapRun:
         self._batch.put(continued, earlier.batch)
         self._batch.reopen(continued)
 
-    def run(
-        self,
-        execution: Execution = DEFAULT_EXECUTION,
-        on_change: Callable[[bool], None] = lambda stage_over: None,
-    ) -> None:
-        """Run all stages until done or cancelled; `on_change(stage_over)` is called whenever pixels may have changed."""
+    def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
+        """See `Staged`: a stage integrates orbits to a horizon, or tests those that are inside there."""
+        changed = partial(on_change, False)
         self._find_starts(execution)
-        for pixels, stride, horizon in self._stages():
+        for pixels, stride, horizon in self._targets():
             if certifies_tori(self.spec) and self.horizon >= CERTIFIED_FROM:
-                self._certify(self.horizon, execution, lambda: on_change(False))
-            if execution.is_cancelled:
-                break
-            self._begin_stage(pixels, stride, horizon, execution)
-            propagate_batch(
-                self.spec.potential, self._curves, self._batch, pixels[self._started[pixels]], horizon,
-                final=horizon == self.spec.t_max, execution=execution, on_tiles=lambda: on_change(False),
-            )  # fmt: skip
-            on_change(True)
+                yield partial(self._certify, self.horizon, execution, changed)
+            yield partial(self._advance, pixels, stride, horizon, execution, changed)
 
-    def _stages(self) -> Iterator[tuple[np.ndarray, int, float]]:
+    def _targets(self) -> Iterator[tuple[np.ndarray, int, float]]:
         """(pixels, stride, horizon): every refinement at the shortest horizon, then all pixels at longer ones."""
         first_horizon, *later_horizons = rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max)
         for pixels, stride in self._refinements():
@@ -150,6 +140,16 @@ class MapRun:
         axes = self.spec, self.x, self.ordinate
         for part, states in run_parts(_start_states, missing, lambda part: (*axes, part), execution=execution):
             self._batch.set_starts(part, states)
+
+    def _advance(
+        self, pixels: np.ndarray, stride: int, horizon: float, execution: Execution, on_tiles: Callable[[], None]
+    ) -> None:
+        """Integrate the orbits of some pixels to a horizon."""
+        self._begin_stage(pixels, stride, horizon, execution)
+        propagate_batch(
+            self.spec.potential, self._curves, self._batch, pixels[self._started[pixels]], horizon,
+            final=horizon == self.spec.t_max, execution=execution, on_tiles=on_tiles,
+        )  # fmt: skip
 
     def _begin_stage(self, pixels: np.ndarray, stride: int, horizon: float, execution: Execution) -> None:
         """Compute the exits that the pixels need, and start pixels not started yet."""
@@ -219,15 +219,11 @@ class MapRun:
     def frame(self) -> EscapeMap:
         """The map so far."""
         outcomes = self._outcomes()
-        complete = bool(self._started.all() and not np.any(outcomes.fate == Fate.NOT_COMPUTED))
         arrays = {name: getattr(outcomes, name) for name in ("fate", "escape_time", "crossings", "energy_error")}
         arrays |= {"certificate": self._batch.certificates()}
         arrays |= {"outside": self._batch.outside.copy(), "started": self._started.copy()}
-        pixel_arrays: dict[str, Any] = {name: read_only(array.reshape(self.shape)) for name, array in arrays.items()}
-        return EscapeMap(
-            spec=self.spec, x=read_only(self.x), ordinate=read_only(self.ordinate),
-            stride=self.stride, horizon=self.horizon, progress=self.progress(), complete=complete, **pixel_arrays,
-        )  # fmt: skip
+        stage = {"stride": self.stride, "horizon": self.horizon, "progress": self.progress()}
+        return collect_map(self.spec, (self.x, self.ordinate), arrays, **stage)
 
     def _outcomes(self) -> Outcomes:
         """Outcomes of all pixels, (n,) arrays; second mirror images are copied from the first."""

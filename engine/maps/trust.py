@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -16,11 +16,12 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.validation import checks_types
 from engine.integrator.kernels.dense_output import advance_states
 from engine.integrator.source.recurrence import TOLERANCE
-from engine.maps.parameter_map import Place, analyse_lines
+from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.run import CERTIFIED_FROM, certifies_tori, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
+from engine.maps.stages import OnChange, Stage, run_to_frame
 from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.certificates import Certificate
@@ -76,8 +77,8 @@ class TrustMap(PixelAnalysis):
     """
 
     trust: np.ndarray
-    complete: bool
     codes: ClassVar = {"trust": Trust}
+    pixel_arrays: ClassVar = {"trust": (np.int8, Trust.NOT_APPLICABLE)}
 
     @property
     def doubtful_share(self) -> float:
@@ -146,14 +147,11 @@ def compute_trust(
     escape_map = as_map("escape_map", escape_map)
     escape_map.check_complete("escape_map")
     unlike = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
-    if escape_map.spec.plane.parameter is None:
-        return _test_trust(escape_map, unlike, on_frame, execution, _SHIFTED_STARTS)
 
-    def test_line(place: Place, line: EscapeMap, alone: Execution) -> TrustMap:
-        return _test_trust(line, unlike[place], None, alone, _SHIFTED_STARTS)
+    def begin_test(pixels: EscapeMap, place: Place) -> _TrustTest:
+        return _TrustTest(pixels, unlike[place], _SHIFTED_STARTS)
 
-    codes = np.full(unlike.shape, Trust.NOT_APPLICABLE, np.int8)
-    return analyse_lines(escape_map, test_line, TrustMap, {"trust": codes}, on_frame, execution)
+    return analyse_map(escape_map, begin_test, TrustMap, on_frame, execution)
 
 
 def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT_EXECUTION) -> float:
@@ -176,7 +174,7 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
     """
     thinned = _thinned(escape_map)
     unlike = find_unlike_neighbours(thinned.fate, thinned.crossings)
-    return _test_trust(thinned, unlike, None, execution, _SAME_STARTS).doubtful_share
+    return run_to_frame(_TrustTest(thinned, unlike, _SAME_STARTS), execution).doubtful_share
 
 
 def _thinned(escape_map: EscapeMap) -> EscapeMap:
@@ -185,29 +183,6 @@ def _thinned(escape_map: EscapeMap) -> EscapeMap:
     arrays = {name: getattr(escape_map, name)[down // 2 :: down, right // 2 :: right] for name in PIXEL_ARRAYS}
     x, ordinate = escape_map.x[right // 2 :: right], escape_map.ordinate[down // 2 :: down]
     return replace(escape_map, x=x, ordinate=ordinate, batch=None, trust=None, **arrays)
-
-
-def _test_trust(
-    escape_map: EscapeMap,
-    unlike: np.ndarray,
-    on_frame: Callable[[TrustMap], None] | None,
-    execution: Execution,
-    perturbation: _Perturbation,
-) -> TrustMap:
-    """Test a map of one potential, or a line of a map along a parameter; unlike: as `find_unlike_neighbours` says."""
-    given_spec, reached = escape_map.spec, 0.0
-    publish = None if on_frame is None else lambda found: on_frame(replace(found, spec=given_spec))
-    test = _TrustTest(escape_map.in_well_units(), unlike, publish, execution, perturbation)
-    spec = test.spec
-    for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
-        if test.is_finished():
-            break
-        if certifies_tori(spec) and reached == CERTIFIED_FROM:
-            test.certify(reached)
-        test.propagate(horizon)
-        reached = horizon
-        execution.report(test.progress)
-    return replace(test.result(), spec=given_spec)
 
 
 def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarray:
@@ -325,17 +300,11 @@ def _find_uncertified(escape_map: EscapeMap) -> np.ndarray:
 
 
 class _TrustTest:
-    """The pixels to test and the state of their reruns, in units of the well."""
+    """The pixels of a map to test and the state of their reruns, in units of the well; `unlike`: see `find_unlike_neighbours`."""
 
-    def __init__(
-        self,
-        escape_map: EscapeMap,
-        unlike: np.ndarray,
-        on_frame: Callable[[TrustMap], None] | None,
-        execution: Execution,
-        perturbation: _Perturbation,
-    ) -> None:
-        self.spec, self._on_frame, self._execution = escape_map.spec, on_frame, execution
+    def __init__(self, given: EscapeMap, unlike: np.ndarray, perturbation: _Perturbation) -> None:
+        self._given_spec, escape_map = given.spec, given.in_well_units()
+        self.spec = escape_map.spec
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
         uncertified = _find_uncertified(escape_map)
         codes[uncertified | unlike] = Trust.NOT_TESTED
@@ -369,24 +338,31 @@ class _TrustTest:
             reruns.append(_Rerun(batch, tolerance, perturbation.largest_delay, fate, crossings, escape_time))
         return curves, reruns
 
-    def is_finished(self) -> bool:
-        """Whether all pixels are decided or the test was cancelled."""
-        return not self._undecided.size or self._execution.is_cancelled
+    def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
+        """See `Staged`: a stage integrates the reruns of all undecided pixels to a horizon, or tests those inside there."""
+        reached = 0.0
+        for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max):
+            if not self._undecided.size:
+                return
+            if certifies_tori(self.spec) and reached == CERTIFIED_FROM:
+                yield partial(self._certify, reached, execution, partial(on_change, False))
+            yield partial(self._propagate, horizon, execution)
+            reached = horizon
 
-    def propagate(self, horizon: float) -> None:
+    def _propagate(self, horizon: float, execution: Execution) -> None:
         """Integrate the reruns of all undecided pixels to the horizon."""
         # Together, as there may be too few orbits to keep all workers busy; each thread waits for its tiles most of the time.
         with ThreadPoolExecutor(len(self._reruns)) as threads:
-            list(threads.map(partial(self._propagate_rerun, horizon), self._reruns))
+            list(threads.map(partial(self._propagate_rerun, horizon, execution), self._reruns))
         self._update_codes()
-        if not self._execution.is_cancelled:
+        if not execution.is_cancelled:
             self._find_chaotic(horizon)
             self._update_codes()
 
-    def _propagate_rerun(self, horizon: float, rerun: _Rerun) -> None:
+    def _propagate_rerun(self, horizon: float, execution: Execution, rerun: _Rerun) -> None:
         propagate_batch(
             self.spec.potential, self._curves, rerun.batch, self._undecided, horizon,
-            final=horizon == self.spec.t_max, tolerance=rerun.tolerance, execution=self._execution,
+            final=horizon == self.spec.t_max, tolerance=rerun.tolerance, execution=execution,
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
@@ -398,7 +374,7 @@ class _TrustTest:
         self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > APART
         self._compared = time
 
-    def certify(self, reached: float) -> None:
+    def _certify(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
         """Mark reruns of pixels bounded on the map as bounded if they have a certificate, from their states at t = `reached`.
 
         The certificates of the first rerun hold for both: the difference between them on a regular orbit is far below the digits
@@ -411,7 +387,7 @@ class _TrustTest:
         grid_indices = np.full((tested.size, 2), _COARSEST_LATTICE_INDEX)
         certifier = BoundednessCertifier(
             self.spec.potential, self.spec.common_energy, first.batch.state[tested], grid_indices, self.spec.t_max - reached,
-            execution=self._execution,
+            execution=execution,
         )  # fmt: skip
 
         def mark_certified() -> None:
@@ -419,11 +395,12 @@ class _TrustTest:
                 pending = ~rerun.is_decided()[tested]
                 rerun.batch.mark_bounded(tested[pending], certifier.certificate[pending])
             self._update_codes()
+            on_round()
 
         certifier.run(mark_certified)
 
     def _update_codes(self) -> None:
-        """Record which pixels are decided, and publish."""
+        """Record which pixels are decided."""
         finished = np.all([rerun.is_decided() for rerun in self._reruns], axis=0)
         changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0)
         changed |= self._chaotic
@@ -432,13 +409,12 @@ class _TrustTest:
         self._codes.assign(self._codes.pixels[finished], Trust.CONFIRMED)
         self._codes.assign(self._codes.pixels[changed], Trust.DOUBTFUL)
         self._undecided = np.flatnonzero(~finished & ~changed)
-        if self._on_frame is not None:
-            self._on_frame(self.result())
 
     def progress(self) -> float:
         """Share of the pixels that are decided."""
         return 1.0 - self._undecided.size / max(self._codes.pixels.size, 1)
 
-    def result(self) -> TrustMap:
+    def frame(self) -> TrustMap:
         """The result so far."""
-        return TrustMap(self.spec, *self._codes.snapshot())
+        codes, complete = self._codes.snapshot()
+        return TrustMap(self._given_spec, codes, complete=complete)

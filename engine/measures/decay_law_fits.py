@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from engine.foundations.root_finding import find_root
 from engine.foundations.validation import checked_array, checked_t_max, short_repr
 from engine.maps.stored_maps import MapLike, as_map
 from engine.measures.decay_laws import (
@@ -207,11 +208,15 @@ def _fit_steepness(u: np.ndarray) -> float:
     It solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean of u; the left form is accurate for small k too.
     u ↔ 1 − u changes the sign of k and nothing else.
     """
-    from scipy import optimize, special
+    from scipy import special
 
     mean = float(u.mean())
     lower = min(mean, 1.0 - mean)
-    steepness = optimize.brentq(lambda k: 0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k) - lower, 0.0, 2.0 / lower)
+
+    def excess(k: float) -> float:
+        return float(0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k)) - lower
+
+    steepness = find_root(excess, 0.0, 2.0 / lower, absolute=2e-12, relative=4 * float(np.finfo(float).eps))
     return float(np.copysign(steepness, 0.5 - mean))
 
 

@@ -13,6 +13,7 @@ from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
+from engine.foundations.root_finding import bisect
 from engine.foundations.validation import checked_number, checks_types
 from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
@@ -153,10 +154,7 @@ def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
     row, column = np.nonzero(inside[:, 1:] != inside[:, :-1])
     within = np.where(inside[row, column], x[column], x[column + 1])
     beyond = np.where(inside[row, column], x[column + 1], x[column])
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (within + beyond)
-        is_within = _is_inside(potential, h, middle, y[row])
-        within, beyond = np.where(is_within, middle, within), np.where(is_within, beyond, middle)
+    within, _ = bisect(lambda middle: ~_is_inside(potential, h, middle, y[row]), within, beyond, _HALVINGS)
     np.add.at(lengths, row, np.where(inside[row, column], within, -within))
     area = float(lengths.sum()) * height
     # The lengths end in square roots, so that a third of the rows has 3^1.5 times the error.

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
-from engine.exits.periodic_orbits import PeriodicOrbit, find_periodic_orbit
+from engine.exits.periodic_orbits import PeriodicOrbit, find_orbit_in_rotating_frame
 from engine.systems.known_potentials import POTENTIALS
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 from tests.engine.exits.test_lyapunov_orbits import ENERGIES
@@ -26,7 +26,7 @@ HILL_SADDLE = -0.5 * 3.0 ** (4.0 / 3.0)
 
 def orbit_of(potential: Potential, energy: float, channel: int) -> PeriodicOrbit:
     """The orbit, in units of the well."""
-    orbit = find_periodic_orbit(potential.in_well_units, energy / potential.units.energy, channel)
+    orbit = find_orbit_in_rotating_frame(potential.in_well_units, energy / potential.units.energy, channel)
     assert orbit is not None
     return orbit
 
@@ -52,7 +52,7 @@ def crossings_of(mu: float | None, period: float, path: np.ndarray) -> np.ndarra
 def test_brake_orbits_are_found_by_continuation_too(potential: Potential, energy: float) -> None:
     scaled = energy / potential.units.energy
     for expected in find_lyapunov_orbits(potential.in_well_units, scaled):
-        orbit = find_periodic_orbit(potential.in_well_units, scaled, expected.channel)
+        orbit = find_orbit_in_rotating_frame(potential.in_well_units, scaled, expected.channel)
         assert orbit is not None
         assert orbit.period == pytest.approx(expected.period, abs=1e-9)
         path, wanted = orbit.path[:2], np.array([expected.x, expected.y])

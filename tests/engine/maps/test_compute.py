@@ -19,6 +19,7 @@ SPECS = [
 def test_map_computed_in_blocks_is_bit_identical(spec: MapSpec, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = compute_map(spec)
     monkeypatch.setattr("engine.maps.compute.LARGEST_RUN", 150)
+    monkeypatch.setattr("engine.maps.stages.LONGEST_PAUSE", 0.0)
     shares: list[float] = []
     in_blocks = compute_map(spec, lambda frame: shares.append(frame.progress))
     assert in_blocks.complete

@@ -1,9 +1,11 @@
-"""A root of a function of one variable between two points of opposite sign."""
+"""Roots of functions of one variable, and many boundaries at once."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+
+import numpy as np
 
 _MOST_STEPS = 100
 
@@ -68,3 +70,28 @@ def _interpolate(before: tuple[float, float], here: tuple[float, float], across:
     divisor = other * slope * (f1 - f0)
     # The product of small values can underflow.
     return -f * (f1 * other - f0 * slope) / divisor if divisor else math.inf
+
+
+def bisect(
+    is_beyond: Callable[[np.ndarray], np.ndarray], within: np.ndarray, beyond: np.ndarray, halvings: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Enclose many boundaries at once by halving intervals.
+
+    Parameters
+    ----------
+    is_beyond
+        Returns for each point whether it is beyond its boundary.
+    within, beyond
+        The ends of the intervals, of any shape, on the two sides of their boundaries.
+    halvings
+        How often the intervals are halved.
+
+    Returns
+    -------
+    The ends `within` and `beyond` of the last intervals.
+    """
+    for _ in range(halvings):
+        middle = 0.5 * (within + beyond)
+        outside = is_beyond(middle)
+        within, beyond = np.where(outside, within, middle), np.where(outside, middle, beyond)
+    return within, beyond

@@ -3,10 +3,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from scipy import optimize
 
-from engine.exits.root_finding import find_root
+from engine.foundations.root_finding import bisect, find_root
 
 FUNCTIONS: dict[str, tuple[Callable[[float], float], float, float]] = {
     "line": (lambda x: 2.0 * x - 0.3, -1.0, 5.0),
@@ -28,3 +29,13 @@ def test_root_is_that_of_scipy_to_the_bit(name: str) -> None:
 def test_equal_signs_at_the_ends_are_refused() -> None:
     with pytest.raises(ValueError, match="different signs"):
         find_root(lambda x: x * x + 1.0, -1.0, 1.0, absolute=1e-12, relative=1e-12)
+
+
+def test_bisection_encloses_each_boundary_from_either_side() -> None:
+    boundaries = np.array([[0.3, 0.7], [0.1, 0.9]])
+    signs = np.array([[1.0, -1.0], [1.0, -1.0]])
+    within, beyond = np.where(signs > 0.0, 0.0, 1.0), np.where(signs > 0.0, 1.0, 0.0)
+    low, high = bisect(lambda points: signs * (points - boundaries) > 0.0, within, beyond, 20)
+    np.testing.assert_allclose(np.abs(high - low), 2.0**-20)
+    assert np.all(signs * (low - boundaries) <= 0.0)
+    assert np.all(signs * (high - boundaries) > 0.0)
