@@ -1,7 +1,8 @@
 """Compile kernels ahead of time, or load them from the kernel cache.
 
 Numba compiles one function at a time, whatever the number of threads, so the order matters: kernels of the first frame of a map,
-then those of certificates, without which a map is not complete, then all others. Background compilation lets maps go first.
+then those that look for evidence, without which a map is not complete, then all others. Compilation in the background waits for
+maps.
 """
 
 from __future__ import annotations
@@ -154,15 +155,15 @@ def prepare_for_maps(potential: Potential) -> None:
     _for_maps.run(potential, (lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy)))
 
 
-def prepare_for_certificates(potential: Potential) -> None:
-    """Compile the kernels for the certificates of bounded orbits, or load them from the cache.
+def prepare_for_evidence(potential: Potential) -> None:
+    """Compile the kernels that look for evidence that orbits are bounded, or load them from the cache.
 
     Parameters
     ----------
     potential
         Any `Potential` with an exit.
     """
-    if not potential.certifies_tori:
+    if not potential.tori_are_evidence:
         return
     well, start = potential.in_well_units, _start(potential) / potential.units.state
     _make_in_turn(
@@ -181,7 +182,7 @@ def prepare_kernels(potential: Potential) -> None:
         Any `Potential` with an exit. Compilation takes some seconds, once per machine.
     """
     prepare_for_maps(potential)
-    prepare_for_certificates(potential)
+    prepare_for_evidence(potential)
     _make_in_turn(lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time))
     if potential.channels and not potential.centres:
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.

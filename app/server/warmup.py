@@ -11,14 +11,14 @@ from functools import partial
 from app.runtime.process_state import ProcessState
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential
-from engine.warmup import prepare_for_certificates, prepare_for_maps, prepare_kernels, reserve_catalogue
+from engine.warmup import prepare_for_evidence, prepare_for_maps, prepare_kernels, reserve_catalogue
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")
 
 _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
     "maps": prepare_for_maps,
-    "certificates": prepare_for_certificates,
+    "evidence": prepare_for_evidence,
     "orbits and analyses": prepare_kernels,
 }
 

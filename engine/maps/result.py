@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.codes import describe_codes
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import MapResult
 from engine.foundations.validation import checked_flag
 from engine.maps.spec import MapSpec
 from engine.propagation.batch import OrbitBatch
-from engine.propagation.certificates import Certificate
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate, Trust, name_fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
@@ -27,13 +28,14 @@ PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
     "escape_time": (np.float64, np.nan),
     "crossings": (np.int32, 0),
     "energy_error": (np.float64, np.nan),
-    "certificate": (np.int8, Certificate.NONE),
+    "evidence": (np.int8, Evidence.NONE),
     "outside": (np.int8, 0),
     "started": (np.bool_, False),
 }
 """Names of the (rows, columns) arrays of a map, with their data types and the values of pixels not computed yet."""
 
 
+@with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class EscapeMap(MapResult):
     """An escape map, complete or in progress; arrays are read-only and of shape (rows, columns), with row 0 at the bottom.
@@ -46,9 +48,9 @@ class EscapeMap(MapResult):
         (columns,), (rows,) pixel centres.
     fate, escape_time, crossings, energy_error
         As in `Outcomes`; undecided pixels are `Fate.NOT_COMPUTED`.
-    certificate
-        int8, the `Certificate` of each bounded orbit: why it is called bounded. Crossings and energy error of an orbit certified
-        early refer to the time up to which it was integrated.
+    evidence
+        int8, the `Evidence` of each bounded orbit: why it is called bounded. Crossings and energy error of an orbit bounded
+        on evidence refer to the time up to which it was integrated.
     outside
         int8, the number of the outcome at which the start lies, as in `fate`: beyond an exit, in a disc, or beyond the escape
         radius; 0 inside.
@@ -87,7 +89,7 @@ class EscapeMap(MapResult):
     escape_time: np.ndarray = field(metadata=TIME)
     crossings: np.ndarray
     energy_error: np.ndarray
-    certificate: np.ndarray
+    evidence: np.ndarray
     outside: np.ndarray
     stride: int
     horizon: float = field(metadata=TIME)
@@ -114,7 +116,7 @@ class EscapeMap(MapResult):
     @property
     def continued_pixels(self) -> np.ndarray:
         """(n,) the pixels, numbered row by row, whose outcome a larger t_max can change."""
-        undecided = (self.fate == Fate.NOT_COMPUTED) | (self.certificate == Certificate.INTEGRATED)
+        undecided = (self.fate == Fate.NOT_COMPUTED) | (self.evidence == Evidence.INTEGRATED)
         return np.flatnonzero(self.started & undecided)
 
     @property
@@ -170,14 +172,14 @@ class EscapeMap(MapResult):
         return outcome_shares(fate, self.spec.outcomes)
 
     def thinned(self) -> tuple[dict[str, np.ndarray], Window]:
-        """fate, escape_time, crossings and certificate of one started pixel per square of `stride` pixels a side.
+        """fate, escape_time, crossings and evidence of one started pixel per square of `stride` pixels a side.
 
         Returns
         -------
         The arrays, of (rows, columns) / `stride` rounded up, and the window they cover. It may extend beyond the map's window by
         less than one square, as the last squares may be incomplete.
         """
-        names = ("fate", "escape_time", "crossings", "certificate")
+        names = ("fate", "escape_time", "crossings", "evidence")
         if self.stride == 1:
             return {name: getattr(self, name) for name in names}, self.spec.find_window()
         pixels = np.ix_(*(np.unique(representative_indices(size, self.stride)) for size in self.fate.shape))
@@ -196,7 +198,7 @@ class EscapeMap(MapResult):
         dims = (ordinate, abscissa)
         variables = outcome_variables(self.spec, self.fate, self.escape_time, self.crossings, self.energy_error) | {
             "outside": (dims, self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
-            "certificate": (dims, self.certificate, {"long_name": "why the orbit is bounded", **describe_codes(Certificate)}),
+            "evidence": (dims, self.evidence, {"long_name": "why the orbit is bounded", **describe_codes(Evidence)}),
         }
         if self.trust is not None:
             variables["trust"] = (dims, self.trust, {"long_name": "reliability of the outcome", **describe_codes(Trust)})

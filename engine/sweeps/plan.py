@@ -61,7 +61,7 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
 
     For larger maps the cost grows at most linearly with the number of pixels, and more slowly where invariant curves enclose many
     orbits. In trials with 40 maps the estimate was within a fifth. At t_max = 1e5 planning takes some seconds; a minute or more
-    where many orbits are bounded and few can be certified.
+    where many orbits are bounded and there is evidence for few.
 
     Parameters
     ----------

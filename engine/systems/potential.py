@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from engine.expressions.nodes import Expression
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
 from engine.foundations.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
 from engine.systems.forms.expression_form import ExpressionForm
@@ -27,6 +28,7 @@ from engine.systems.well_units import WellUnits
 Terms = tuple[tuple[int, int, float], ...]
 
 
+@with_former_fields
 @dataclass(frozen=True, init=False)
 class Potential(Result):
     """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
@@ -258,7 +260,7 @@ class Potential(Result):
             )
 
     @property
-    def certifies_tori(self) -> bool:
+    def tori_are_evidence(self) -> bool:
         """Whether an invariant torus counts as evidence that its orbits are bounded for ever: only in a well at rest.
 
         In a rotating frame, around centres and with an escape radius this evidence is not tested.

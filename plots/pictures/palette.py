@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from engine import Certificate, Fate, Outcome, Regularity, StableManifolds
+from engine import Evidence, Fate, Outcome, Regularity, StableManifolds
 from engine.propagation.fates import UNRESOLVED, outcome_of
 from engine.systems.outcomes import OutcomeKind
 
@@ -207,8 +207,8 @@ class Palette:
 
     @cached_property
     def crossing_colours(self) -> list[str]:
-        """Colours of the pixel codes of the crossings; bounded pixels have one code per certificate."""
-        return [*self._outcome_colours, *self.classes, *(self.bounded for _ in Certificate)]
+        """Colours of the pixel codes of the crossings; bounded pixels have one code per kind of evidence."""
+        return [*self._outcome_colours, *self.classes, *(self.bounded for _ in Evidence)]
 
     @cached_property
     def character_colours(self) -> list[str]:

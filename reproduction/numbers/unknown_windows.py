@@ -102,7 +102,7 @@ class _Outside:
     @classmethod
     def of(cls, spec: MapSpec) -> _Outside:
         square = Window(-LARGEST_HALF_SIDE, LARGEST_HALF_SIDE, -LARGEST_HALF_SIDE, LARGEST_HALF_SIDE)
-        wide = compute_map(replace(spec, resolution=(_SIDE, _SIDE), window=square, t_max=_INSTANT, certify=False))
+        wide = compute_map(replace(spec, resolution=(_SIDE, _SIDE), window=square, t_max=_INSTANT, use_evidence=False))
         rows, columns = np.nonzero(wide.fate == Fate.OUTSIDE)
         channel = wide.outside[rows, columns].astype(np.intp)
         return cls(int(np.count_nonzero(wide.interior)), channel, wide.x[columns], wide.ordinate[rows])

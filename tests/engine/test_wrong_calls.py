@@ -67,7 +67,7 @@ WRONG_CALLS = (
     ("MapSpec(III, Plane.X_PX, 0.45, window=(1, -1, -1, 1))", "window x range 1.0 … -1.0: the lower edge must be below the uppe"),
     ("MapSpec(III, Plane.X_PX, 0.45, window=(1, 2))", "window=(1, 2): must be (x_low, x_high, ordinate_low, ordinate_high)"),
     ("MapSpec(III, Plane.X_PX, 0.45, t_max=0)", "t_max=0: must be above 0 and at most 1e+08"),
-    ('MapSpec(III, Plane.X_PX, 0.45, certify="no")', "certify='no': must be True or False"),
+    ('MapSpec(III, Plane.X_PX, 0.45, use_evidence="no")', "use_evidence='no': must be True or False"),
     ("compute_map(III)", "spec=…: must be a MapSpec"),
     ("compute_map(spec, executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("compute_map(spec, cancel=True)", "cancel=True: must be a threading.Event or None"),

@@ -49,10 +49,6 @@ def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np
 def _versions() -> tuple[str, ...]:
     """Whatever else the results depend on: the modules that find them and the libraries below."""
     engine = Path(__file__).parents[2]
-    files = [
-        engine / "polynomials.py",
-        *sorted((engine / "expressions").glob("*.py")),
-        *sorted(Path(__file__).parent.glob("*.py")),
-    ]
+    files = [*sorted((engine / "expressions").glob("*.py")), *sorted(Path(__file__).parent.glob("*.py"))]
     sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)
     return (*sources, *(metadata.version(package) for package in ("numpy", "scipy", "python-flint")))

@@ -199,7 +199,7 @@ def test_an_escaping_orbit_gets_no_conclusion(session: Session) -> None:
     assert recorder.verdicts[-1] == ()
 
 
-def test_all_bounded_orbits_get_their_certificate_and_keep_it(session: Session) -> None:
+def test_all_bounded_orbits_get_their_evidence_and_keep_it(session: Session) -> None:
     state, _, recorder, jobs = session
     indicators = IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked)
     state.param.update(energy=0.14, t_max=1e4)

@@ -174,7 +174,7 @@ def counted(window: Window) -> dict[tuple[int, ...], float]:
 def test_a_window_is_recovered_from_its_percentages(window: Window) -> None:
     shelf = MapShelf(replace(SMALL, resolution=60))
     found = fit_window(shelf, "II", shelf.map("II", Plane.X_PX, 0.5), counted(window), enough=1.0)
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=1e-9, certify=False))
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=1e-9, use_evidence=False))
     outside = np.sum(whole.fate == Fate.OUTSIDE) / np.sum(whole.fate != Fate.FORBIDDEN)
     assert found.outside_share == pytest.approx(outside, abs=0.03)
     assert found.share((1,)) == pytest.approx(counted(window)[1,], abs=2.0)
