@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import pickle
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -150,7 +151,8 @@ class BoundedOrbitSearch:
     def _find_enclosed(self, regular: np.ndarray) -> None:
         """Mark orbits enclosed by the invariant curves of some of the given orbits."""
         regular = regular[self._on_section[regular]]
-        regular = regular[:: -(-regular.size // _MAX_CURVES_PER_ROUND) or 1]
+        step = max(1, math.ceil(regular.size / _MAX_CURVES_PER_ROUND))
+        regular = regular[::step]
         arguments = (self.potential.well.mirror_in_x, self._entry_points)
         tiles = run_tiles(_find_barriers, self.potential, self.states[regular], *arguments, execution=self._execution)
         found = [barrier for _, tile in tiles for barrier in tile]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -260,6 +261,6 @@ def _start_states(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, pixels: np
 def _coarsest_stride(shape: tuple[int, int]) -> int:
     """The smallest power of 2 with which one pixel per square gives at most `COARSE_PIXELS`."""
     stride = 1
-    while -(-shape[0] // stride) * -(-shape[1] // stride) > COARSE_PIXELS:
+    while math.ceil(shape[0] / stride) * math.ceil(shape[1] / stride) > COARSE_PIXELS:
         stride *= 2
     return stride

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass, fields, replace
@@ -15,6 +16,7 @@ from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits
 from engine.integrator.source.recurrence import LANES, TOLERANCE
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate
+from engine.propagation.fixed_step_batches import fill_vectors
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
@@ -250,8 +252,8 @@ class OrbitPool:
 
     def take(self) -> np.ndarray:
         """The share of a worker in the orbits left, in whole SIMD vectors and at most `LARGEST_TILE`."""
-        share = -(-(self._waiting.size + self._taken) // self._workers)
-        size = min(-(-share // VECTOR) * VECTOR, LARGEST_TILE)
+        share = math.ceil((self._waiting.size + self._taken) / self._workers)
+        size = min(fill_vectors(share), LARGEST_TILE)
         orbits, self._waiting = np.split(self._waiting, [size])
         self._taken += orbits.size
         return orbits
