@@ -30,7 +30,7 @@ PLACES = {
     StartsFrom.EXITS: "on the exits, entering",
     StartsFrom.TUBES: "at the tubes that lead out",
 }
-"""In words."""
+"""Phrases for the places of starts."""
 
 EXPLANATIONS = {
     StartsFrom.TUBES: (

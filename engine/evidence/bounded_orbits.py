@@ -232,7 +232,7 @@ def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separ
 
 
 def _separated_by_pickled(barriers: bytes, points: np.ndarray, separated: np.ndarray) -> np.ndarray:
-    """As `_separated_by_any`; runs in a worker."""
+    """Call `_separated_by_any` with pickled barriers, in a worker."""
     return _separated_by_any(pickle.loads(barriers), points, separated)
 
 

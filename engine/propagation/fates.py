@@ -118,7 +118,7 @@ class OrbitResult(Result):
         return [outcome.label for outcome in self.outcomes]
 
     def to_xarray(self) -> xr.Dataset:
-        """As of other results, with the outcomes as an attribute."""
+        """The dataset of a result, with the outcomes as an attribute."""
         return super().to_xarray().assign_attrs(outcomes=write_outcomes(self.outcomes))
 
 

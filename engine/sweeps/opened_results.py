@@ -42,7 +42,7 @@ _KINDS: dict[str, Any] = {
         BasinEntropy, UncertaintyExponent, Sweep, SampledOrbits,
     )
 }  # fmt: skip
-# Of results with a field that is neither a number nor an array nor a request of maps.
+# Readers of results with a field that is neither a number nor an array nor a request of maps.
 _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {EscapeMap: read_map, Sweep: Sweep}
 # Flags of finished energies in the stores of earlier versions, and the name of their curves: both are opened as plain datasets.
 _FORMER_FLAGS, _FORMER_CURVES = "done", "Curves"

@@ -170,7 +170,7 @@ class Potential(Result):
         )
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
-        """The same potential as a member of a family, with exits that were found before; parameters as of `ContinuedWell`."""
+        """Return the potential as a member of a family, with known exits; the parameters are those of `ContinuedWell`."""
         return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
 
     def _changed(self, **values: Any) -> Potential:
@@ -229,7 +229,7 @@ class Potential(Result):
         return self._changed(form=self.form.moved(*nearest), centres=centres, origin=origin)
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
-        """The potential with other centres and another escape radius; parameters as of the potential."""
+        """Return the potential with other centres and another escape radius; the parameters are those of `Potential`."""
         check_type("centres", centres, Iterable)
         return self._changed(centres=tuple(centres), escape_radius=escape_radius)
 
@@ -280,7 +280,7 @@ class Potential(Result):
     def terms(self) -> Terms:
         """((i, j, c), …) of a polynomial; ValueError for other formulas."""
         if not isinstance(self.form, PolynomialForm):
-            raise ValueError(f"{self.name} is no polynomial")
+            raise ValueError(f"{self.name} is not a polynomial")
         return self.form.terms
 
     def value(self, x: Any, y: Any) -> Any:

@@ -50,7 +50,7 @@ class Well(ReadOnlyArrays):
     def critical_points(self) -> np.ndarray:
         """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve.
 
-        Those of a formula that is no polynomial are all of a region, see `engine.systems.forms.stationary_points`.
+        For a formula that is not a polynomial these are all points of a region, see `engine.systems.forms.stationary_points`.
         """
         return self._points_and_indices[:, :2]
 

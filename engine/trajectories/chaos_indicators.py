@@ -47,7 +47,7 @@ REGULAR_POWER = 1.5
 """Fastest growth from t/10 to t, as a power of t, that is no sign of chaos. On a torus a deviation vector grows like t."""
 
 CHAOTIC_DIGITS = dict(zip(WINDOWS, (1.0, 2.0, 3.0, 4.0), strict=True))
-"""By window T: fewer digits than this are chaotic. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
+"""An orbit with fewer digits than this is chaotic, by window T. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
 
 _GROWTH_FIT_SAMPLES = 200
 

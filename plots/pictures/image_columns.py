@@ -99,7 +99,7 @@ def _pixels_at(columns: dict[str, list[Any]], x: np.ndarray, y: np.ndarray) -> t
 
 
 def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]) -> dict[str, list[Any]]:
-    """Column of the pixels whose orbits end otherwise in another view of a plane with the same axes.
+    """Column of the pixels whose orbits have another outcome in another view of a plane with the same axes.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ from plots.printed.map_figure import show_window
 from plots.printed.potential_figure import draw_well
 
 FRAMES_PER_SECOND = 25
-"""Of all movies."""
+"""Frames per second of all movies."""
 
 _HEIGHT = 0.55
 _PARTICLE = 3.0

@@ -88,4 +88,4 @@ class FigureStyle:
 _LEAST_PANEL = 16.0
 
 SCREEN = FigureStyle(width=29.0, dpi=180.0, font_size=12.0)
-"""Of figures to be looked at on a screen: those of the reproduction and of notebooks."""
+"""Style of figures to be looked at on a screen: those of the reproduction and of notebooks."""

@@ -60,7 +60,7 @@ export function pixelColumns(coding, view, pixels, like, compared) {
 }
 
 /**
- * Codes of the pixels that end otherwise in another view, as `difference_column` of the server gives them.
+ * Codes of the pixels that have another outcome in another view, as `difference_column` of the server gives them.
  *
  * @param {Coding} coding
  * @param {import("./pixels.js").View} view

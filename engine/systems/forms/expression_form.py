@@ -183,7 +183,7 @@ class ExpressionForm:
         return ExpressionForm(substitute(self.expression, *axes))
 
     def count_rotations(self) -> int:
-        """From values of V on circles."""
+        """Count the rotations that leave V unchanged, by its values on circles; 0 for all."""
         if self._is_turned_by(_ANY_ROTATION):
             return 0
         return next(n for n in range(_MOST_ROTATIONS, 0, -1) if n == 1 or self._is_turned_by(2.0 * math.pi / n))
