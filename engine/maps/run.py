@@ -40,7 +40,7 @@ def rising_horizons(first: float, factor: float, t_max: float) -> Iterator[float
     yield t_max
 
 
-def tests_for_tori(spec: MapSpec) -> bool:
+def looks_for_tori(spec: MapSpec) -> bool:
     """Whether the orbits of a map are tested for evidence."""
     return spec.use_evidence and spec.potential.tori_are_evidence
 
@@ -116,7 +116,7 @@ class MapRun:
         """Run all stages until done or cancelled; `on_change(stage_over)` is called whenever pixels may have changed."""
         self._find_starts(execution)
         for pixels, stride, horizon in self._stages():
-            if tests_for_tori(self.spec) and self.horizon >= FIRST_TEST_TIME:
+            if looks_for_tori(self.spec) and self.horizon >= FIRST_TEST_TIME:
                 self._test_for_evidence(self.horizon, execution, lambda: on_change(False))
             if execution.is_cancelled:
                 break

@@ -19,7 +19,7 @@ from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.parameter_map import Place, analyse_lines
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
-from engine.maps.run import FIRST_TEST_TIME, rising_horizons, tests_for_tori
+from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
 from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.batch import OrbitBatch, propagate_batch
@@ -202,7 +202,7 @@ def _test_trust(
     for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
         if test.is_finished():
             break
-        if tests_for_tori(spec) and reached == FIRST_TEST_TIME:
+        if looks_for_tori(spec) and reached == FIRST_TEST_TIME:
             test.find_evidence(reached)
         test.propagate(horizon)
         reached = horizon

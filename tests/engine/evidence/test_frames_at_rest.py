@@ -26,7 +26,7 @@ from engine import (
     sample_entrances,
 )
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
-from engine.maps.run import tests_for_tori
+from engine.maps.run import looks_for_tori
 from engine.periodic.exit_entry_points import find_entry_points
 from engine.periodic.unstable_manifold import UnstableManifold
 from engine.propagation.evidence import Evidence
@@ -58,7 +58,7 @@ def test_what_rests_on_time_reversal_refuses_rotating_frames(call: Callable[[Pot
 )
 def test_tori_are_evidence_in_wells_at_rest_only(potential: Potential, expected: bool) -> None:
     spec = MapSpec(potential, Plane.X_PX, 0.12, (4, 4), t_max=1e5)
-    assert tests_for_tori(spec) == expected
+    assert looks_for_tori(spec) == expected
 
 
 def test_a_quasi_periodic_orbit_in_a_rotating_frame_is_bounded_by_integration_only() -> None:
