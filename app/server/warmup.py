@@ -63,7 +63,7 @@ def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], None]]) -> No
             log.exception("%s could not be prepared", name)
             state.kernels_failed.set()
             return
-    # Modules, compiled code and defaults live as long as the process: the collector need not visit them again.
+    # Modules, compiled code and defaults live as long as the process, so the garbage collector can skip them.
     gc.freeze()
     state.kernels_ready.set()
     log.info("ready")

@@ -90,7 +90,7 @@ class Direction:
     Raises
     ------
     ValueError
-        If the name is no identifier or that of a coordinate, or the components are not finite or all 0.
+        If the name is not an identifier, or is that of a coordinate, or the components are not finite or all 0.
     """
 
     key: str

@@ -157,7 +157,7 @@ WRONG_CALLS = (
     ("m.plot(ax=3)", "ax=3: must be Matplotlib axes or None"),
     ('III.in_rotating_frame(float("nan"))', "rotation=nan: must be a finite number, at most 1e+09 in magnitude"),
     ("III.in_rotating_frame(0.1).in_rotating_frame(0.1)", "potential=III: must be one of a frame that does not rotate"),
-    ('System("Hill", parameters={"rotation": 2.0}).potential', "parameters: 'rotation' is no parameter of Hill; it has none"),
+    ('System("Hill", parameters={"rotation": 2.0}).potential', "parameters: 'rotation' is not a parameter of Hill; it has none"),
     ('Potential("p", III.form, centres=3)', "centres=3: must be a sequence"),
     ("III.with_outcomes([(0, 0, 1)])", "centres=(0, 0, 1): must be a Centre"),
     ("III.with_outcomes(escape_radius=0)", "escape_radius=0.0: must be from 1e-06 to 1e+06"),
