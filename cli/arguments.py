@@ -58,7 +58,7 @@ def build_map_spec(
     window: Edges | None,
     resolution: str,
     t_max: float,
-    certify: bool,
+    use_evidence: bool,
     backward: bool = False,
 ) -> MapSpec:
     """Return the request for a map; ValueError names a missing, superfluous or invalid option."""
@@ -70,7 +70,7 @@ def build_map_spec(
         read_resolution(resolution),
         window,
         t_max,
-        certify,
+        use_evidence,
         backward,
     )
 

@@ -56,7 +56,7 @@ def draw_map(
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
-    certify: options.Certify = True,
+    use_evidence: options.UseEvidence = True,
     backward: options.Backward = False,
     trust: Annotated[
         bool, typer.Option("--trust", help="Find and mark doubtful pixels, whose fate depends on rounding.")
@@ -105,7 +105,7 @@ def draw_map(
     from plots.printed.figure_style import FigureStyle
     from plots.texts.exports import file_stem
 
-    spec = build_map_spec(case, plane, fix, energy, energies, window, resolution, t_max, certify, backward)
+    spec = build_map_spec(case, plane, fix, energy, energies, window, resolution, t_max, use_evidence, backward)
     wanted = AnalysisOptions(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)
     wanted.check(spec)
     style = FigureStyle(width, dpi, font_size, titles)

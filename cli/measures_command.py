@@ -36,7 +36,7 @@ def measure_basins(
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
-    certify: options.Certify = True,
+    use_evidence: options.UseEvidence = True,
     exponent: Annotated[
         bool, typer.Option("--exponent/--no-exponent", help="Whether to compute the uncertainty exponent, which takes longest.")
     ] = True,
@@ -49,7 +49,7 @@ def measure_basins(
     from cli.output import print_json, print_sentences
     from cli.run_context import cancellable_run
 
-    spec = build_map_spec(case, plane, fix, energy, energies, window, resolution, t_max, certify)
+    spec = build_map_spec(case, plane, fix, energy, energies, window, resolution, t_max, use_evidence)
     with cancellable_run(threads) as run:
         frame = compute_whole_map(spec, run, "map")
         measures = _measure(frame, exponent, run)

@@ -53,11 +53,12 @@ Window = Annotated[
 Resolution = Annotated[str, typer.Option("--resolution", metavar="N or NxM", help="Columns x rows, each 1 to 4096.")]
 TMax = Annotated[float, typer.Option("--t-max", help="Integration time, up to 1e8.")]
 OrbitTMax = Annotated[float, typer.Option("--t-max", help="Integration time, up to 1e7.")]
-Certify = Annotated[
+UseEvidence = Annotated[
     bool,
     typer.Option(
+        "--evidence/--no-evidence",
         "--certify/--no-certify",
-        help="Whether a certificate may end the integration of a bounded orbit before t_max.",
+        help="Whether evidence may end the integration of a bounded orbit before t_max.",
     ),
 ]
 Backward = Annotated[bool, typer.Option("--backward", help="Integrate backward in time.")]

@@ -14,7 +14,7 @@ import typer
 from cli import options
 
 if TYPE_CHECKING:
-    from reproduction.map_shelf import MapShelf
+    from reproduction.map_cache import MapCache
     from reproduction.quality import Quality
 
 EXAMPLES = """Examples:
@@ -57,7 +57,7 @@ def reproduce_paper(
 
     Each file is written as soon as it is ready, and is kept after an interruption.
     """
-    from reproduction.map_shelf import MapShelf
+    from reproduction.map_cache import MapCache
     from reproduction.members import CAPTIONS, choose_members
     from reproduction.quality import FULL, QUICK
 
@@ -73,10 +73,10 @@ def reproduce_paper(
     began, made = time.perf_counter(), list[_WrittenFigure]()
     try:
         with reserve_output(output), cancellable_run(threads) as run:
-            shelf = MapShelf(quality, run.execution)
+            cache = MapCache(quality, run.execution)
             for name in chosen:
                 run.start_stage(name)
-                made.append(_make(name, shelf, output))
+                made.append(_make(name, cache, output))
     except CancelledError:
         raise CancelledError(f"stopped; {len(made)} of {len(chosen)} are made and stay in {output}") from None
     _print_result(made, output, quality, time.perf_counter() - began, as_json)
@@ -89,12 +89,12 @@ def _make_folder(folder: Path) -> None:
     folder.mkdir(exist_ok=True)
 
 
-def _make(name: str, shelf: MapShelf, folder: Path) -> _WrittenFigure:
+def _make(name: str, cache: MapCache, folder: Path) -> _WrittenFigure:
     from cli.files import write_files
     from reproduction.members import make_files
 
     began = time.perf_counter()
-    files = write_files({folder / file: content for file, content in make_files(name, shelf).items()})
+    files = write_files({folder / file: content for file, content in make_files(name, cache).items()})
     return _WrittenFigure(name, files, time.perf_counter() - began)
 
 

@@ -39,7 +39,7 @@ def sweep_energies(
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
-    certify: options.Certify = True,
+    use_evidence: options.UseEvidence = True,
     measure: Annotated[
         list[str] | None,
         typer.Option(
@@ -67,7 +67,7 @@ def sweep_energies(
     frame = None if window is None else Window(*window)
     sides = read_resolution(resolution)
     spec = SweepSpec(
-        find_potential(case), find_plane(plane, fix, case), energies, sides, frame, t_max, certify, measure or ("maps",)
+        find_potential(case), find_plane(plane, fix, case), energies, sides, frame, t_max, use_evidence, measure or ("maps",)
     )
     try:
         with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:

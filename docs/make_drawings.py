@@ -21,8 +21,8 @@ from rotating_drawings import copenhagen, earth_moon, four_hills, star_cluster
 from engine import (
     CASES,
     POTENTIALS,
-    Certificate,
     Coordinate,
+    Evidence,
     MapSpec,
     ParameterAxis,
     Plane,
@@ -206,13 +206,13 @@ def flux() -> Figure:
     return figure
 
 
-def certificates() -> Figure:
-    """The certificates of a map, and the sections of a certified orbit and of one that leaves."""
+def evidence() -> Figure:
+    """The evidence of a map, and the sections of a regular orbit and of one that leaves."""
     figure, (left, right) = new_panels(2, 12.0)
     case, energy = CASES["III"], 0.30
     frame = compute_map(MapSpec(case, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
     window = frame.spec.find_window()
-    draw_pixels(left, rgba(list(_CERTIFIED.values()))[frame.certificate][::-1], window, window)
+    draw_pixels(left, rgba(list(_EVIDENCE_COLOURS.values()))[frame.evidence][::-1], window, window)
     name_panel(left, "Why an orbit is called bounded")
     starts = start_states(case, SECTION.plane, energy, np.array([0.3, 0.6]), np.zeros(2))
     for start, colour in zip(starts, PAPER.orbits, strict=False):
@@ -222,13 +222,13 @@ def certificates() -> Figure:
     for axes in (left, right):
         draw_limits(axes, case, SECTION.plane, energy, window)
         show_window(axes, window, "x", "px")
-    names = {code: code.name.lower().replace("_", "-") for code in _CERTIFIED if (frame.certificate == code).any()}
-    add_figure_legend(figure, patches(Entry(name, _CERTIFIED[code]) for code, name in names.items() if code))
+    names = {code: code.name.lower().replace("_", "-") for code in _EVIDENCE_COLOURS if (frame.evidence == code).any()}
+    add_figure_legend(figure, patches(Entry(name, _EVIDENCE_COLOURS[code]) for code, name in names.items() if code))
     return figure
 
 
-# Of the codes of `Certificate`.
-_CERTIFIED = dict(zip(Certificate, ("#f2f2f2", "#d1495b", "#7f7f7f", "#4c8dc4", "#8fd0b5", "#b9a2d8"), strict=True))
+# Of the codes of `Evidence`.
+_EVIDENCE_COLOURS = dict(zip(Evidence, ("#f2f2f2", "#d1495b", "#7f7f7f", "#4c8dc4", "#8fd0b5", "#b9a2d8"), strict=True))
 
 
 def origins() -> Figure:
@@ -242,7 +242,7 @@ def origins() -> Figure:
 
 DRAWINGS: tuple[Callable[[], Figure], ...] = (
     well, maps, blob, tubes, energies, cases, potentials, exits, sali, trust, basin_entropy, wada, uncertainty_exponent,
-    escape_laws, slices, statistics, curves, flux, certificates, origins, earth_moon, copenhagen, star_cluster, four_hills,
+    escape_laws, slices, statistics, curves, flux, evidence, origins, earth_moon, copenhagen, star_cluster, four_hills,
 )  # fmt: skip
 
 if __name__ == "__main__":

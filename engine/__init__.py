@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING
 
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits, find_multipliers
 from engine.foundations.execution import Execution
+from engine.foundations.former_names import FORMER_NAMES as FORMER_NAMES
+from engine.foundations.former_names import find_former_name
 from engine.foundations.result import Result
 from engine.maps.compute import compute_map
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
@@ -35,8 +37,8 @@ from engine.measures.escape_statistics import EscapeStatistics, compute_statisti
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
-from engine.propagation.certificates import Certificate
 from engine.propagation.classification import Outcomes, classify_orbits
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
 from engine.slices.axes import Coordinate, Direction, ParameterAxis
 from engine.slices.default_window import default_window
@@ -45,8 +47,6 @@ from engine.slices.planes import Plane, start_states
 from engine.slices.sampling import sample_starts
 from engine.slices.slice import Slice
 from engine.slices.window import Window
-from engine.sweeps.former_names import FORMER_NAMES as FORMER_NAMES
-from engine.sweeps.former_names import find_former_name
 from engine.sweeps.opened_results import open_result
 from engine.sweeps.plan import SweepPlan, plan_sweep
 from engine.sweeps.spec import SweepSpec
@@ -81,7 +81,6 @@ __all__ = [
     "BasinEntropy",
     "BirkhoffDigits",
     "Centre",
-    "Certificate",
     "Coordinate",
     "DecayLaws",
     "Direction",
@@ -89,6 +88,7 @@ __all__ = [
     "EscapeFlux",
     "EscapeMap",
     "EscapeStatistics",
+    "Evidence",
     "Execution",
     "Fate",
     "IndicatorVerdict",

@@ -1,7 +1,8 @@
 """Compile kernels ahead of time, or load them from the kernel cache.
 
 Numba compiles one function at a time, whatever the number of threads, so the order matters: kernels of the first frame of a map,
-then those of certificates, without which a map is not complete, then all others. Background compilation lets maps go first.
+then those that look for evidence, which a complete map needs, then all others. Compilation in the background waits while kernels
+of maps are compiled.
 """
 
 from __future__ import annotations
@@ -43,18 +44,18 @@ _EXECUTION = DEFAULT_EXECUTION.in_this_thread()
 # kernel that finds starts outside.
 _SECONDS_PER_OPERATION = {"step": 3.0e-4, "jets": 2.5e-4, "potential_value": 2.5e-3}
 _SECONDS = {"shoot": 0.8, "propagate": 3.2}
-# Estimate for a potential of eight terms, as long as the number of operations is not known.
+# Estimate while the number of operations is not known: that of a potential of eight terms.
 _SECONDS_OF_NEW_POWERS = 4.0
 _MAP_KERNELS = (*_SECONDS_PER_OPERATION, *_SECONDS)
 
 
 class _Compilations:
-    """Compilations for maps under way.
+    """The compilations of kernels for maps that are under way.
 
     Attributes
     ----------
     slowness
-        How much slower than expected the last compilation was; at least 1, since kernels loaded from the cache take no time.
+        Measured over expected time of the last compilation; at least 1, because kernels from the cache take no time.
     """
 
     def __init__(self) -> None:
@@ -154,15 +155,15 @@ def prepare_for_maps(potential: Potential) -> None:
     _for_maps.run(potential, (lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy)))
 
 
-def prepare_for_certificates(potential: Potential) -> None:
-    """Compile the kernels for the certificates of bounded orbits, or load them from the cache.
+def prepare_for_evidence(potential: Potential) -> None:
+    """Compile the kernels that look for evidence that orbits are bounded, or load them from the cache.
 
     Parameters
     ----------
     potential
         Any `Potential` with an exit.
     """
-    if not potential.certifies_tori:
+    if not potential.tori_are_evidence:
         return
     well, start = potential.in_well_units, _start(potential) / potential.units.state
     _make_in_turn(
@@ -181,7 +182,7 @@ def prepare_kernels(potential: Potential) -> None:
         Any `Potential` with an exit. Compilation takes some seconds, once per machine.
     """
     prepare_for_maps(potential)
-    prepare_for_certificates(potential)
+    prepare_for_evidence(potential)
     _make_in_turn(lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time))
     if potential.channels and not potential.centres:
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
@@ -193,12 +194,12 @@ def prepare_kernels(potential: Potential) -> None:
 
 
 def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> None:
-    """Let the kernels of the catalogue always be compiled, whatever limit of compiled code others have reached.
+    """Exempt the kernels of the catalogue from the limit on compiled code.
 
     Parameters
     ----------
     operations
-        What has the limit; by default that of this process.
+        The account of compiled code; by default that of this process.
     """
     wells = [potential.in_well_units for potential in POTENTIALS.values()]
     operations.reserve(generate_code(well.form.definition, **well.well.setting._asdict()).digest for well in wells)
@@ -214,14 +215,14 @@ def _open_energy(potential: Potential) -> float:
 
 
 def _start(potential: Potential) -> np.ndarray:
-    """(1, 4) a state of low energy in the middle of a well, else one at a typical distance."""
+    """(1, 4) a state of low energy in the middle of a well, or, without a well, one at the typical radius."""
     if potential.well.is_minimum and potential.escape_radius is None:
         return SECTION.plane.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
     return SECTION.plane.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
 
 
 def _make_in_turn(*calls: Callable[[], object]) -> None:
-    """Make the calls, each when no compilation for maps is under way."""
+    """Make the calls one after the other, each while no kernels for maps are compiled."""
     for call in calls:
         _for_maps.wait()
         call()

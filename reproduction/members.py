@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from reproduction.figures.all_figures import FIGURES
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.numbers.comparisons import compare_all
 from reproduction.tables.report import write_report, write_table
 
@@ -33,16 +33,16 @@ def choose_members(names: Sequence[str]) -> list[str]:
     return [name for name in CAPTIONS if not names or name in names]
 
 
-def make_files(name: str, shelf: MapShelf) -> dict[str, str | bytes]:
+def make_files(name: str, cache: MapCache) -> dict[str, str | bytes]:
     """Content of the files of a member by file name; may take minutes.
 
     Raises
     ------
     concurrent.futures.CancelledError
-        If the shelf is cancelled.
+        If the cache is cancelled.
     """
     if name != TABLES:
-        return dict(FIGURES[name].files(shelf))
-    search = shelf.super_sticky()
-    rows = compare_all(shelf, search)
-    return {"reproduction.md": write_report(shelf, search, rows), "reproduction.csv": write_table(rows)}
+        return dict(FIGURES[name].files(cache))
+    search = cache.super_sticky()
+    rows = compare_all(cache, search)
+    return {"reproduction.md": write_report(cache, search, rows), "reproduction.csv": write_table(rows)}

@@ -45,7 +45,7 @@ FULL = Quality(
     "full", resolution=DEFAULT_RESOLUTION[0], t_max=1e5, curve_points=75, search_resolution=DEFAULT_RESOLUTION[0],
     search_t_max=4e6, classified_resolution=74, exponent_work=1.5e8,
 )  # fmt: skip
-"""As in the paper: about 50 000 starts per map, integrated to 1e5."""
+"""The quality of the paper: about 50 000 starts per map, integrated to 1e5."""
 
 QUICK = Quality(
     "quick", resolution=74, t_max=1e5, curve_points=19, search_resolution=44, search_t_max=4e6, classified_resolution=24,

@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = [*sorted(ROOT.glob("*.md")), ROOT / "benchmarks" / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))]
 
 MOST_FOR_DRAWINGS = 400_000
-"""Bytes."""
+"""Largest size of a drawing, in bytes."""
 
 EXAMPLE_FILES = ["examples/case_three.py", "examples/tutorial.ipynb"]
 EXAMPLES = [name for name in engine.__all__ if ">>>" in (getattr(engine, name).__doc__ or "")]

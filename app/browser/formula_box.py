@@ -1,4 +1,4 @@
-"""A box for a formula: each text that is typed arrives, and a text of the server does not replace one that is being typed."""
+"""A box for a formula. The server receives every typed text, and never replaces a text that is being typed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from panel.custom import JSComponent
 from app.browser.callbacks import module_path
 
 LONGEST_TYPED = 4000
-"""Most characters of a text; formulas are shorter, but a box that cuts a text at their limit would not say so."""
+"""Most characters of a text. Formulas have a lower limit, which is checked later with a message; a box would cut silently."""
 
 
 class FormulaBox(JSComponent):
@@ -20,7 +20,7 @@ class FormulaBox(JSComponent):
     Parameters
     ----------
     on_typed
-        Called with each text, and whether it is done: Enter was pressed, or the box was left. Runs without the session's lock.
+        Called with each text, and with whether it is finished by Enter or by leaving the box; runs without the session's lock.
     **options
         Parameters of the component.
     """
@@ -28,7 +28,9 @@ class FormulaBox(JSComponent):
     label = param.String()
     placeholder = param.String(doc="shown in an empty box")
     longest = param.Integer(default=LONGEST_TYPED, doc="most characters of the text")
-    shown = param.Dict(default={"text": "", "typed": 0}, doc="text, and how many typed ones the server knows of")
+    shown = param.Dict(
+        default={"text": "", "typed": 0}, doc="the text, and the number of typed texts that the server has received"
+    )
 
     _esm = module_path("formula_box.js")
 

@@ -22,9 +22,9 @@ export function fateName(code, names, {ends}) {
  *
  * @param {number} pixel
  * @param {{maps: Columns, doubts: Columns, compared: Columns}} columns  of the pictures, of the layer of trust, and of the other view
- * @param {{bounded: number, first: number, firstCertificate: number, ends: number, channels: number}} codes  the first of each kind, and
+ * @param {{bounded: number, first: number, firstEvidence: number, ends: number, channels: number}} codes  the first of each kind, and
  *   the numbers of ends and of channels
- * @param {{certificates: string[], characters: string[], trusts: string[], fates: string[]}} words  by code
+ * @param {{evidence: string[], characters: string[], trusts: string[], fates: string[]}} words  by code
  */
 export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
   const fates = maps.fate[0]
@@ -39,7 +39,7 @@ export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
     Number.isFinite(time) && `escape time ${time.toPrecision(5)}`,
     fate > codes.bounded
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
-      : words.certificates[maps.crossing_class[0][pixel] - codes.firstCertificate],
+      : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
     words.characters[known(maps.character[0]) - codes.first],
     passage >= 0 && describeOrigin(origin, codes.channels, maps),
     words.trusts[known(doubts.trust[0])],

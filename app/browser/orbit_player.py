@@ -25,8 +25,8 @@ class OrbitPlayer(JSComponent):
     label = param.String(default="Time along the orbits")
     steps = param.Integer(default=600, doc="of the interval")
     pause = param.Integer(default=50, doc="between two steps while it plays, in ms")
-    begin = param.Number(default=0.0, doc="begin of the interval of time")
-    end = param.Number(default=0.0, doc="its end; at the begin the player is disabled")
+    begin = param.Number(default=0.0, doc="start of the interval of time")
+    end = param.Number(default=0.0, doc="end of the interval of time; an empty interval disables the player")
 
     _esm = module_path("orbit_player.js")
 

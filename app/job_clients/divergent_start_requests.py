@@ -1,4 +1,4 @@
-"""Search for the nearest divergent start of an orbit: the nearest start that escapes elsewhere, on the page its twin."""
+"""Search for the nearest divergent start of an orbit: the nearest start that escapes elsewhere."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class DivergentStartRequests:
         self._state, self._notify = state, notify
         self._searched: Start | None = None
         self._request = LatestRequest(jobs, self._on_result, notify, locked)
-        # What is found at another energy is no twin.
+        # A start is only compared with others of the same system, plane, energy and t_max.
         state.param.watch(lambda *events: self._request.cancel(), [*SYSTEM, "plane", "energy", "t_max"])
 
     def search(self) -> None:
@@ -27,7 +27,7 @@ class DivergentStartRequests:
         self._request.cancel()
         state, start = self._state, self._state.chosen_start
         if start is None:
-            self._notify("Click a start first: its twin is the nearest start that escapes elsewhere.")
+            self._notify("Click a start first. The nearest start that escapes elsewhere is then searched for.")
             return
         self._notify("Searching for the nearest start that escapes elsewhere …")
         self._searched = start
@@ -38,12 +38,12 @@ class DivergentStartRequests:
         """Cancel the search."""
         self._request.cancel()
 
-    def _on_result(self, twin: DivergentStart | None) -> None:
+    def _on_result(self, found: DivergentStart | None) -> None:
         if self._searched is None or self._state.chosen_start != self._searched:
             return
-        if twin is None:
+        if found is None:
             self._notify("No start near this one escapes elsewhere.")
         else:
-            added = self._state.add_start((twin.x, twin.ordinate))
+            added = self._state.add_start((found.x, found.ordinate))
             full = "" if added else " Remove an orbit, and search again to see it."
-            self._notify(f"The twin starts {twin.distance:.2g} away. {describe_fate(twin.fate, twin.outcomes)}{full}")
+            self._notify(f"The divergent start is {found.distance:.2g} away. {describe_fate(found.fate, found.outcomes)}{full}")

@@ -18,7 +18,7 @@ from app.runtime.load_monitor import TICK_SECONDS, LoadMonitor
 SLOW_SECONDS = 0.05
 """A turn of the event loop that takes longer is logged and counted."""
 
-# A tick comes up to one interval after the begin of the turn that delays it.
+# A slow turn may begin up to one interval before the tick that it delays, so the delay is shorter than the turn by up to that.
 _REPORTED = SLOW_SECONDS - TICK_SECONDS
 _SAMPLE_SECONDS = 0.5 * TICK_SECONDS
 _APP = Path(__file__).parents[1]
@@ -45,7 +45,8 @@ log = logging.getLogger(f"bokeh.{__name__}")
 class LoopWatch:
     """Logs and counts the turns of the event loop that take longer than `SLOW_SECONDS`; create it on the loop's thread.
 
-    Every such turn is reported; of those that take at least `SLOW_SECONDS` − `TICK_SECONDS`, some are reported, too.
+    The length of a turn is known to within `TICK_SECONDS`, so some turns that are shorter than `SLOW_SECONDS` by less than this
+    are reported as well.
 
     Parameters
     ----------

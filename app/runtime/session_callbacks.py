@@ -41,11 +41,11 @@ class SessionCallbacks:
         self._loop = asyncio.get_running_loop() if document.session_context is not None else None
 
     def every(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Wrap a function; every call runs."""
+        """Wrap a function so that all of its calls run."""
         return self._wrap(function, None)
 
     def latest(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Wrap a function; of the calls that wait, only the latest runs."""
+        """Wrap a function so that only the latest of its waiting calls runs."""
         return self._wrap(function, 1)
 
     def _wrap(self, function: Callable[..., Any], most_waiting: int | None) -> Callable[..., Any]:
@@ -94,8 +94,8 @@ class _LockedCallback:
         if self._calls:
             call = self._calls.popleft()
             try:
-                # Changes of widgets, which Panel holds, may wait for the socket: others must not overtake them, as they may be
-                # changes of models that the first ones add.
+                # Panel may hold back changes of widgets until the socket is free. Other changes must not overtake them, because
+                # they may concern models that the held changes add.
                 with set_curdoc(document), pn.io.hold(document):
                     call()
             except Exception:

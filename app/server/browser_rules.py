@@ -288,4 +288,4 @@ _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
     Selection: {"indices": _is_list_of_positions, "line_indices": _is_list_of_positions},
     DataModel: _DataProperties(),
 }
-"""By class, also of subclasses: the properties that a browser changes, and the values that are possible in one."""
+"""The properties that a browser can change, and tests of their values, by class; they also hold for its subclasses."""

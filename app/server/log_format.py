@@ -17,7 +17,7 @@ LONGEST_MESSAGE = 400
 """Most characters of a message, most of which may come from a visitor, as the address of a request."""
 
 _SESSION_CHARACTERS = 8
-# Of a shortened message; an address is followed by who asked for it.
+# A shortened message keeps this many characters of its end, which names the visitor.
 _LAST_CHARACTERS = 60
 _TRACEBACK_INDENT = "    "
 

@@ -57,7 +57,7 @@ def accepted_hosts(application: BokehTornado) -> str:
     """The pattern of hosts without their ports: loopback, and those whose pages may open a WebSocket."""
     origins = bokeh_settings.allowed_ws_origin() or application.websocket_origins
     names = {origin.lower().rsplit(":", 1)[0] for origin in origins}
-    # As in these origins, "*" alone is any host, and otherwise a part of one.
+    # In these origins "*" alone stands for any host, and otherwise for a part of one.
     return "|".join(".*" if name == "*" else re.escape(name).replace(r"\*", "[^.]*") for name in sorted({*LOOPBACK, *names}))
 
 

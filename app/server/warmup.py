@@ -11,14 +11,14 @@ from functools import partial
 from app.runtime.process_state import ProcessState
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential
-from engine.warmup import prepare_for_certificates, prepare_for_maps, prepare_kernels, reserve_catalogue
+from engine.warmup import prepare_for_evidence, prepare_for_maps, prepare_kernels, reserve_catalogue
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")
 
 _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
     "maps": prepare_for_maps,
-    "certificates": prepare_for_certificates,
+    "evidence": prepare_for_evidence,
     "orbits and analyses": prepare_kernels,
 }
 
@@ -63,7 +63,7 @@ def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], None]]) -> No
             log.exception("%s could not be prepared", name)
             state.kernels_failed.set()
             return
-    # Modules, compiled code and defaults live as long as the process: the collector need not visit them again.
+    # Modules, compiled code and defaults live as long as the process, so the garbage collector can skip them.
     gc.freeze()
     state.kernels_ready.set()
     log.info("ready")

@@ -135,11 +135,11 @@ class ComparisonPresenter:
 
 
 def _difference(one: EscapeMap, other: EscapeMap) -> str:
-    """How many starts of two maps end otherwise, in words."""
+    """Describe how many starts of two maps have different outcomes."""
     if not other.complete:
         return "…"
     if one.spec.plane.axis_symbols != other.spec.plane.axis_symbols:
-        return "its axes are others, so that pixels are not compared."
+        return "it has different axes, so pixels cannot be compared."
     if one.fate.shape != other.fate.shape or one.spec.find_window() != other.spec.find_window():
         return "…"
     counted = (one.fate >= Fate.BOUNDED) & (other.fate >= Fate.BOUNDED)
@@ -147,4 +147,4 @@ def _difference(one: EscapeMap, other: EscapeMap) -> str:
         return "no start in the window has an orbit in both."
     differ = counted & (one.fate != other.fate)
     count, share = int(np.count_nonzero(differ)), float(np.mean(differ[counted]))
-    return f"{grouped(count)} of {grouped(int(np.count_nonzero(counted)))} starts end otherwise ({percent(share)})."
+    return f"{grouped(count)} of {grouped(int(np.count_nonzero(counted)))} starts have different outcomes ({percent(share)})."

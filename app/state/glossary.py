@@ -13,7 +13,7 @@ GLOSSARY: Mapping[str, str] = MappingProxyType(
             "Starts that are allowed at this energy and lie inside all Lyapunov orbits. All shares refer to them, "
             "so that they do not depend on how much of the plane is shown."
         ),
-        "certified": (
+        "on evidence": (
             "Called bounded before t_max: the energy is below all saddles, which is exact, or averages along the "
             "orbit, or along orbits around it, converge as on an invariant torus, which is numerical evidence."
         ),

@@ -51,7 +51,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "orbit is that of the view in the controls."
         ),
         "differences": (
-            "Starts whose orbits end otherwise in the two views: through another exit, or inside in one of them only. Exits "
+            "Starts whose orbits have different outcomes in the two views: another exit, or inside in one of them only. Exits "
             "are compared by their numbers. Close to a basin boundary any change moves starts across it, so small changes of "
             "the energy show where the boundaries are."
         ),

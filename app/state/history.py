@@ -13,7 +13,7 @@ class History:
         self._gesture_recorded = False
 
     def record(self) -> int:
-        """Number of the entry of a new state; all states of one gesture have the same."""
+        """Return the number of the entry of a new state; all states of one gesture share an entry."""
         if not (self._in_gesture and self._gesture_recorded):
             self.entry += 1
             self._last = self.entry
@@ -21,15 +21,15 @@ class History:
         return self.entry
 
     def begin_gesture(self) -> None:
-        """A drag or a turn of the wheel goes on; it may change the state several times."""
+        """Begin or continue a drag or a turn of the wheel, which may change the state several times."""
         if not self._in_gesture:
             self._in_gesture, self._gesture_recorded = True, False
 
     def end_gesture(self) -> None:
-        """The next change of the state is a new action."""
+        """End the gesture: the next change of the state gets a new entry."""
         self._in_gesture = False
 
     def move_to(self, entry: int) -> None:
-        """The browser shows another entry; entries of an earlier page count as the first."""
+        """Follow the browser to another entry; entries of an earlier page count as the first."""
         self.end_gesture()
         self.entry = entry if 0 <= entry <= self._last else 0

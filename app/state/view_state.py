@@ -107,7 +107,7 @@ def _is_start(value: Any) -> bool:
 def longest_first_t_max(potential: Potential) -> float:
     """The longest t_max with which a system is first shown: a short one where all bounded orbits are integrated to it."""
     allowed = allowed_t_max().values()
-    longest = np.inf if potential.certifies_tori else _LONGEST_FIRST * potential.well.exact_time_unit
+    longest = np.inf if potential.tori_are_evidence else _LONGEST_FIRST * potential.well.exact_time_unit
     return max((each for each in allowed if each <= longest), default=min(allowed))
 
 

@@ -1,4 +1,4 @@
-"""The starts of the orbits that are watched as they leave."""
+"""Starts of the orbits that the player shows."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LARGEST_SEED = 2**31 - 1
 
 
 class StartsFrom(StrEnum):
-    """Where the starts are; the values stand in links."""
+    """Kind of place of the starts; links contain the values."""
 
     WELL = "well"
     VIEW = "view"
@@ -30,7 +30,7 @@ PLACES = {
     StartsFrom.EXITS: "on the exits, entering",
     StartsFrom.TUBES: "at the tubes that lead out",
 }
-"""In words."""
+"""Phrases for the places of starts."""
 
 EXPLANATIONS = {
     StartsFrom.TUBES: (
@@ -41,11 +41,11 @@ EXPLANATIONS = {
         "They enter through the exits, as often as the flux says. The curve is the distribution of the times until they leave."
     ),
 }
-"""Sentences where the place alone says too little."""
+"""Explanations of the places whose names are not enough."""
 
 
 def places_for(potential: Potential) -> dict[StartsFrom, str]:
-    """Where starts can be in a system, in words: at exits where it has some, at tubes where exits are Lyapunov orbits."""
+    """Return the places that a system offers, with their phrases: exits if it has some, tubes if its frame is at rest."""
     missing = set[StartsFrom]()
     if potential.escape_radius is not None:
         missing |= {StartsFrom.EXITS, StartsFrom.TUBES}
@@ -63,17 +63,17 @@ SMALLEST_RADIUS, LARGEST_RADIUS = -9.0, -1.0
 
 @dataclass(frozen=True)
 class WatchedStarts:
-    """Random starts; equal ones give the same picture.
+    """A choice of random starts; equal choices give the same starts.
 
     Attributes
     ----------
     where
-        On the energy surface; on the slice in view, in the box, or on a disc around the chosen start; on the exits, going
-        inward; at the edges of the tubes of the Lyapunov orbits.
+        The place: the energy surface; the slice in view, the box, or a disc around the chosen start; the exits, moving inward;
+        or the edges of the tubes of the Lyapunov orbits.
     count
         Number of orbits, one of `COUNTS`.
     seed
-        0 to 2³¹ − 1.
+        Seed of the generator, 0 to 2³¹ − 1.
     radius
         Power of ten of the radius of the disc, as a share of half the window.
 
@@ -99,4 +99,4 @@ class WatchedStarts:
 
 
 DEFAULT_STARTS = WatchedStarts()
-"""Those that are watched until others are chosen."""
+"""Starts of a new page."""

@@ -27,7 +27,7 @@ from engine.systems.potential import Potential
 WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
 """Window lengths T to try in turn, dimensionless; the first one is enough for most tori."""
 
-CERTIFIED_DIGITS = 8.0
+TORUS_DIGITS = 8.0
 """Number of agreeing digits from which an orbit counts as quasi-periodic.
 
 Of 1975 orbits on five maps that escape after t = 1000, none exceeded 6.1 digits.
@@ -65,7 +65,7 @@ def count_agreeing_digits(
     Returns
     -------
     (n,) −log10 of the largest relative difference of the averages, from 0 to 16; 0 for an orbit that escapes or whose energy
-    is not conserved. An orbit with `CERTIFIED_DIGITS` or more counts as quasi-periodic.
+    is not conserved. An orbit with `TORUS_DIGITS` or more counts as quasi-periodic.
     """
     return compare_averages(potential, states, window, execution=execution)[:, 1]
 

@@ -72,7 +72,7 @@ class InvariantCurve:
 
         side = np.ones(len(points), np.int8)
         for outer, inner in self._bounds:
-            # Unpickled polygons are no longer prepared.
+            # Pickling drops the preparation of polygons.
             shapely.prepare([outer, inner])
             near = shapely.contains_xy(outer, *points.T)
             side[near] = 0

@@ -121,7 +121,7 @@ def chord_axes(path: np.ndarray) -> Axes:
 def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """The orbit over a saddle at one energy, searched from the saddle; None if it is not found."""
     shot = _find_from_saddle(potential, energy, channel, saddle_axes(potential, channel), _REST)
-    return shot and shot.orbit
+    return None if shot is None else shot.orbit
 
 
 def find_from_both_ends(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
@@ -207,7 +207,7 @@ def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
 
 
 def _next_orbit(potential: Potential, energy: float, channel: int, before: BrakeOrbit) -> BrakeOrbit | None:
-    """The orbit at an energy close to that of another one, None if it is not close to that one."""
+    """Continue an orbit to a nearby energy; None if the orbit found there is not close to it."""
     ends = before.path[:, [0, -1]]
     shot = _shoot(potential, energy, channel, chord_axes(before.path), _chord_search(before.path), _REST)
     if shot is None:
@@ -235,7 +235,7 @@ def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search
     """The orbit whose start is the nearest, along the channel, to the origin of the axes; None if there is none."""
     trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _distance(potential, channel))
     bracket = _find_bracket(trials.outward_velocity, search)
-    return bracket and trials.solve(bracket, rest)
+    return None if bracket is None else trials.solve(bracket, rest)
 
 
 class _Trials:

@@ -24,13 +24,13 @@ LARGEST_ERROR = 1e-6
 
 # Nodes of a table: the fewest of these with which the error, measured between the nodes, is small enough.
 _NODES = (10, 20, 40)
-# Shares of the range of energies that are tried: near a maximum between two exits these change too fast.
+# Shares of the range of energies to try: near a maximum between two exits the exits change too fast.
 _SHARES = (1.0, 0.9, 0.75, 0.5)
 # Share of the largest error that the error between the nodes may have.
 _SAFETY = 0.1
-# Coefficients below this are left out at the end of the series, in units of the well.
+# Smaller coefficients are left out at the end of the series, in units of the well.
 _NEGLIGIBLE = 1e-9
-# A reach without limit, as a number that can be interpolated.
+# Stands for an infinite reach, which cannot be interpolated.
 _FARTHEST_REACH = 1e6
 _POSITIONS = np.linspace(-1.0, 1.0, 21)
 # Columns of a row: gate and reach, then those of the exit curve for its axes and from `events.MIDDLE` on.
@@ -51,7 +51,7 @@ class ExitTable:
     saddle
         Energy at which the channel opens.
     highest
-        Energy up to which the table is valid; at least `saddle`, below which it is not needed.
+        Energy up to which the table is valid; at least `saddle`, where the exit opens.
     nodes
         (n,) σ, rising: Chebyshev nodes of the first kind; empty if there is no energy between `saddle` and `highest`.
     rows
@@ -85,8 +85,8 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
 
     Returns
     -------
-    One table for each channel, valid up to `highest`, or up to its saddle if its exits cannot be interpolated. None is valid
-    above the lowest maximum between exits, where some of these are one. Interpolated exits differ from exits by at most
+    One table for each channel, valid up to `highest`, or up to its saddle if its exits cannot be interpolated. No table is valid
+    above the lowest maximum between exits, where several channels form one exit. Interpolated exits differ from exits by at most
     `LARGEST_ERROR`, as tested at energies between the nodes.
     """
     curves: dict[float, dict[int, np.ndarray]] = {}
@@ -107,7 +107,7 @@ def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
     for orbit in find_orbits_in_well_units(potential, energy):
         curve = exit_curve_over_chord(orbit)
         if curve is None:
-            raise ValueError(f"energy={energy}: exit {orbit.channel} is no smooth graph over its chord")
+            raise ValueError(f"energy={energy}: exit {orbit.channel} is not a smooth graph over its chord")
         curves[orbit.channel] = curve
     return curves
 
@@ -121,7 +121,7 @@ def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -
         largest = np.sqrt(share * (highest - saddle))
         nodes, between = _nodes(count, largest), _between(count, largest)
         try:
-            # The end of the range first: where it is refused, all is.
+            # The end of the range is tried first, because errors occur there if anywhere.
             curves_at(saddle + largest**2)
             rows, expected = (
                 np.array([_row(curves_at(saddle + sigma**2)[channel]) for sigma in places.tolist()])

@@ -183,7 +183,7 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
 
 
 def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """As `find_lyapunov_orbits`, of a potential in units of its well; errors state the energy in those in which it was given."""
+    """`find_lyapunov_orbits` for a potential in units of its well; errors state the energy in the units of the user."""
     try:
         orbits = _find_orbits(potential, energy)
     except _SearchError as error:
@@ -193,7 +193,7 @@ def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[Lyap
 
 
 def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """As `find_lyapunov_orbits`; none where the exits are not defined at the energy."""
+    """`find_lyapunov_orbits`, but no orbits where the exits are not defined at the energy."""
     try:
         return find_lyapunov_orbits(potential, energy)
     except UndefinedExitsError:

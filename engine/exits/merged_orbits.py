@@ -16,7 +16,7 @@ from engine.integrator.kernels.dense_output import trace_pieces
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Where the lines of starts cross that between the outermost saddles, as shares of its length.
+# Places where the lines of starts cross the line between the outermost saddles, as shares of its length.
 _LINES = (0.5, 0.25, 0.75, 0.0, 1.0)
 # Orbits that leave through an exit: points of the path, angles to its normal, and how long they are followed.
 _POINTS = np.arange(5, 100, 10)

@@ -280,7 +280,7 @@ def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrb
 def _edge(family: _Family, path: np.ndarray) -> float:
     """A little more than the largest u − a q² on the path (4, points) of an orbit; a: `ridge_bend`.
 
-    The largest value itself is no smooth function of the energy where a second place on the orbit takes the lead.
+    The largest value itself is not a smooth function of the energy where the place of the largest value jumps.
     """
     u, q = family.axes.coordinates(path[:2, :-1])
     offset = u - family.bend * q * q

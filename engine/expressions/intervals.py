@@ -1,8 +1,8 @@
-"""Intervals that contain all values of an expression on boxes, for proofs that it vanishes nowhere in a box, or once.
+"""Intervals that contain all values of an expression on boxes; they prove that it has no zero in a box, or only one.
 
 In interval arithmetic (Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis) each operation of a graph is replaced by
-one on lower and upper ends, widened by its rounding error. The functions of NumPy are taken to be right to four units in the last
-place. Where an expression is not defined on a part of a box, the intervals contain its values on the rest.
+one on lower and upper ends, widened by its rounding error. The functions of NumPy are assumed to be accurate to four units in the
+last place. If an expression is undefined on part of a box, the interval contains its values on the rest.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import numpy as np
 from engine.expressions.evaluation import Operations, node_values
 from engine.expressions.graph import Graph, Node
 
-# Relative and absolute widening by which the rounding error of an operation is covered.
+# Relative and absolute widening that covers the rounding error of an operation.
 _RELATIVE, _ABSOLUTE = 4.0 * 2.0**-52, 1e-300
-# Beyond it the place of an angle in its period is not known well enough.
+# Larger angles are not known accurately enough within their period.
 _LARGEST_ANGLE = 1e8
 
 
@@ -36,14 +36,14 @@ class Interval:
         return np.maximum(np.abs(self.low), np.abs(self.high))
 
     def excludes_zero(self) -> np.ndarray:
-        """(n,) whether 0 lies outside."""
+        """(n,) whether 0 lies outside the interval."""
         excluded: np.ndarray = (self.low > 0.0) | (self.high < 0.0)
         return excluded
 
 
 @dataclass(frozen=True)
 class Enclosure:
-    """What is known of expressions on n boxes.
+    """Values and domain of expressions on n boxes.
 
     Attributes
     ----------
@@ -86,13 +86,13 @@ Ends = tuple[np.ndarray, np.ndarray]
 
 
 def _interval(ends: Ends) -> Interval:
-    """Without NaN, for which the whole line is taken."""
+    """Make an interval of its ends; NaN stands for the whole line."""
     low, high = ends
     return Interval(np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high))
 
 
 def _widened(operation: Callable[..., Ends]) -> Callable[..., Interval]:
-    """An operation on intervals, from one that leaves out its rounding error."""
+    """Add the rounding error to an operation on intervals that leaves it out."""
 
     @functools.wraps(operation)
     def widened(*operands: Any) -> Interval:
@@ -117,7 +117,7 @@ def _linear(constant: float, coefficients: Sequence[float], operands: Sequence[I
 def _product(one: Interval, other: Interval) -> Ends:
     if one is other:
         return _square(one)
-    # A side that is 0 times one that is infinite gives NaN, for which the whole line is taken.
+    # An end of 0 times an infinite one gives NaN, which `_interval` replaces by the whole line.
     products = np.array([a * b for a in (one.low, one.high) for b in (other.low, other.high)])
     return products.min(axis=0), products.max(axis=0)
 
@@ -129,7 +129,7 @@ def _square(base: Interval) -> Ends:
 
 @_widened
 def _power(base: Interval, exponent: float) -> Ends:
-    """A power that is not an integer, where the base is not negative, or −1."""
+    """The power −1, or one that is not an integer, for which only the part of the base from 0 on counts."""
     if exponent == -1.0:
         across = (base.low < 0.0) & (base.high > 0.0)
         # An end that is 0 is approached from within.
@@ -156,7 +156,7 @@ def _sine(angle: Interval, shift: float = 0.0) -> Ends:
     margin = _RELATIVE * (np.abs(first) + np.abs(last) + 1.0)
     ends = np.sin(first) - margin, np.sin(first) + margin, np.sin(last) - margin, np.sin(last) + margin
     unknown = ~(np.maximum(np.abs(first), np.abs(last)) < _LARGEST_ANGLE)
-    # Whether 2πk + π/2, where the sine is 1, or 2πk − π/2, where it is −1, lies in between.
+    # Whether the interval contains a maximum of the sine, 2πk + π/2, or a minimum, 2πk − π/2.
     crest, trough = (
         np.floor((last + margin - at) / (2.0 * np.pi)) > np.floor((first - margin - at) / (2.0 * np.pi))
         for at in (0.5 * np.pi, -0.5 * np.pi)

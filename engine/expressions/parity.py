@@ -7,7 +7,7 @@ from functools import lru_cache
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 
 EVEN, ODD, NEITHER = 1, -1, 0
-"""Sign of f(−x)/f(x), 0 if it is no constant."""
+"""Sign of f(−x)/f(x), 0 if it is not constant."""
 
 _PARITIES = 1024
 

@@ -1,8 +1,8 @@
-"""The cache on disk, files in a private folder of limited size: verified when they are read, written atomically.
+"""The cache on disk: files in a private folder of limited size, verified on reading and written atomically.
 
-It has compiled kernels, and points of potentials. The content of a kernel's file is a pickle with machine code. The hash at the
-start of each file detects accidents, such as an incomplete copy, and no attack: whoever can write a file can also write its hash.
-A file is therefore read only if no other user can have written it.
+It contains compiled kernels, as pickles with machine code, and points of potentials. The hash at the start of each file detects
+accidents, such as an incomplete copy. It does not detect attacks, because whoever can write a file can also write its hash. A
+file is therefore read only if no other user can have written it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ LARGEST_SIZE = 256 * 2**20
 """Size limit of all files together, in bytes; the kernels of one potential take about 0.2 MB."""
 
 MOST_FILES = 4096
-"""Limit on their number: each write lists them all, 0.01 s."""
+"""Limit on the number of files; each write lists all of them, which takes 0.01 s."""
 
 _PART = ".part"
 _HASH_BYTES = hashlib.sha256().digest_size
@@ -44,7 +44,7 @@ def cache_folder() -> Path:
 
 
 def read_cached(path: Path) -> bytes | None:
-    """The content of a file, without its hash, which makes it the most recently used.
+    """Read a file without its hash, and mark it as the most recently used one.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def read_cached(path: Path) -> bytes | None:
 
 
 def write_cached(path: Path, payload: bytes) -> None:
-    """Write a file if possible, and delete the least recently used ones beyond the size limit; otherwise log a warning."""
+    """Write a file, and delete the least recently used ones beyond the limits; log a warning if it cannot be written."""
     folder = path.parent
     try:
         # Files of the folder belong to this user only.
@@ -95,7 +95,7 @@ def delete_cached(name: str) -> None:
 
 
 def _is_private_folder(folder: Path) -> bool:
-    """Whether only this user may write to a folder, or it is missing; logs a warning otherwise."""
+    """Whether a folder is missing or only this user may write to it; a warning is logged otherwise."""
     try:
         problem = _find_other_user(folder.stat())
     except OSError:
@@ -106,7 +106,7 @@ def _is_private_folder(folder: Path) -> bool:
 
 
 def _find_other_user(status: os.stat_result) -> str:
-    """Who else may have written a file or folder, and what to do; empty if nobody, or on systems without such permissions."""
+    """Describe who else may have written a file or folder, and what to do about it; empty if nobody can have."""
     if os.name != "posix":
         return ""
     if status.st_uid not in (os.geteuid(), _SUPERUSER):
@@ -117,13 +117,13 @@ def _find_other_user(status: os.stat_result) -> str:
 
 
 def _mark_used(path: Path) -> None:
-    """Set the access time, which file systems often do not."""
+    """Set the access time, which many file systems do not update on reading."""
     with contextlib.suppress(OSError):
         os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
 
 
 def _delete_least_recently_used(folder: Path) -> None:
-    """Keep the files within the limits; incomplete files of killed processes count too."""
+    """Delete files until the rest is within the limits; incomplete files of killed processes count as well."""
     files = []
     with os.scandir(folder) as entries:
         for entry in entries:

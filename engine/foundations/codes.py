@@ -9,8 +9,8 @@ from enum import IntEnum
 def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str, str]:
     """The dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``.
 
-    `labels` are those of the codes from 1 that are no members, as of `Fate`; where all are channels, as without labels, the
-    attribute leaves them out.
+    `labels` name the codes from 1 on that are not members of the enumeration, such as the outcomes of a `Fate`. The attribute
+    leaves them out if they are the default ones, "channel 1" and so on.
     """
     known = [f"{code.value}: {code.name.lower()}" for code in codes]
     are_channels = all(label == _channel(code) for code, label in enumerate(labels, 1))
@@ -18,7 +18,7 @@ def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str
 
 
 def name_code(codes: type[IntEnum], code: int, labels: Sequence[str] = ()) -> str:
-    """A code in words; `labels` are those of the codes from 1 that are no members, channels where there is none."""
+    """Return a code in words; `labels` name the codes from 1 on that are not members, which otherwise are channels."""
     if code in codes:
         return codes(code).name.lower().replace("_", " ")
     return labels[code - 1] if 1 <= code <= len(labels) else _channel(code)

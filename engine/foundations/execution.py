@@ -160,10 +160,10 @@ class Execution:
 
 
 DEFAULT_EXECUTION = Execution()
-"""In the thread pool of this process, not to be cancelled."""
+"""Execution in the thread pool of this process; it cannot be cancelled."""
 
 SERIAL_EXECUTION = Execution(SerialExecutor())
-"""In the calling thread, not to be cancelled."""
+"""Execution in the calling thread; it cannot be cancelled."""
 
 
 def run_parts(

@@ -82,7 +82,7 @@ def _describe_type(kind: type) -> str:
 
 
 def replace_unchecked[T](instance: T, **values: Any) -> T:
-    """As `dataclasses.replace` of a frozen dataclass, without its checks: legal ranges are for the units of the visitor."""
+    """`dataclasses.replace` for a frozen dataclass without its checks, whose legal ranges are for the units of the user."""
     replaced = object.__new__(type(instance))
     for each in dataclasses.fields(instance):  # type: ignore[arg-type]
         object.__setattr__(replaced, each.name, values.get(each.name, getattr(instance, each.name)))
@@ -90,7 +90,7 @@ def replace_unchecked[T](instance: T, **values: Any) -> T:
 
 
 def checked_flag(name: str, value: Any) -> bool:
-    """True or False."""
+    """Return a parameter that must be True or False; ValueError otherwise."""
     if not isinstance(value, bool | np.bool_):
         raise ValueError(f"{name}={short_repr(value)}: must be True or False")
     return bool(value)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 _LARGEST_DENOMINATOR = 1000
-# Of the fractions with a finite decimal expansion, those up to this denominator are usual: ½, ¼, ⅛, but 0.55125 and not 441/800.
+# Numbers with a finite decimal expansion are written as fractions up to this denominator: ½, ¼, ⅛, but 0.55125, not 441/800.
 _LARGEST_OF_DECIMALS = 8
 
 

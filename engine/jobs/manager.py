@@ -43,7 +43,7 @@ class _Run:
     client: Hashable
     account: Hashable
     map_priority: MapPriority | None
-    """Of a map that is shown; all short calls of other jobs are in the background."""
+    """Priority of a map on display; None for other jobs, whose short calls run in the background."""
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
     """The last partial result."""
@@ -81,7 +81,7 @@ class _Run:
         return self.measured.seconds()
 
     def priority(self) -> Priority:
-        """Of the short calls."""
+        """Priority of the short calls."""
         if self.map_priority is not None:
             return self.map_priority()
         return Priority.BACKGROUND

@@ -22,7 +22,7 @@ from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, Staged, run_stages, run_to_frame
 from engine.propagation.batch import OrbitBatch
-from engine.propagation.certificates import Certificate
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate
 from engine.slices.axes import HeldParameter
 from engine.slices.energies import highest_energy
@@ -185,8 +185,8 @@ class LineStack:
             codes = getattr(found, name)
             array[line.place] = renumbered(codes, line.numbers) if name in _NUMBERED else codes
         if found.spec.t_max < self.spec.t_max:
-            open_ended = (found.fate == Fate.BOUNDED) & (found.certificate == Certificate.INTEGRATED)
-            for name, value in (("fate", Fate.NOT_COMPUTED), ("certificate", Certificate.NONE)):
+            open_ended = (found.fate == Fate.BOUNDED) & (found.evidence == Evidence.INTEGRATED)
+            for name, value in (("fate", Fate.NOT_COMPUTED), ("evidence", Evidence.NONE)):
                 array = self._arrays[name]
                 array[line.place] = np.where(open_ended, value, array[line.place])
 

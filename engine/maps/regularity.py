@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
+from engine.evidence.birkhoff_averages import REGULAR_DIGITS, TORUS_DIGITS, WINDOWS, count_agreeing_digits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.maps.parameter_map import Place, analyse_map
@@ -17,8 +17,8 @@ from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
 from engine.maps.stages import OnChange, Stage
 from engine.maps.stored_maps import MapLike, as_map
-from engine.propagation.certificates import Certificate
 from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
 
 # SALI is computed up to these times, with a test for tori after each: the SALI of strongly chaotic orbits falls early, most
@@ -40,8 +40,8 @@ class RegularityMap(PixelAnalysis):
         (rows, columns) int8 `Regularity` codes, read-only.
     sali
         (rows, columns) the smallest SALI of each bounded orbit until it was judged, 0 to √2, looked at every few units of time:
-        at most 1e-7 if the orbit is chaotic, otherwise larger. NaN for other pixels, and for orbits certified as
-        quasi-periodic by the map. Read-only.
+        at most 1e-7 if the orbit is chaotic, otherwise larger. NaN for other pixels, and for quasi-periodic
+        orbits by the map. Read-only.
     complete
         Whether every bounded pixel is judged.
     """
@@ -72,7 +72,7 @@ def compute_regularity(
 ) -> RegularityMap:
     """Judge the bounded orbits of a complete map as regular or chaotic.
 
-    Orbits certified as quasi-periodic are regular. Another orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014,
+    Orbits with evidence of a torus are regular. Another orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014,
     eq. 9). It is regular if its Birkhoff averages show a torus, over windows on the way or over both halves of the orbit. Another
     one that reaches t_max shows no sign of chaos until then; Zotos (2014) calls it regular. An orbit bounded on the map only by
     rounding, which runs off to infinity here, is judged by its smallest SALI until then.
@@ -115,7 +115,7 @@ class _RegularityClassification:
         self._given_spec, escape_map = given.spec, given.in_well_units()
         self._map, self._spec = escape_map, escape_map.spec
         codes = np.where(escape_map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
-        codes[escape_map.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
+        codes[escape_map.evidence == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
         self._codes = PixelCodes(escape_map, codes, Regularity.NOT_JUDGED)
         self._pixels = self._codes.pixels
         self._sali = np.full(codes.size, np.nan)
@@ -148,7 +148,7 @@ class _RegularityClassification:
     def _find_tori(self, window: float, execution: Execution) -> None:
         """Judge quasi-periodic orbits as regular."""
         digits = count_agreeing_digits(self._spec.potential, self._orbits[:, :4], window, execution=execution)
-        self._judge(digits >= CERTIFIED_DIGITS, Regularity.REGULAR)
+        self._judge(digits >= TORUS_DIGITS, Regularity.REGULAR)
 
     def _compare_halves(self, execution: Execution) -> None:
         """Judge orbits as regular whose averages agree over both halves, from the start to t_max."""

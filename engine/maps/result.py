@@ -10,11 +10,12 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.codes import describe_codes
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import MapResult
 from engine.foundations.validation import checked_flag
 from engine.maps.spec import MapSpec
 from engine.propagation.batch import OrbitBatch
-from engine.propagation.certificates import Certificate
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate, Trust, name_fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
@@ -31,7 +32,7 @@ PIXEL_ARRAYS: PixelArrays = {
     "escape_time": (np.float64, np.nan),
     "crossings": (np.int32, 0),
     "energy_error": (np.float64, np.nan),
-    "certificate": (np.int8, Certificate.NONE),
+    "evidence": (np.int8, Evidence.NONE),
     "outside": (np.int8, 0),
     "started": (np.bool_, False),
 }
@@ -43,6 +44,7 @@ def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.nda
     return {name: np.full(shape, value, dtype) for name, (dtype, value) in names.items()}
 
 
+@with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class EscapeMap(MapResult):
     """An escape map, complete or in progress; arrays are read-only and of shape (rows, columns), with row 0 at the bottom.
@@ -55,9 +57,9 @@ class EscapeMap(MapResult):
         (columns,), (rows,) pixel centres.
     fate, escape_time, crossings, energy_error
         As in `Outcomes`; undecided pixels are `Fate.NOT_COMPUTED`.
-    certificate
-        int8, the `Certificate` of each bounded orbit: why it is called bounded. Crossings and energy error of an orbit certified
-        early refer to the time up to which it was integrated.
+    evidence
+        int8, the `Evidence` of each bounded orbit: why it is called bounded. Crossings and energy error of an orbit bounded
+        on evidence refer to the time up to which it was integrated.
     outside
         int8, the number of the outcome at which the start lies, as in `fate`: beyond an exit, in a disc, or beyond the escape
         radius; 0 inside.
@@ -96,7 +98,7 @@ class EscapeMap(MapResult):
     escape_time: np.ndarray = field(metadata=TIME)
     crossings: np.ndarray
     energy_error: np.ndarray
-    certificate: np.ndarray
+    evidence: np.ndarray
     outside: np.ndarray
     stride: int
     horizon: float = field(metadata=TIME)
@@ -123,7 +125,7 @@ class EscapeMap(MapResult):
     @property
     def continued_pixels(self) -> np.ndarray:
         """(n,) the pixels, numbered row by row, whose outcome a larger t_max can change."""
-        undecided = (self.fate == Fate.NOT_COMPUTED) | (self.certificate == Certificate.INTEGRATED)
+        undecided = (self.fate == Fate.NOT_COMPUTED) | (self.evidence == Evidence.INTEGRATED)
         return np.flatnonzero(self.started & undecided)
 
     @property
@@ -179,14 +181,14 @@ class EscapeMap(MapResult):
         return outcome_shares(fate, self.spec.outcomes)
 
     def thinned(self) -> tuple[dict[str, np.ndarray], Window]:
-        """fate, escape_time, crossings and certificate of one started pixel per square of `stride` pixels a side.
+        """fate, escape_time, crossings and evidence of one started pixel per square of `stride` pixels a side.
 
         Returns
         -------
         The arrays, of (rows, columns) / `stride` rounded up, and the window they cover. It may extend beyond the map's window by
         less than one square, as the last squares may be incomplete.
         """
-        names = ("fate", "escape_time", "crossings", "certificate")
+        names = ("fate", "escape_time", "crossings", "evidence")
         if self.stride == 1:
             return {name: getattr(self, name) for name in names}, self.spec.find_window()
         pixels = np.ix_(*(np.unique(representative_indices(size, self.stride)) for size in self.fate.shape))
@@ -205,7 +207,7 @@ class EscapeMap(MapResult):
         dims = (ordinate, abscissa)
         variables = outcome_variables(self.spec, self.fate, self.escape_time, self.crossings, self.energy_error) | {
             "outside": (dims, self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
-            "certificate": (dims, self.certificate, {"long_name": "why the orbit is bounded", **describe_codes(Certificate)}),
+            "evidence": (dims, self.evidence, {"long_name": "why the orbit is bounded", **describe_codes(Evidence)}),
         }
         if self.trust is not None:
             variables["trust"] = (dims, self.trust, {"long_name": "reliability of the outcome", **describe_codes(Trust)})

@@ -1,14 +1,15 @@
-"""The computation of one map in stages: coarse to fine, short to long integration times, with certificates in between."""
+"""The computation of one map in stages: coarse to fine, short to long integration times, with tests for evidence in between."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from engine.evidence.boundedness_certifier import BoundednessCertifier
+from engine.evidence.bounded_orbits import BoundedOrbitSearch
 from engine.exits.exit_rows import closed_exits, exit_curves
 from engine.foundations.execution import Execution, run_parts
 from engine.maps.pixels import MirrorPixels
@@ -16,15 +17,15 @@ from engine.maps.result import EscapeMap, collect_map, find_interior, representa
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage
 from engine.propagation.batch import OrbitBatch, propagate_batch
-from engine.propagation.certificates import Certificate
 from engine.propagation.classification import Outcomes, collect_outcomes
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate
 
 COARSE_PIXELS = 1200
 """Largest number of pixels in the first frame."""
 
-CERTIFIED_FROM = 1000.0
-"""Time in units of the well at which undecided orbits are first tested for certificates; most escapes happen earlier."""
+FIRST_TEST_TIME = 1000.0
+"""Time in units of the well at which undecided orbits are first tested for evidence; most escapes happen earlier."""
 
 _FIRST_HORIZON = 100.0
 _HORIZON_FACTOR = 10.0
@@ -39,9 +40,9 @@ def rising_horizons(first: float, factor: float, t_max: float) -> Iterator[float
     yield t_max
 
 
-def certifies_tori(spec: MapSpec) -> bool:
-    """Whether the orbits of a map are tested for certificates."""
-    return spec.certify and spec.potential.certifies_tori
+def looks_for_tori(spec: MapSpec) -> bool:
+    """Whether the orbits of a map are tested for evidence."""
+    return spec.use_evidence and spec.potential.tori_are_evidence
 
 
 class MapRun:
@@ -50,7 +51,7 @@ class MapRun:
     Of two pixels that are mirror images of each other only the first is computed.
 
     What is done up to a time does not depend on t_max: a map with a smaller t_max is the beginning of this one. Stages end at
-    fixed times, at which the orbits still inside are tested for certificates, from `CERTIFIED_FROM` on.
+    fixed times, at which the orbits still inside are tested for evidence, from `FIRST_TEST_TIME` on.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ class MapRun:
         self._earlier_errors[continued] = np.nan
         self._batch.set_outcomes(
             earlier.fate.ravel(), earlier.escape_time.ravel(), earlier.crossings.ravel(),
-            earlier.outside.ravel(), earlier.certificate.ravel(),
+            earlier.outside.ravel(), earlier.evidence.ravel(),
         )  # fmt: skip
         self._batch.put(continued, earlier.batch)
         self._batch.reopen(continued)
@@ -112,8 +113,8 @@ class MapRun:
         changed = partial(on_change, False)
         self._find_starts(execution)
         for pixels, stride, horizon in self._targets():
-            if certifies_tori(self.spec) and self.horizon >= CERTIFIED_FROM:
-                yield partial(self._certify, self.horizon, execution, changed)
+            if looks_for_tori(self.spec) and self.horizon >= FIRST_TEST_TIME:
+                yield partial(self._test_for_evidence, self.horizon, execution, changed)
             yield partial(self._advance, pixels, stride, horizon, execution, changed)
 
     def _targets(self) -> Iterator[tuple[np.ndarray, int, float]]:
@@ -158,14 +159,14 @@ class MapRun:
         fresh = pixels[~self._started[pixels]]
         tested = self._batch.mark_outside(self.spec.potential, fresh, self._curves, execution=execution)
         self._started[tested] = True
-        if self.spec.certify:
+        if self.spec.use_evidence:
             self._close(pixels[self._started[pixels]])
 
     def _close(self, pixels: np.ndarray) -> None:
         """Mark orbits as bounded whose energy is below every saddle; they need no integration."""
         closed = self.spec.potential.well.is_closed_at(self._energy[pixels])
         undecided = self._batch.fate[pixels] == Fate.NOT_COMPUTED
-        self._batch.mark_bounded(pixels[closed & undecided], Certificate.CLOSED)
+        self._batch.mark_bounded(pixels[closed & undecided], Evidence.CLOSED)
 
     def _find_exits(self, pixels: np.ndarray) -> None:
         """Find the exits at those energies of the pixels at which they are not known yet."""
@@ -177,25 +178,25 @@ class MapRun:
                 self._curves[row] = exit_curves(self.spec.potential, float(self._energy[pixel]))
                 self._rows_without_exits.discard(row)
 
-    def _certify(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark the orbits that are inside at t = `reached` and have a certificate as bounded; a cancelled test marks none."""
+    def _test_for_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
+        """Mark orbits inside at t = `reached` as bounded if there is evidence; a cancelled test marks none."""
         spec, batch = self.spec, self._batch
         tested = self._find_untested(reached, execution)
         if not tested.size:
             return
         grid_indices = np.column_stack(np.divmod(tested, self.shape[1]))
         time_left = (_HORIZON_FACTOR - 1.0) * reached
-        certifier = BoundednessCertifier(
+        search = BoundedOrbitSearch(
             spec.potential, spec.common_energy, batch.state[tested], grid_indices, time_left, execution,
             tested_for=time_left / _HORIZON_FACTOR, digits=batch.digits[tested],
         )  # fmt: skip
 
-        def mark_certified() -> None:
-            batch.mark_bounded(tested, certifier.certificate)
+        def mark_bounded() -> None:
+            batch.mark_bounded(tested, search.evidence)
             on_round()
 
-        if certifier.run(mark_certified):
-            batch.tested[tested], batch.digits[tested] = reached, certifier.digits
+        if search.run(mark_bounded):
+            batch.tested[tested], batch.digits[tested] = reached, search.digits
         else:
             # When the map goes on, the test is repeated with all these orbits, so that its result is the same.
             batch.reopen(tested)
@@ -220,7 +221,7 @@ class MapRun:
         """The map so far."""
         outcomes = self._outcomes()
         arrays = {name: getattr(outcomes, name) for name in ("fate", "escape_time", "crossings", "energy_error")}
-        arrays |= {"certificate": self._batch.certificates()}
+        arrays |= {"evidence": self._batch.final_evidence()}
         arrays |= {"outside": self._batch.outside.copy(), "started": self._started.copy()}
         stage = {"stride": self.stride, "horizon": self.horizon, "progress": self.progress()}
         return collect_map(self.spec, (self.x, self.ordinate), arrays, **stage)
@@ -256,6 +257,6 @@ def _start_states(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, pixels: np
 def _coarsest_stride(shape: tuple[int, int]) -> int:
     """The smallest power of 2 with which one pixel per square gives at most `COARSE_PIXELS`."""
     stride = 1
-    while -(-shape[0] // stride) * -(-shape[1] // stride) > COARSE_PIXELS:
+    while math.ceil(shape[0] / stride) * math.ceil(shape[1] / stride) > COARSE_PIXELS:
         stride *= 2
     return stride

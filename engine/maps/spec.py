@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
@@ -34,6 +35,7 @@ FINEST_PIXEL = 1e-15
 """Smallest distance of neighbouring pixels in units of the well: a few units in the last place of coordinates of order 1."""
 
 
+@with_former_fields
 @dataclass(frozen=True)
 class MapSpec:
     """An escape map: the orbits, the resolution and the integration time.
@@ -56,8 +58,8 @@ class MapSpec:
         pixel where its middle line would be one of symmetry, on which orbits stay for ever.
     t_max
         Integration time, 0 < t_max ≤ 1e8, dimensionless; where the unit 1/ω of time of the well is above 1, in this unit.
-    certify
-        Whether an orbit is called bounded before t_max if it has a certificate that it never escapes.
+    use_evidence
+        Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
         Whether orbits are followed into the past. This equals following (x, y, −px, −py) into the future, in a rotating frame
         with −Ω for Ω. Fates are then the outcomes backward in time, such as the channels through which orbits entered,
@@ -86,7 +88,7 @@ class MapSpec:
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: GivenWindow | None = None
     t_max: float = 1e5
-    certify: bool = True
+    use_evidence: bool = True
     backward: bool = False
 
     def __post_init__(self) -> None:
@@ -98,7 +100,7 @@ class MapSpec:
             "resolution": _checked_resolution(self.resolution),
             "window": None if self.window is None else checked_window(self.window),
             "t_max": self.potential.checked_t_max(self.t_max),
-            "certify": checked_flag("certify", self.certify),
+            "use_evidence": checked_flag("use_evidence", self.use_evidence),
             "backward": checked_flag("backward", self.backward),
         }
         for name, value in checked.items():
@@ -177,7 +179,7 @@ class MapSpec:
             "default_window": int(self.window is None),
             "resolution": self.resolution,
             "t_max": self.t_max,
-            "certify": int(self.certify),
+            "use_evidence": int(self.use_evidence),
             "backward": int(self.backward),
             "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
             "version": metadata.version("escape-explorer"),

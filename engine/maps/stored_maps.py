@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.arrays import read_only
+from engine.foundations.former_names import rename_stored
 from engine.foundations.validation import short_repr
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.spec import MapSpec
@@ -33,6 +34,8 @@ def as_map(name: str, value: Any) -> EscapeMap:
     """
     if isinstance(value, EscapeMap):
         return value
+    if hasattr(value, "data_vars"):
+        value = rename_stored(value)
     if not hasattr(value, "data_vars") or not set(PIXEL_ARRAYS) - {"started"} <= set(value.data_vars):
         raise ValueError(f"{name}={short_repr(value)}: must be an EscapeMap, or a dataset of one")
     if value["fate"].ndim != len(("rows", "columns")):
@@ -67,7 +70,7 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
         raise ValueError(f"dataset: has no attribute {error}; must be one of a map, written by this version") from None
     return MapSpec(
         read_potential(found), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
-        float(found["t_max"]), certify=bool(found["certify"]), backward=bool(found["backward"]),
+        float(found["t_max"]), use_evidence=bool(found["use_evidence"]), backward=bool(found["backward"]),
     )  # fmt: skip
 
 

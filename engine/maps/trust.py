@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.evidence.boundedness_certifier import BoundednessCertifier
+from engine.evidence.bounded_orbits import BoundedOrbitSearch
 from engine.exits.exit_rows import closed_exits, exit_curves
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
@@ -19,12 +19,12 @@ from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
-from engine.maps.run import CERTIFIED_FROM, certifies_tori, rising_horizons
+from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
 from engine.maps.stages import OnChange, Stage, run_to_frame
 from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.batch import OrbitBatch, propagate_batch
-from engine.propagation.certificates import Certificate
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import CHAOS_THRESHOLD, Fate, Trust
 from engine.systems.compiled import kernels_of
 
@@ -54,10 +54,10 @@ The escape time tends to infinity at the boundary of a basin, like the logarithm
 distance changes it by about d, so that at this limit shifts of the same size in other directions keep within the basin.
 """
 
-# Horizons are doubled in each stage, so that few orbits are integrated longer than needed; one of them is CERTIFIED_FROM.
-_FIRST_HORIZON = CERTIFIED_FROM / 8.0
+# Horizons are doubled in each stage, so that few orbits are integrated longer than needed; one of them is FIRST_TEST_TIME.
+_FIRST_HORIZON = FIRST_TEST_TIME / 8.0
 _HORIZON_FACTOR = 2.0
-# A grid index on the coarsest lattice of `BoundednessCertifier`. The bounded pixels to test are few and lie around islands, so
+# A grid index on the coarsest lattice of `BoundedOrbitSearch`. The bounded pixels to test are few and lie around islands, so
 # one round with all of them fills the lanes of the kernels better than one round per lattice.
 _COARSEST_LATTICE_INDEX = 8
 
@@ -115,12 +115,12 @@ def compute_trust(
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
     A pixel is tested if one of its eight neighbours has another fate or, both having escaped, other crossings, and also if it is
-    bounded without a certificate. Its orbit is integrated twice more, from two starts shifted in different directions by `SHIFT`
+    bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different directions by `SHIFT`
     (see `shifted_starts`), the second time with tolerance `SECOND_TOLERANCE`. The pixel is doubtful if in either rerun its fate
     changes, or its crossings before the escape, or its escape time by more than `LARGEST_DELAY`. Crossings of bounded orbits are
-    not compared, as certified ones are not integrated to t_max.
+    not compared, as orbits that are bounded on evidence are not integrated to t_max.
 
-    A pixel that is bounded without a certificate is also doubtful if the two reruns come to differ by `APART`. Such an orbit is
+    A pixel that is bounded without evidence is also doubtful if the two reruns come to differ by `APART`. Such an orbit is
     chaotic, and only chance keeps it inside until t_max. Of two pixels that are mirror images only the first is tested.
 
     Parameters
@@ -291,12 +291,12 @@ class _Rerun:
         return changed
 
 
-def _find_uncertified(escape_map: EscapeMap) -> np.ndarray:
-    """(rows, columns) bool: bounded pixels above the escape energy that have no certificate."""
+def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
+    """(rows, columns) bool: bounded pixels above the escape energy that have no evidence."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
-    uncertified: np.ndarray = (escape_map.certificate == Certificate.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
-    return uncertified
+    without_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
+    return without_evidence
 
 
 class _TrustTest:
@@ -306,12 +306,12 @@ class _TrustTest:
         self._given_spec, escape_map = given.spec, given.in_well_units()
         self.spec = escape_map.spec
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
-        uncertified = _find_uncertified(escape_map)
-        codes[uncertified | unlike] = Trust.NOT_TESTED
+        without_evidence = _find_without_evidence(escape_map)
+        codes[without_evidence | unlike] = Trust.NOT_TESTED
         self._codes = PixelCodes(escape_map, codes, Trust.NOT_TESTED)
         # Of the tested pixels: those whose reruns must stay together, and those whose reruns did not; the time up to which both
         # reruns have been compared.
-        self._uncertified = uncertified.ravel()[self._codes.pixels]
+        self._without_evidence = without_evidence.ravel()[self._codes.pixels]
         self._chaotic = np.zeros(self._codes.pixels.size, bool)
         self._compared = 0.0
         # Positions in the arrays of the reruns whose pixels are undecided.
@@ -334,7 +334,7 @@ class _TrustTest:
         for start, tolerance in zip(perturbation.starts(spec, x, ordinate), perturbation.tolerances, strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
             batch.mark_outside(potential, self._undecided, curves)
-            batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Certificate.CLOSED)
+            batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Evidence.CLOSED)
             reruns.append(_Rerun(batch, tolerance, perturbation.largest_delay, fate, crossings, escape_time))
         return curves, reruns
 
@@ -344,8 +344,8 @@ class _TrustTest:
         for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max):
             if not self._undecided.size:
                 return
-            if certifies_tori(self.spec) and reached == CERTIFIED_FROM:
-                yield partial(self._certify, reached, execution, partial(on_change, False))
+            if looks_for_tori(self.spec) and reached == FIRST_TEST_TIME:
+                yield partial(self._find_evidence, reached, execution, partial(on_change, False))
             yield partial(self._propagate, horizon, execution)
             reached = horizon
 
@@ -366,38 +366,38 @@ class _TrustTest:
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
-        """Find the pixels bounded without a certificate whose reruns, all integrated to `time`, are `APART`."""
-        tested = self._undecided[self._uncertified[self._undecided]]
+        """Find the pixels bounded without evidence whose reruns, all integrated to `time`, are `APART`."""
+        tested = self._undecided[self._without_evidence[self._undecided]]
         kernels = kernels_of(self.spec.potential)
         batches = [rerun.batch for rerun in self._reruns]
         states = np.array([advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches])
         self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > APART
         self._compared = time
 
-    def _certify(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark reruns of pixels bounded on the map as bounded if they have a certificate, from their states at t = `reached`.
+    def _find_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
+        """Mark reruns of pixels bounded on the map as bounded if there is evidence, from their states at t = `reached`.
 
-        The certificates of the first rerun hold for both: the difference between them on a regular orbit is far below the digits
-        that certificates compare.
+        The evidence of the first rerun holds for both: the difference between them on a regular orbit is far below the digits
+        that are compared.
         """
         first, undecided = self._reruns[0], self._undecided
         tested = undecided[(first.fate[undecided] == Fate.BOUNDED) & ~first.is_decided()[undecided]]
         if not tested.size:
             return
         grid_indices = np.full((tested.size, 2), _COARSEST_LATTICE_INDEX)
-        certifier = BoundednessCertifier(
+        search = BoundedOrbitSearch(
             self.spec.potential, self.spec.common_energy, first.batch.state[tested], grid_indices, self.spec.t_max - reached,
             execution=execution,
         )  # fmt: skip
 
-        def mark_certified() -> None:
+        def mark_bounded() -> None:
             for rerun in self._reruns:
                 pending = ~rerun.is_decided()[tested]
-                rerun.batch.mark_bounded(tested[pending], certifier.certificate[pending])
+                rerun.batch.mark_bounded(tested[pending], search.evidence[pending])
             self._update_codes()
             on_round()
 
-        certifier.run(mark_certified)
+        search.run(mark_bounded)
 
     def _update_codes(self) -> None:
         """Record which pixels are decided."""
@@ -405,7 +405,7 @@ class _TrustTest:
         changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0)
         changed |= self._chaotic
         if self._compared < self.spec.t_max:
-            finished &= ~self._uncertified | (self._reruns[0].batch.certificate != Certificate.NONE)
+            finished &= ~self._without_evidence | (self._reruns[0].batch.evidence != Evidence.NONE)
         self._codes.assign(self._codes.pixels[finished], Trust.CONFIRMED)
         self._codes.assign(self._codes.pixels[changed], Trust.DOUBTFUL)
         self._undecided = np.flatnonzero(~finished & ~changed)

@@ -22,14 +22,14 @@ from engine.measures.decay_laws import (
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
 from engine.propagation.classification import Outcomes
 
-# Of a normal distribution, for 95 % intervals.
+# Half-width of the 95 % interval of a normal distribution, in standard deviations.
 _DEVIATIONS = 1.96
 # Number of escapes in the next window tried, relative to the current one.
 _WINDOW_RATIO = 0.9
 # Where a law first seems to hold, an undetectable rest of the transient still biases the rate, so the fit uses this share of
 # the escapes, the latest ones.
 _SETTLED_SHARE = 0.5
-# Of the polynomials in the test of a law; the first one is almost the score.
+# Degrees of the polynomials in the test of a law; the first one is almost the score.
 _DEGREES = (2, 3, 4)
 _NORMS = np.sqrt(2.0 * np.array(_DEGREES) + 1.0)
 # Steepness below which the variance is that of the uniform distribution.

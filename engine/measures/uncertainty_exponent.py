@@ -14,7 +14,7 @@ from engine.foundations.validation import checked_count, checks_types, short_rep
 from engine.maps.spec import MapSpec
 from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.propagation.batch import OrbitBatch, propagate_batch
-from engine.propagation.certificates import Certificate
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate
 
 __all__ = ["HORIZON", "UncertaintyExponent", "compute_uncertainty_exponent", "fit_uncertainty"]
@@ -205,7 +205,7 @@ class _PairSampler:
         states = np.concatenate([states for states, _ in drawn], axis=1).reshape(-1, 4)
         rows = np.concatenate([rows for _, rows in drawn])
         batch = OrbitBatch.from_starts(states, np.tile(rows, 2))
-        batch.mark_bounded(np.flatnonzero(~self.is_open[batch.curve_row]), Certificate.CLOSED)
+        batch.mark_bounded(np.flatnonzero(~self.is_open[batch.curve_row]), Evidence.CLOSED)
         return batch, np.repeat(present, [rows.size for _, rows in drawn])
 
     def _integrate(self, batch: OrbitBatch, execution: Execution) -> None:

@@ -112,7 +112,8 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
         return WadaTest(basins, math.nan, math.nan, count, read_only(np.empty(0)))
     distances = np.sort(_largest_distances(labels, valid, basins, boundary))
     shares = np.cumsum(np.bincount(distances[np.isfinite(distances)].astype(np.intp))) / count
-    radius_99 = float(distances[-(-_PERCENTAGE * count // 100) - 1])
+    within = math.ceil(_PERCENTAGE * count / 100)
+    radius_99 = float(distances[within - 1])
     return WadaTest(basins, float(distances[-1]), radius_99, count, read_only(shares))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass, fields, replace
@@ -13,8 +14,9 @@ from engine.exits.interior import find_outside_starts
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits
 from engine.integrator.source.recurrence import LANES, TOLERANCE
-from engine.propagation.certificates import Certificate
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate
+from engine.propagation.fixed_step_batches import fill_vectors
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
@@ -48,14 +50,14 @@ class OrbitBatch:
         (n,) the row of the exit curves array for the energy of this orbit.
     outside
         (n,) int8: the channel beyond whose Lyapunov orbit the start lies; 0 if it lies inside.
-    certificate
-        (n,) int8 codes, see `Certificate`: why an orbit is bounded although it was not integrated to t_max; 0 for all others.
+    evidence
+        (n,) int8 codes, see `Evidence`: why an orbit is bounded although it was not integrated to t_max; 0 for all others.
     remainder
         (n, 2) what rounding has dropped from x and y of `state`, see `engine.integrator.kernels.propagate.Orbits`.
     tested
-        (n,) time of the last test for certificates, 0 before the first.
+        (n,) time of the last test for evidence, 0 before the first.
     digits
-        (n,) digits to which averages agreed in that test, infinite before the first; see `BoundednessCertifier`.
+        (n,) digits to which averages agreed in that test, infinite before the first; see `BoundedOrbitSearch`.
     """
 
     state: np.ndarray
@@ -65,7 +67,7 @@ class OrbitBatch:
     fate: np.ndarray
     curve_row: np.ndarray
     outside: np.ndarray
-    certificate: np.ndarray
+    evidence: np.ndarray
     remainder: np.ndarray
     tested: np.ndarray
     digits: np.ndarray
@@ -94,10 +96,10 @@ class OrbitBatch:
         self.fate[which[~np.isfinite(states).all(axis=1)]] = Fate.FORBIDDEN
 
     def set_outcomes(
-        self, fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, outside: np.ndarray, certificate: np.ndarray
+        self, fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, outside: np.ndarray, evidence: np.ndarray
     ) -> None:
         """Set the outcomes (n,) of all orbits without their states."""
-        self.fate[:], self.crossings[:], self.outside[:], self.certificate[:] = fate, crossings, outside, certificate
+        self.fate[:], self.crossings[:], self.outside[:], self.evidence[:] = fate, crossings, outside, evidence
         self.t[:] = np.where(fate > 0, escape_time, 0.0)
 
     def mark_outside(
@@ -122,10 +124,10 @@ class OrbitBatch:
             tested.append(part)
         return np.concatenate(tested)
 
-    def mark_bounded(self, which: np.ndarray, certificate: np.ndarray | int) -> None:
-        """Store the certificates of the orbits `which` (indices); orbits with a certificate become bounded."""
-        self.certificate[which] = certificate
-        self.fate[which[self.certificate[which] != Certificate.NONE]] = Fate.BOUNDED
+    def mark_bounded(self, which: np.ndarray, evidence: np.ndarray | int) -> None:
+        """Store the evidence of the orbits `which` (indices); orbits that have any become bounded."""
+        self.evidence[which] = evidence
+        self.fate[which[self.evidence[which] != Evidence.NONE]] = Fate.BOUNDED
 
     def copy_to_images(self, which: np.ndarray, images: np.ndarray, numbers: np.ndarray) -> None:
         """Copy the results of the orbits `which` to the orbits `images`, their exact mirror images under x → −x.
@@ -144,18 +146,18 @@ class OrbitBatch:
         fate, orbits = self.fate[which], np.arange(which.size)
         self.fate[images] = np.where(fate > 0, numbers[orbits, np.maximum(fate, 0)], fate)
         self.outside[images] = numbers[orbits, self.outside[which]]
-        certified = self.certificate[which] != Certificate.NONE
-        self.certificate[images] = np.where(certified, Certificate.MIRRORED, Certificate.NONE)
+        on_evidence = self.evidence[which] != Evidence.NONE
+        self.evidence[images] = np.where(on_evidence, Evidence.MIRRORED, Evidence.NONE)
 
     def reopen(self, which: np.ndarray) -> None:
         """Make the orbits `which` (indices), which are bounded or undecided, undecided again, to be continued."""
-        self.fate[which], self.certificate[which] = Fate.NOT_COMPUTED, Certificate.NONE
+        self.fate[which], self.evidence[which] = Fate.NOT_COMPUTED, Evidence.NONE
         self.last_crossings[which] = 0
 
-    def certificates(self) -> np.ndarray:
-        """(n,) int8: the `Certificate` of each orbit, including `Certificate.INTEGRATED`."""
-        integrated = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
-        return np.where(integrated, np.int8(Certificate.INTEGRATED), self.certificate)
+    def final_evidence(self) -> np.ndarray:
+        """(n,) int8: the `Evidence` of each orbit, including `Evidence.INTEGRATED`."""
+        integrated = (self.fate == Fate.BOUNDED) & (self.evidence == Evidence.NONE)
+        return np.where(integrated, np.int8(Evidence.INTEGRATED), self.evidence)
 
     def for_kernels(self, pending: np.ndarray) -> Orbits:
         """The arrays that `propagate` changes in place; pending (n,) uint8: 1 for the orbits to propagate."""
@@ -250,8 +252,8 @@ class OrbitPool:
 
     def take(self) -> np.ndarray:
         """The share of a worker in the orbits left, in whole SIMD vectors and at most `LARGEST_TILE`."""
-        share = -(-(self._waiting.size + self._taken) // self._workers)
-        size = min(-(-share // VECTOR) * VECTOR, LARGEST_TILE)
+        share = math.ceil((self._waiting.size + self._taken) / self._workers)
+        size = min(fill_vectors(share), LARGEST_TILE)
         orbits, self._waiting = np.split(self._waiting, [size])
         self._taken += orbits.size
         return orbits

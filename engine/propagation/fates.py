@@ -20,7 +20,7 @@ CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
 MIN_REGULAR_TIME = 1000.0
-"""Shortest orbit that can be called regular without a certificate, in units of the well: weak chaos takes this long."""
+"""Shortest orbit that can be called regular without evidence of a torus, in units of the well: weak chaos takes this long."""
 
 
 class Fate(IntEnum):
@@ -54,8 +54,9 @@ class Trust(IntEnum):
     """Whether the outcome of a pixel is robust against small changes.
 
     ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
-    outcome, and the orbit escapes or has a certificate. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its number
-    of crossings before the escape or its escape time changed, or it is bounded only by chance. ``NOT_TESTED``: not computed yet.
+    outcome, and the orbit escapes or is bounded on evidence. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its
+    number of crossings before the escape or its escape time changed, or it is bounded only by chance.
+    ``NOT_TESTED``: not computed yet.
     """
 
     NOT_APPLICABLE = 0
@@ -117,7 +118,7 @@ class OrbitResult(Result):
         return [outcome.label for outcome in self.outcomes]
 
     def to_xarray(self) -> xr.Dataset:
-        """As of other results, with the outcomes as an attribute."""
+        """The dataset of a result, with the outcomes as an attribute."""
         return super().to_xarray().assign_attrs(outcomes=write_outcomes(self.outcomes))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -97,12 +98,17 @@ def _run_on_each(work: Callable[..., Any], potential: Potential, tiles: list[np.
 
 def _lanes_per_tile(count: int, workers: int) -> int:
     """A multiple of `VECTOR`, at most `LANES`, so that each worker gets the same number of tiles, which take equal times."""
-    tiles_per_worker = max(-(-count // (workers * LANES)), 1)
-    share = max(-(-count // (tiles_per_worker * workers)), 1)
-    return -(-share // VECTOR) * VECTOR
+    tiles_per_worker = max(1, math.ceil(count / (workers * LANES)))
+    share = max(1, math.ceil(count / (tiles_per_worker * workers)))
+    return fill_vectors(share)
+
+
+def fill_vectors(count: int) -> int:
+    """Return the number of lanes of the whole SIMD vectors that hold `count` orbits."""
+    return math.ceil(count / VECTOR) * VECTOR
 
 
 def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:
     """(columns, lanes) up to `lanes` states from row `begin`; the last state is repeated to fill whole SIMD vectors."""
-    lanes = min(lanes, -(-(len(states) - begin) // VECTOR) * VECTOR)
+    lanes = min(lanes, fill_vectors(len(states) - begin))
     return states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

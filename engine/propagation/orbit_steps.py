@@ -1,4 +1,4 @@
-"""One orbit, step by step as maps propagate it: its outcome and the steps, from one integration."""
+"""The outcome and the steps of one orbit, integrated as in maps."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
     t_max
         Largest integration time, above 0, dimensionless.
     execution
-        Tells when the computation is cancelled; it runs in this thread.
+        Tells whether the computation is cancelled. It runs in this thread.
 
     Raises
     ------

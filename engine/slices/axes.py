@@ -90,7 +90,7 @@ class Direction:
     Raises
     ------
     ValueError
-        If the name is no identifier or that of a coordinate, or the components are not finite or all 0.
+        If the name is not an identifier, or is that of a coordinate, or the components are not finite or all 0.
     """
 
     key: str
@@ -121,7 +121,7 @@ class Direction:
 
     @property
     def parity(self) -> int | None:
-        """As `Coordinate.parity`; None if components of both kinds are not 0."""
+        """The parity of the components, see `Coordinate.parity`; None if they have both."""
         parities = {coordinate.parity for coordinate in self.components}
         return parities.pop() if len(parities) == 1 else None
 
@@ -145,7 +145,7 @@ class Direction:
             start[coordinate] = start[coordinate] + component * along
 
 
-class _OfSystem:
+class _SystemAxis:
     """An axis along which the system differs, and starts stay as they are."""
 
     key: str
@@ -157,20 +157,20 @@ class _OfSystem:
 
     @property
     def parity(self) -> int:
-        """1: x → −x leaves parameters unchanged."""
+        """Return 1: x → −x leaves parameters unchanged."""
         return 1
 
     @property
     def is_free(self) -> bool:
-        """False: another value is another system."""
+        """Return False: starts cannot be free in a parameter, as another value is another system."""
         return False
 
     def unit(self, units: WellUnits) -> float:
-        """1: parameters are given as they are."""
+        """Return 1: parameters are not scaled."""
         return 1.0
 
     def in_well_units(self, units: WellUnits) -> Self:
-        """The axis itself."""
+        """Return the axis itself."""
         return self
 
     def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
@@ -178,7 +178,7 @@ class _OfSystem:
 
 
 @dataclass(frozen=True)
-class ParameterAxis(_OfSystem):
+class ParameterAxis(_SystemAxis):
     """A parameter of a system as an axis: each of its values has a potential of its own.
 
     Parameters
@@ -227,7 +227,7 @@ class ParameterAxis(_OfSystem):
 
 
 @dataclass(frozen=True)
-class HeldParameter(_OfSystem):
+class HeldParameter(_SystemAxis):
     """A parameter with one value: the axis of a map that is one row or column of a map along the parameter.
 
     Parameters

@@ -81,7 +81,7 @@ def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: t
     """The default window of a map, moved by half a pixel where a line of pixels would be on a line of symmetry.
 
     An orbit of a potential even in x that starts with x = px = 0 stays there for ever, by symmetry alone. Such starts have
-    measure zero, and a column of them would count in shares and show a line that is no property of the basins; so for y.
+    measure zero, and a column of them would count in shares and show a line that is not a property of the basins; so for y.
 
     Parameters
     ----------
@@ -211,7 +211,7 @@ def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[
 
 
 def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[Coordinate, Range]:
-    """The ranges of x and y over the interior of a slice; of a coordinate that is no axis, its value twice."""
+    """The ranges of x and y over the interior of a slice; for a coordinate that is not an axis, its value twice."""
     if {Coordinate.X, Coordinate.Y} == set(plane.axes):
         points = _interior_points(potential, energy)
         return dict(zip((Coordinate.X, Coordinate.Y), map(_rounded_range, points), strict=True))

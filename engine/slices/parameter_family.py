@@ -20,10 +20,10 @@ from engine.slices.axes import ParameterAxis
 from engine.systems.outcomes import OutcomeKind, exit_outcome
 from engine.systems.potential import Potential
 
-# Nodes divide the range of the axis into this many parts, and the way from the system's own value to its farther end into at most
-# so many; where exits differ, parts are halved this many times.
+# Nodes divide the range of the axis into `_PARTS`, and the distance from the system's own value to the farther end of the range
+# into at most `_MOST_PARTS`. A part whose ends have different exits is halved up to `_HALVINGS` times.
 _PARTS, _MOST_PARTS, _HALVINGS = 8, 24, 12
-# Potentials whose critical points are found anew, at most: some 10 s.
+# Most potentials whose critical points are searched, which takes some 10 s.
 _MOST_FOUND = 120
 _NEWTON_STEPS = 20
 # Potentials along the axis that `find_members` finds.
@@ -69,11 +69,10 @@ class Member:
 
 
 class ParameterFamily:
-    """The potentials along one axis; made once for each axis, see `parameter_family`.
+    """The potentials along one axis. `parameter_family` makes it once for each axis.
 
-    Outcomes have the numbers that they have at the system's own value of the parameter, so that centres and the escape radius,
-    which all potentials of a family have, keep theirs. Exits that only exist elsewhere follow, in the order in which they
-    appear, first towards higher values; they are the next channels.
+    Outcomes keep the numbers that they have at the system's own value of the parameter. Exits that do not exist there get the
+    numbers after those, in the order in which they appear, first towards higher values and then towards lower ones.
     """
 
     def __init__(self, axis: ParameterAxis) -> None:
@@ -90,7 +89,7 @@ class ParameterFamily:
         first = axis.potential(self._own)
         self._nodes[self._own] = Member(first, read_only(np.arange(len(first.outcomes) + 1, dtype=np.int8)))
         self.outcomes = first.outcomes
-        """Those of all potentials of the family that have been met."""
+        """Outcomes of all potentials of the family that have been found so far."""
         self._extend_to(axis.high)
         self._extend_to(axis.low)
 
@@ -131,9 +130,9 @@ class ParameterFamily:
             self._connect(end, self._node_after(end, value, sign))
 
     def _node_after(self, end: float, value: float, sign: float) -> float:
-        """The node after the last one: in the range at multiples of the step, beyond it at twice the distance.
+        """Return the next node: the next multiple of the step within the range, and twice the distance beyond it.
 
-        Where the system ends before it, the value to reach.
+        If the system has no potential at the node, return the value to reach instead.
         """
         distance = abs(end - self._own)
         further = self._step * (math.floor(distance / self._step * (1.0 + _CONVERGED)) + 1)
@@ -145,7 +144,7 @@ class ParameterFamily:
         return node
 
     def _connect(self, known: float, new: float) -> None:
-        """Add a node, and others before it where the exits differ."""
+        """Add a node, and more nodes before it if its exits differ from those of the last one."""
         potential = self._axis.potential(new)
         for _ in range(_HALVINGS):
             if _match(self._nodes[known].potential, potential) is not None:
@@ -159,7 +158,7 @@ class ParameterFamily:
         self._nodes[new] = self._linked(new, known)
 
     def _linked(self, value: float, node: float) -> Member:
-        """The potential at a value, found anew, with the numbers that its exits have at a node, and new ones for others."""
+        """Find the potential at a value; its exits get the numbers of the same exits at a node, and new numbers otherwise."""
         self._found += 1
         if self._found > _MOST_FOUND:
             raise ManyExitsError(
@@ -184,7 +183,7 @@ class ParameterFamily:
         return self._matched[low, high]
 
     def _between(self, value: float, low: float, high: float) -> Member | None:
-        """The potential between two nodes with the same exits, whose saddles are continued; None if they differ."""
+        """Continue the saddles of two nodes to a value between them; None if the exits of the nodes differ."""
         first, last = self._nodes[low], self._nodes[high]
         matched = self._matches(low, high)
         share = (value - low) / (high - low)
@@ -214,12 +213,12 @@ class ParameterFamily:
 
 @functools.lru_cache(maxsize=256)
 def parameter_family(axis: ParameterAxis) -> ParameterFamily:
-    """The family of an axis; takes up to a second the first time, and less when its nodes are stored on disk."""
+    """Return the family of an axis; this takes up to a second, and less if its nodes are stored on disk."""
     return ParameterFamily(axis)
 
 
 def find_members(axis: ParameterAxis) -> None:
-    """Find potentials along a whole axis: how long that takes is a measure of a map's lines, and their points are stored on disk.
+    """Find potentials along a whole axis, to measure how long the lines of a map take, and to store their points on disk.
 
     Raises
     ------
@@ -233,7 +232,7 @@ def find_members(axis: ParameterAxis) -> None:
         except ManyExitsError:
             raise
         except ValueError:
-            # Such lines of a map stay empty.
+            # The system has no potential there, and the line of the map stays empty.
             continue
 
 

@@ -21,7 +21,7 @@ LARGEST_SAMPLE = 10_000_000
 # Points that are drawn at once, at most and at least; of fewer than this share of the points inside, the window has no interior.
 _MOST, _LEAST = 1_000_000, 1_000
 _SMALLEST_SHARE = 1e-4
-# Of a point (x, y), which the energy surface covers once for each direction of the velocity.
+# The speed at a point (x, y), over which the energy surface has one point for each direction of the velocity.
 _LAUNCHED = Slice(*SPACE.axes, Coordinate.SPEED)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.extras import require_package
+from engine.foundations.former_names import rename_stored
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
 from engine.maps.origin_fates import OriginFateMap
@@ -41,7 +42,7 @@ _KINDS: dict[str, Any] = {
         BasinEntropy, UncertaintyExponent, Sweep, SampledOrbits,
     )
 }  # fmt: skip
-# Of results with a field that is neither a number nor an array nor a request of maps.
+# Readers of results with a field that is neither a number nor an array nor a request of maps.
 _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {EscapeMap: read_map, Sweep: Sweep}
 # Flags of finished energies in the stores of earlier versions, and the name of their curves: both are opened as plain datasets.
 _FORMER_FLAGS, _FORMER_CURVES = "done", "Curves"
@@ -114,6 +115,7 @@ def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     if kind is None:
         held = dataset.attrs.get("result", "no result")
         raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(_KINDS)}. xarray opens it")
+    dataset = rename_stored(dataset)
     if kind in _READERS:
         return _READERS[kind](dataset)
     values = {each.name: _value(kind, each.name, dataset) for each in fields(kind)}
@@ -140,4 +142,4 @@ def _value(kind: Any, name: str, dataset: xr.Dataset) -> Any:
     if name == "complete":
         return bool(number)
     # Fates are numbers, as some of them are outcomes.
-    return kind.codes[name](number) if name == "certificate" else number
+    return kind.codes[name](number) if name == "evidence" else number

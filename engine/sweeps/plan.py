@@ -17,7 +17,7 @@ from engine.maps.spec import MapSpec
 from engine.sweeps.spec import SweepSpec
 from engine.warmup import prepare_kernels
 
-# A plan is based on maps of these sides at this many values; the small one measures the cost that does not depend on size.
+# A plan is based on maps with these sides at this many values. The smaller maps show the cost that does not depend on the size.
 _COARSE_SIDES = (48, 96)
 _PLANNED_VALUES = 12
 
@@ -61,17 +61,16 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
 
     For larger maps the cost grows at most linearly with the number of pixels, and more slowly where invariant curves enclose many
     orbits. In trials with 40 maps the estimate was within a fifth. At t_max = 1e5 planning takes some seconds; a minute or more
-    where many orbits are bounded and few can be certified.
+    where many orbits are bounded and there is evidence for few.
 
     Parameters
     ----------
     spec
-        The request; the cost of its measures beside the maps is not in the plan.
+        The request; the plan leaves out the cost of its measures.
     cores
         Number of workers, 1 or more; None for those of `execution`.
     execution
-        How the sweep is to run: its executor is only asked for the number of its workers, which are assumed to be as fast as this
-        core.
+        How the sweep will run. Only its number of workers is used; they are assumed to be as fast as this core.
 
     Raises
     ------
@@ -112,7 +111,7 @@ def _predict_seconds(spec: MapSpec, execution: Execution) -> float:
 
 def _measure_seconds(spec: MapSpec, execution: Execution) -> float:
     begun = time.thread_time()
-    # In this thread, whose processor time is measured.
+    # The map is computed in this thread, because its processor time is measured.
     if not run_map(spec, execution.in_this_thread()).complete:
         raise CancelledError
     return time.thread_time() - begun

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_count, short_repr
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.slices.axes import Coordinate, ParameterAxis
@@ -33,6 +34,7 @@ EXTENT = ("requested", "refine", "count")
 """Attributes of a sweep that only tell at which values, and at how many, it measures."""
 
 
+@with_former_fields
 @dataclass(frozen=True)
 class SweepSpec:
     """A sweep of maps over energies, or over a parameter of the system, on one plane.
@@ -53,7 +55,7 @@ class SweepSpec:
         both planes, so that this window contains the default windows of all other energies.
     t_max
         Integration time, dimensionless, 0 < t_max ≤ 1e8.
-    certify
+    use_evidence
         As in `MapSpec`.
     measures
         What is measured on each map, by name: "maps" keeps the arrays of the map itself; "shares", "escape_times", "islands",
@@ -78,7 +80,7 @@ class SweepSpec:
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: GivenWindow | None = None
     t_max: float = 1e5
-    certify: bool = True
+    use_evidence: bool = True
     measures: Sequence[str] = ("maps",)
     along: ParameterAxis | None = None
     energy: float | None = None
@@ -97,11 +99,11 @@ class SweepSpec:
         if "maps" in measures and self.along is not None and self.window is None:
             raise ValueError("window=None: must be given for maps along a parameter, which have common axes")
         highest = MapSpec(
-            self.potential, plane, self._energy_at(values[-1]), self.resolution, self.window, self.t_max, self.certify
+            self.potential, plane, self._energy_at(values[-1]), self.resolution, self.window, self.t_max, self.use_evidence
         )
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "measures", measures)
-        for name in ("plane", "resolution", "window", "t_max", "certify"):
+        for name in ("plane", "resolution", "window", "t_max", "use_evidence"):
             object.__setattr__(self, name, getattr(highest, name))
 
     @property
@@ -128,7 +130,7 @@ class SweepSpec:
             member = parameter_family(self.along).member(value)
             potential, numbers = member.potential, tuple(member.numbers_at(energy).tolist())
         window = self._common_window()
-        map_spec = MapSpec(potential, self.plane, energy, self.resolution, window, self.t_max, self.certify)
+        map_spec = MapSpec(potential, self.plane, energy, self.resolution, window, self.t_max, self.use_evidence)
         return SweepPoint(map_spec, self.name, value, tuple(self.measures), numbers, self.outcomes)
 
     def attributes(self) -> dict[str, Any]:

@@ -44,7 +44,7 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
     for channels in merged:
         joined = [group for group in groups if not group.isdisjoint(channels)]
         groups = [group for group in groups if group not in joined] + [set(channels).union(*joined)]
-    # As many maxima as channels, or more, surround the well.
+    # The maxima surround the well if there are at least as many of them as channels.
     connections = [sum(len(channels) - 1 for channels in merged if group.issuperset(channels)) for group in groups]
     return tuple(
         sorted(MergedExit(tuple(sorted(group)), count >= len(group)) for group, count in zip(groups, connections, strict=True))

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from engine.expressions.nodes import Expression
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
 from engine.foundations.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
 from engine.systems.forms.expression_form import ExpressionForm
@@ -27,6 +28,7 @@ from engine.systems.well_units import WellUnits
 Terms = tuple[tuple[int, int, float], ...]
 
 
+@with_former_fields
 @dataclass(frozen=True, init=False)
 class Potential(Result):
     """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
@@ -168,7 +170,7 @@ class Potential(Result):
         )
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
-        """The same potential as a member of a family, with exits that were found before; parameters as of `ContinuedWell`."""
+        """Return the potential as a member of a family, with known exits; the parameters are those of `ContinuedWell`."""
         return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
 
     def _changed(self, **values: Any) -> Potential:
@@ -227,7 +229,7 @@ class Potential(Result):
         return self._changed(form=self.form.moved(*nearest), centres=centres, origin=origin)
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
-        """The potential with other centres and another escape radius; parameters as of the potential."""
+        """Return the potential with other centres and another escape radius; the parameters are those of `Potential`."""
         check_type("centres", centres, Iterable)
         return self._changed(centres=tuple(centres), escape_radius=escape_radius)
 
@@ -258,7 +260,7 @@ class Potential(Result):
             )
 
     @property
-    def certifies_tori(self) -> bool:
+    def tori_are_evidence(self) -> bool:
         """Whether an invariant torus counts as evidence that its orbits are bounded for ever: only in a well at rest.
 
         In a rotating frame, around centres and with an escape radius this evidence is not tested.
@@ -278,7 +280,7 @@ class Potential(Result):
     def terms(self) -> Terms:
         """((i, j, c), …) of a polynomial; ValueError for other formulas."""
         if not isinstance(self.form, PolynomialForm):
-            raise ValueError(f"{self.name} is no polynomial")
+            raise ValueError(f"{self.name} is not a polynomial")
         return self.form.terms
 
     def value(self, x: Any, y: Any) -> Any:

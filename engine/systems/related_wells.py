@@ -93,8 +93,8 @@ class Lineage:
     Attributes
     ----------
     family
-        Empty, or from which family the exits were continued (`ParameterFamily`). They may differ in the last bit from those that
-        are found from the critical points, and so may results, which are therefore kept apart.
+        Name of the family from which the exits were continued (`ParameterFamily`), or empty. Continued exits may differ in the
+        last bit from exits found from the critical points, so caches keep the results of both apart.
     make_well
         Makes the well of form, rotation, centres and escape radius; it has no influence on any result.
     """
@@ -104,4 +104,4 @@ class Lineage:
 
 
 SEARCHED = Lineage()
-"""Of a well whose exits are searched among the critical points."""
+"""Lineage of a well whose exits are searched among the critical points."""

@@ -16,7 +16,7 @@ _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
 def describe_potential(potential: Potential) -> dict[str, Any]:
-    """Name, formula with all digits, rotation, centres, escape radius, 0 for none, and the origin of the axes."""
+    """Return name, formula with all digits, rotation, centres, escape radius (0 for none) and origin of the axes."""
     return {
         "potential": potential.name,
         "terms": potential.form.text,
@@ -28,7 +28,7 @@ def describe_potential(potential: Potential) -> dict[str, Any]:
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:
-    """The potential of attributes; without rotation, centres and escape radius where there are none of these attributes."""
+    """Return the potential of attributes; missing attributes stand for no rotation, centres, escape radius and shift."""
     text, name = str(attributes["terms"]), str(attributes["potential"])
     terms = [_TERM.fullmatch(term) for term in text.split("; ")]
     if all(terms):

@@ -144,7 +144,7 @@ def _potential(system: System) -> Potential:
     entry = system.entry
     if system.case != TYPED and (unknown := [name for name in system.parameters if name not in entry.adjustable]):
         legal = ", ".join(entry.adjustable) or "none"
-        raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is no parameter of {system.case}; it has {legal}")
+        raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is not a parameter of {system.case}; it has {legal}")
     values = {**entry.parameters, **system.parameters}
     letters = {name: value for name, value in values.items() if name not in WELL_PARAMETERS}
     well = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}

@@ -1,4 +1,4 @@
-"""What follows from a potential: critical points, exits with their numbers, symmetries, units; each is found at its first use."""
+"""Quantities derived from a potential: critical points, numbered exits, symmetries and units, each computed at its first use."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Well(ReadOnlyArrays):
     Attributes
     ----------
     form, rotation, centres, escape_radius
-        Those of the potential.
+        The data of the potential.
     """
 
     form: Form
@@ -50,7 +50,7 @@ class Well(ReadOnlyArrays):
     def critical_points(self) -> np.ndarray:
         """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve.
 
-        Those of a formula that is no polynomial are all of a region, see `engine.systems.forms.stationary_points`.
+        For a formula that is not a polynomial these are all points of a region, see `engine.systems.forms.stationary_points`.
         """
         return self._points_and_indices[:, :2]
 
@@ -102,7 +102,7 @@ class Well(ReadOnlyArrays):
     def escape_energy(self) -> float:
         """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none.
 
-        With an escape radius −∞: at every energy there may be orbits outside the saddles.
+        It is −∞ with an escape radius, because orbits can then start outside the saddles at every energy.
         """
         if self.escape_radius is not None:
             return -np.inf
@@ -115,9 +115,10 @@ class Well(ReadOnlyArrays):
         )
 
     def is_closed_at(self, energy: Any) -> Any:
-        """Whether no orbit of the well at these energies ever ends: they are below all saddles, and there are no centres.
+        """Whether no orbit of the well ends at these energies, because they are below all saddles and there are no centres.
 
-        With an escape radius never. In a rotating frame orbits cannot pass the zero-velocity curve V = h either.
+        Always False with an escape radius. It also holds in a rotating frame, where orbits cannot pass the zero-velocity curve
+        V = h.
         """
         return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.centres)
 
@@ -137,12 +138,12 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """What orbits can end at: the exits in channel order, the centres, the escape radius; the first one is fate 1."""
+        """The possible ends of orbits: exits in channel order, centres, and the escape radius; the first one is fate 1."""
         return outcomes_of(self.channels, self.centres, self.escape_radius is not None)
 
     @property
     def setting(self) -> Setting:
-        """What the compiled functions depend on besides the formula."""
+        """The properties besides the formula on which compiled functions depend."""
         return Setting(self.channels, len(self.centres), self.escape_radius is not None, self.rotation != 0.0)
 
     @cached_property
@@ -167,7 +168,7 @@ class Well(ReadOnlyArrays):
         )
 
     def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
-        """The exits of several channels, above a maximum between these. Such an exit has the lowest of their numbers."""
+        """The exits of several channels above the maximum between these; each exit has the lowest of their numbers."""
         return merged_exits(self.channel_mergers, energy)
 
     def exit_numbers(self, energy: Any) -> np.ndarray:
@@ -177,7 +178,7 @@ class Well(ReadOnlyArrays):
         return numbers
 
     def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
-        """The outcomes as `outcomes`, named as exits are at an energy, or in a range of energies (low, high)."""
+        """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high)."""
         low, high = energy if isinstance(energy, tuple) else (energy, energy)
         if not self.merged_exits(high):
             return self.outcomes
@@ -190,12 +191,12 @@ class Well(ReadOnlyArrays):
 
     @property
     def mirror_in_x(self) -> bool:
-        """Whether (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point: V is even in x, and nothing rotates."""
+        """Whether (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point: V is even in x in a frame at rest."""
         return self.form.mirror_in_x and self._mirrors_centres([-1.0, 1.0])
 
     @property
     def mirror_in_y(self) -> bool:
-        """Whether (y, py) → (−y, −py) maps orbits to orbits, exactly in floating point: V is even in y, and nothing rotates."""
+        """Whether (y, py) → (−y, −py) maps orbits to orbits, exactly in floating point: V is even in y in a frame at rest."""
         return self.form.mirror_in_y and self._mirrors_centres([1.0, -1.0])
 
     def _mirrors_centres(self, signs: Sequence[float]) -> bool:
@@ -242,7 +243,7 @@ class Well(ReadOnlyArrays):
     def fastest_frequency(self) -> float:
         """The higher frequency of small oscillations in the well at the origin; NaN if there is neither well nor centre.
 
-        Without a well that of a circle of typical size about the origin: the square is the average slope of V over the radius.
+        Without a well it is that of a circular orbit of typical radius: the square is the mean slope of V over the radius.
         """
         if self.is_minimum or not self.typical_radius:
             matrix = hessian_matrix(self.form, 0.0, 0.0)
@@ -262,8 +263,8 @@ class Well(ReadOnlyArrays):
         """The units of the well, rounded to powers of 2; both are 1 for the three cases of Zotos (2014).
 
         The unit of length is the distance of the nearest exit saddle, the unit of time 1/ω of the fastest small oscillation in
-        the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of it, without exits that of the
-        form.
+        the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of that; without exits it is the
+        length of the form.
         """
         frequency = self.fastest_frequency
         time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
@@ -280,9 +281,9 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def bottom(self) -> float:
-        """V at the origin, from which multiples of the escape energy count.
+        """V at the origin, the zero of `energy_at`.
 
-        Without a well its average on a circle with half the distance of the nearest exit saddle, or a tenth of the escape radius.
+        Without a well it is the mean of V on a circle of the typical radius, see `typical_radius`.
         """
         if self.is_minimum or not self.typical_radius:
             return float(self.form.value(0.0, 0.0))

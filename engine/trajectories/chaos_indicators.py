@@ -6,7 +6,7 @@ averages that agree as on a torus make an orbit regular. An escaping orbit can b
 verdict on it.
 
 The thresholds below were calibrated on 850 orbits bounded until t = 1e5 on six maps (I at h = 0.12 and 0.13, II at 0.16 and 0.17,
-III at 0.24 and 0.26). "Tori" are the orbits among them certified by 8 agreeing digits. `benchmarks.verdicts` counts how many of
+III at 0.24 and 0.26). "Tori" are the orbits among them with 8 agreeing digits. `benchmarks.verdicts` counts how many of
 the verdicts turn out wrong later.
 """
 
@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
+from engine.evidence.birkhoff_averages import REGULAR_DIGITS, TORUS_DIGITS, WINDOWS, count_agreeing_digits
 from engine.exits.exit_rows import exits_of_orbit
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
@@ -47,7 +47,7 @@ REGULAR_POWER = 1.5
 """Fastest growth from t/10 to t, as a power of t, that is no sign of chaos. On a torus a deviation vector grows like t."""
 
 CHAOTIC_DIGITS = dict(zip(WINDOWS, (1.0, 2.0, 3.0, 4.0), strict=True))
-"""By window T: fewer digits than this are chaotic. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
+"""An orbit with fewer digits than this is chaotic, by window T. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
 
 _GROWTH_FIT_SAMPLES = 200
 
@@ -75,7 +75,7 @@ class BirkhoffDigits(Result):
     windows
         (m,) increasing window lengths T, dimensionless, with the orbit bounded for 2T. Empty for a shorter orbit.
     digits
-        (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is `CERTIFIED_DIGITS` or more.
+        (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is `TORUS_DIGITS` or more.
     time_unit
         Unit of time of the well before rounding, 1/ω, of which the windows are multiples.
     """
@@ -121,7 +121,7 @@ def compute_birkhoff_digits(
     The number of agreeing digits rises fast with the window length on a torus and stays at 1 to 3 along a chaotic orbit (Das,
     Saiki, Sander & Yorke 2017, Nonlinearity 30, 4111; Sander & Meiss 2020, Physica D 411, 132569; Duignan & Meiss 2023, Physica D
     449, 133749). `engine.evidence.birkhoff_averages` describes the weight function. The computation runs in the calling
-    thread and stops at the first window with `CERTIFIED_DIGITS` digits.
+    thread and stops at the first window with `TORUS_DIGITS` digits.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
         if found == 0.0:
             break
         digits.append(float(found))
-        if found >= CERTIFIED_DIGITS:
+        if found >= TORUS_DIGITS:
             break
     return BirkhoffDigits(read_only(np.array(windows[: len(digits)])), read_only(np.array(digits)), unit)
 
@@ -343,12 +343,12 @@ def _judge_digits(orbit: Orbit, digits: BirkhoffDigits) -> tuple[Verdict, str]:
         return Verdict.UNDECIDED, f"No windows to compare: {_reason_without_windows(orbit)}."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])
     chaotic = CHAOTIC_DIGITS[min(WINDOWS, key=lambda known: abs(known - window / digits.time_unit))]
-    if value >= CERTIFIED_DIGITS:
-        verdict, reason = Verdict.REGULAR, f"{CERTIFIED_DIGITS:g} or more, as on a torus"
+    if value >= TORUS_DIGITS:
+        verdict, reason = Verdict.REGULAR, f"{TORUS_DIGITS:g} or more, as on a torus"
     elif value < chaotic:
         verdict, reason = Verdict.CHAOTIC, f"below {chaotic:g}: fewer than on any known torus"
     else:
-        verdict, reason = Verdict.UNDECIDED, f"neither below {chaotic:g}, as in chaos, nor {CERTIFIED_DIGITS:g}, as on a torus"
+        verdict, reason = Verdict.UNDECIDED, f"neither below {chaotic:g}, as in chaos, nor {TORUS_DIGITS:g}, as on a torus"
     return verdict, f"Averages over two windows of T = {format_time(window)} agree to {value:.1f} digits, {reason}."
 
 

@@ -6,16 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS
+from engine.evidence.birkhoff_averages import TORUS_DIGITS
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_count, format_time
-from engine.propagation.certificates import Certificate, describe_certificate
+from engine.propagation.evidence import Evidence, describe_evidence
 from engine.propagation.fates import Fate, OrbitResult, describe_fate, name_fate, outcome_of
 from engine.systems.outcomes import Outcome
 from engine.trajectories.chaos_indicators import BirkhoffDigits, IndicatorVerdict, Verdict, evaluate_indicators
 from engine.trajectories.trajectory import Orbit
 
 
+@with_former_fields
 @dataclass(frozen=True)
 class OrbitVerdict(OrbitResult):
     """What is known of one orbit.
@@ -28,12 +30,12 @@ class OrbitVerdict(OrbitResult):
         Time of the escape, or time until which the orbit is integrated, dimensionless.
     crossings
         Upward crossings of y = 0 until then.
-    certificate
+    evidence
         Why the orbit is called bounded: ``INTEGRATED`` holds until `t_end` only, ``CLOSED`` for ever, and ``QUASI_PERIODIC`` is
         evidence of a torus, on which it would stay for ever. ``NONE`` if it is not bounded.
     character
         If the orbit is bounded, what its indicators show until `t_end`; chaotic while inside or None if it is not.
-    evidence
+    indicators
         The indicators that decide on the character, with their values; empty if none does.
     outcomes
         Those of the potential, see `Potential.outcomes`; empty if they are not known.
@@ -44,17 +46,17 @@ class OrbitVerdict(OrbitResult):
     fate: int
     t_end: float
     crossings: int
-    certificate: Certificate
+    evidence: Evidence
     character: Verdict | None
-    evidence: str
+    indicators: str
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     exits_unknown: str = ""
-    codes: ClassVar = {"fate": Fate, "certificate": Certificate}
+    codes: ClassVar = {"fate": Fate, "evidence": Evidence}
 
     @property
     def is_bounded_for_ever(self) -> bool:
         """Whether the orbit can never escape, which its energy proves."""
-        return self.certificate is Certificate.CLOSED
+        return self.evidence is Evidence.CLOSED
 
     @property
     def outcome(self) -> str:
@@ -73,11 +75,11 @@ class OrbitVerdict(OrbitResult):
             return f"{outcome_of(self.fate, self.outcomes).past} at t = {time}, {kind}{self._inside}."
         if self.character is None:
             return describe_fate(self.fate, self.outcomes)
-        reason = describe_certificate(self.certificate)
-        match self.certificate:
-            case Certificate.CLOSED:
+        reason = describe_evidence(self.evidence)
+        match self.evidence:
+            case Evidence.CLOSED:
                 return f"Bounded for ever ({reason}){self._decided}, with {crossings} until t = {time}."
-            case Certificate.QUASI_PERIODIC:
+            case Evidence.QUASI_PERIODIC:
                 return f"Bounded until t = {time} and probably for ever ({reason}){self._decided}, with {crossings}."
             case _:
                 return f"{self._stays.capitalize()} until t = {time}{self._decided}, with {crossings}."
@@ -109,7 +111,7 @@ class OrbitVerdict(OrbitResult):
             case Verdict.NO_SIGN:
                 return f", no sign of chaos until t = {format_time(self.t_end)}"
             case _:
-                return f", {self.character} ({self.evidence})"
+                return f", {self.character} ({self.indicators})"
 
     @property
     def _inside(self) -> str:
@@ -124,7 +126,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     A bounded orbit is regular or chaotic if an indicator of `evaluate_indicators` concludes so and none concludes the opposite.
     Without either, it shows no sign of chaos until the end if none of its deviation vectors does, and is undecided otherwise.
     It is bounded for ever if its energy is below every saddle; Birkhoff averages that agree as on an invariant torus are
-    evidence for that in a well at rest (`Potential.certifies_tori`), unless another indicator shows chaos. One that escapes is
+    evidence for that in a well at rest (`Potential.tori_are_evidence`), unless another indicator shows chaos. One that escapes is
     chaotic while inside if an indicator says so.
 
     Parameters
@@ -145,10 +147,10 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     indicators = evaluate_indicators(orbit, digits)
     conclusions = [indicator.conclusion for indicator in indicators]
     character = _combine(conclusions) if orbit.fate == Fate.BOUNDED else _character_inside(conclusions)
-    certificate = _certificate(orbit, digits, Verdict.CHAOTIC in conclusions)
-    evidence = _evidence(indicators, character)
+    evidence = _find_evidence(orbit, digits, Verdict.CHAOTIC in conclusions)
+    deciding = _deciding_indicators(indicators, character)
     t_end, known = float(orbit.t[-1]), (orbit.outcomes, orbit.exits_unknown)
-    return OrbitVerdict(orbit.fate, t_end, orbit.crossings, certificate, character, evidence, *known)
+    return OrbitVerdict(orbit.fate, t_end, orbit.crossings, evidence, character, deciding, *known)
 
 
 def _combine(conclusions: Sequence[Verdict | None]) -> Verdict:
@@ -163,15 +165,15 @@ def _character_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:
     return Verdict.CHAOTIC_INSIDE if Verdict.CHAOTIC_INSIDE in conclusions else None
 
 
-def _evidence(indicators: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
+def _deciding_indicators(indicators: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
     """The indicators that conclude what the character is, with their values."""
     deciding = [one for one in indicators if character is not None and one.conclusion is character]
     return ", ".join(f"{one.name} {one.value:.2g}" for one in deciding)
 
 
-def _certificate(orbit: Orbit, digits: BirkhoffDigits | None, shows_chaos: bool) -> Certificate:
-    if orbit.certificate is not Certificate.INTEGRATED or shows_chaos or digits is None or not digits.digits.size:
-        return orbit.certificate
-    if orbit.potential is not None and not orbit.potential.certifies_tori:
-        return orbit.certificate
-    return Certificate.QUASI_PERIODIC if digits.digits[-1] >= CERTIFIED_DIGITS else Certificate.INTEGRATED
+def _find_evidence(orbit: Orbit, digits: BirkhoffDigits | None, shows_chaos: bool) -> Evidence:
+    if orbit.evidence is not Evidence.INTEGRATED or shows_chaos or digits is None or not digits.digits.size:
+        return orbit.evidence
+    if orbit.potential is not None and not orbit.potential.tori_are_evidence:
+        return orbit.evidence
+    return Evidence.QUASI_PERIODIC if digits.digits[-1] >= TORUS_DIGITS else Evidence.INTEGRATED

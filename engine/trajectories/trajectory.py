@@ -12,10 +12,11 @@ from engine.evidence.birkhoff_averages import compare_halves
 from engine.exits.exit_rows import exits_of_orbit
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
-from engine.propagation.certificates import Certificate
 from engine.propagation.deviation_vectors import DEVIATION_VECTORS
+from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate, OrbitResult
 from engine.propagation.orbit_steps import OrbitSteps, record_orbit
 from engine.systems.compiled import kernels_of
@@ -36,6 +37,7 @@ _MIN_SAMPLES = 400
 _MAX_SAMPLES = 500_000
 
 
+@with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Orbit(OrbitResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
@@ -63,7 +65,7 @@ class Orbit(OrbitResult):
         ``|H − h| / |h|`` at the end of the orbit.
     energy
         h of the initial state.
-    certificate
+    evidence
         ``CLOSED`` if its energy is below every saddle, ``INTEGRATED`` if it is bounded until t_max, ``NONE`` if not bounded.
     time_unit
         Unit of time of the well before rounding, 1/ω, in which the chaos indicators measure the length of an orbit.
@@ -87,11 +89,11 @@ class Orbit(OrbitResult):
     crossings: int
     energy_error: float
     energy: float = field(metadata=ENERGY)
-    certificate: Certificate
+    evidence: Evidence
     time_unit: float = field(default=1.0, metadata=TIME)
     potential: Potential | None = field(default=None, repr=False)
     exits_unknown: str = ""
-    codes: ClassVar = {"fate": Fate, "certificate": Certificate}
+    codes: ClassVar = {"fate": Fate, "evidence": Evidence}
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:  # type: ignore[override]
@@ -190,15 +192,15 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
     for array in arrays:
         read_only(array)
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
-    certificate = _certificate(potential, energy, fate)
-    numbers = fate, escape_time, crossings, energy_error, energy, certificate, potential.well.exact_time_unit
+    evidence = _find_evidence(potential, energy, fate)
+    numbers = fate, escape_time, crossings, energy_error, energy, evidence, potential.well.exact_time_unit
     return Orbit(*arrays, *numbers, exits_unknown=exits_unknown)
 
 
-def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
+def _find_evidence(potential: Potential, energy: float, fate: int) -> Evidence:
     if fate != Fate.BOUNDED:
-        return Certificate.NONE
-    return Certificate.CLOSED if potential.well.is_closed_at(energy) else Certificate.INTEGRATED
+        return Evidence.NONE
+    return Evidence.CLOSED if potential.well.is_closed_at(energy) else Evidence.INTEGRATED
 
 
 def _sample_orbit(

@@ -78,7 +78,7 @@ def _visible_samples(edges: np.ndarray, end: int) -> np.ndarray:
     """Places of samples before `end`, evenly in each interval, and the last one."""
     counts = np.diff(np.append(edges, end))
     place = np.arange(end) - np.repeat(edges, counts)
-    stride = np.repeat(-(-counts // _MOST_SAMPLES), counts)
+    stride = np.repeat(np.ceil(counts / _MOST_SAMPLES).astype(np.intp), counts)
     return np.flatnonzero((place % stride == 0) | (np.arange(end) == end - 1))
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import Certificate, EscapeMap, Fate, OriginFateMap, Outcome, Regularity, RegularityMap, Trust, TrustMap
+from engine import EscapeMap, Evidence, Fate, OriginFateMap, Outcome, Regularity, RegularityMap, Trust, TrustMap
 from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
 
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
@@ -32,9 +32,9 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
     images, window = frame.thinned()
     fate, crossings = images["fate"], images["crossings"]
     classes = np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1
-    # Bounded pixels are classified by their certificate.
-    classes[fate == Fate.BOUNDED] = len(CROSSING_CLASSES) + images["certificate"][fate == Fate.BOUNDED]
-    character = [_codes(fate, _certified_characters(images), bounded_too=True)] if characters else NO_LAYER
+    # Bounded pixels are classified by their evidence.
+    classes[fate == Fate.BOUNDED] = len(CROSSING_CLASSES) + images["evidence"][fate == Fate.BOUNDED]
+    character = [_codes(fate, _characters_by_evidence(images), bounded_too=True)] if characters else NO_LAYER
     return {
         "fate": [fate_codes(fate, frame.spec.outcomes)],
         "crossing_class": [_codes(fate, classes, bounded_too=True)],
@@ -99,7 +99,7 @@ def _pixels_at(columns: dict[str, list[Any]], x: np.ndarray, y: np.ndarray) -> t
 
 
 def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]) -> dict[str, list[Any]]:
-    """Column of the pixels whose orbits end otherwise in another view of a plane with the same axes.
+    """Column of the pixels whose orbits have another outcome in another view of a plane with the same axes.
 
     Parameters
     ----------
@@ -168,10 +168,10 @@ def doubt_tones(trust: TrustMap) -> np.ndarray:
     return tones
 
 
-def _certified_characters(images: dict[str, np.ndarray]) -> np.ndarray:
-    """Regularity as far as certificates tell: orbits on an invariant torus are regular."""
+def _characters_by_evidence(images: dict[str, np.ndarray]) -> np.ndarray:
+    """Regularity as far as the evidence tells: orbits on an invariant torus are regular."""
     character = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
-    character[images["certificate"] == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
+    character[images["evidence"] == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
     return character
 
 

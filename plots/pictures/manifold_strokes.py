@@ -9,7 +9,7 @@ import numpy as np
 from engine import StableManifolds
 from engine.periodic.stable_manifolds import ManifoldArc
 
-# Of the first, the second and all later images, which lie ever closer together.
+# Strokes of the first, the second and all later images, which lie ever closer together.
 _WIDTHS, _ALPHAS = (1.6, 1.0, 0.6), (1.0, 0.9, 0.6)
 _RIM = 0.8
 

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from engine import Certificate, Fate, Outcome, Regularity, StableManifolds
+from engine import Evidence, Fate, Outcome, Regularity, StableManifolds
 from engine.propagation.fates import UNRESOLVED, outcome_of
 from engine.systems.outcomes import OutcomeKind
 
@@ -207,8 +207,8 @@ class Palette:
 
     @cached_property
     def crossing_colours(self) -> list[str]:
-        """Colours of the pixel codes of the crossings; bounded pixels have one code per certificate."""
-        return [*self._outcome_colours, *self.classes, *(self.bounded for _ in Certificate)]
+        """Colours of the pixel codes of the crossings; bounded pixels have one code per kind of evidence."""
+        return [*self._outcome_colours, *self.classes, *(self.bounded for _ in Evidence)]
 
     @cached_property
     def character_colours(self) -> list[str]:
@@ -289,7 +289,7 @@ PALETTES = {"paper": PAPER, "safe": COLOUR_BLIND_SAFE}
 
 
 @dataclass(frozen=True)
-class Inks:
+class LineColours:
     """Colours of lines and text on a light or a dark page."""
 
     limiting_curve: str
@@ -300,23 +300,23 @@ class Inks:
     text: str
 
 
-LIGHT = Inks(
+LIGHT = LineColours(
     limiting_curve="#1b1b1b", equipotential="#b9c3cf", critical_equipotential="#7e001d", halo="#ffffff", quiet="#555555",
     text="#1b1b1b",
 )  # fmt: skip
-DARK = Inks(
+DARK = LineColours(
     limiting_curve="#e6e6e6", equipotential="#566170", critical_equipotential="#ffb3b0", halo="#ffffff", quiet="#b0b0b0",
     text="#f0f0f0",
 )  # fmt: skip
 
 DOUBT = ("#000000", "#ffffff")
-"""Of doubtful pixels, alternately as on a chessboard: one of the two is visible on any colour."""
+"""Colours of doubtful pixels, which alternate as on a chessboard: one of the two is visible on any colour."""
 
 MEASURED, SET_ASIDE = "#4c8dc4", "#b9c3cf"
-"""Of measured points, and of those that a fit leaves out."""
+"""Colours of measured points, and of those that a fit leaves out."""
 
 LAW_COLOURS = {"exponential": "#d1495b", "power law": "#b58900"}
-"""Of fitted decay laws."""
+"""Colours of fitted decay laws."""
 
 PATCH_EDGE = "#999999"
 MARK_EDGE = "#111111"

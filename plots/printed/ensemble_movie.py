@@ -28,7 +28,7 @@ from plots.printed.map_figure import show_window
 from plots.printed.potential_figure import draw_well
 
 FRAMES_PER_SECOND = 25
-"""Of all movies."""
+"""Frames per second of all movies."""
 
 _HEIGHT = 0.55
 _PARTICLE = 3.0
@@ -46,7 +46,7 @@ class MovieFormat(StrEnum):
 
 @dataclass(frozen=True)
 class _Stage:
-    """What changes from frame to frame."""
+    """The figure, and the artists that change from frame to frame."""
 
     figure: Figure
     window: Window
@@ -65,9 +65,9 @@ def ensemble_movie_bytes(
     potential
         The potential of the orbits.
     orbits
-        Of one energy, at common times.
+        Orbits of one energy, at common times.
     palette
-        Colours of the exits; a particle has that of the exit through which it leaves, others that of bounded orbits.
+        Colours: a particle has the colour of the exit through which it leaves, or that of bounded orbits.
     format
         MP4 needs the extra ``movies``.
     style
@@ -115,14 +115,14 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
     particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE, c=colours, linewidths=0, zorder=3)
     survival = _draw_chart(chart, potential, orbits, style)
     set_font(figure)
-    # Laid out once: the frames differ in nothing that moves an axis.
+    # One layout is enough, because no axis moves between frames.
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     return _Stage(figure, window, particles, survival, count)
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
-    """The axes of the share inside, with the law of mixed motion; the line that grows."""
+    """Draw the axes of the share inside and the law of mixed motion; returns the line that `_show` extends."""
     last, least = float(orbits.t[0, -1]), _LEAST_SHARE / len(orbits.fate)
     times = np.linspace(0.0, last, 200)
     rate = compute_flux(potential, float(orbits.energy[0])).decay_rate
@@ -141,7 +141,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
 
 
 def _show(stage: _Stage, orbits: SampledOrbits, place: int) -> None:
-    """Show the time of a place."""
+    """Show the orbits at one of their times, by its index."""
     window, t = stage.window, float(orbits.t[0, place])
     across = (orbits.x[:, place] - window.x_low) / (window.x_high - window.x_low)
     up = (orbits.y[:, place] - window.ordinate_low) / (window.ordinate_high - window.ordinate_low)

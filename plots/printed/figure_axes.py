@@ -31,7 +31,7 @@ RENDER_LOCK = threading.Lock()
 """Held by a thread while it draws and saves a figure."""
 
 MOST_PIXELS = 20_000_000
-"""Of a PNG file, as of four maps 16 cm wide at 600 pixels per inch. A single map takes up to 50 bytes each to draw."""
+"""Most pixels of a PNG file: those of four maps 16 cm wide at 600 pixels per inch. Drawing takes up to 50 bytes for each."""
 
 # The STIX fonts are part of Matplotlib; they have Greek letters, fractions and mathematical symbols.
 _FAMILY, _MATHS = ["STIXGeneral", "serif"], "stix"
@@ -45,9 +45,9 @@ _FILE_OPTIONS: Any = {
 }
 _FRAME = 0.7
 _MOST_TICKS = 5
-# In a line of text, about.
+# Approximate number of letters of a line of text per font size of its width.
 _LETTERS_PER_EM = 2.0
-# Of a legend below a panel.
+# Most columns of a legend below a panel.
 _MOST_COLUMNS = 6
 # Padding around panels, in inches.
 _GAP = 0.07

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -79,12 +80,12 @@ class FigureStyle:
     def columns(self, panels: int) -> int:
         """Columns into which square panels wrap, so that each is wide enough for its legend."""
         most = max(1, int(self.inches * POINTS_PER_INCH // (_LEAST_PANEL * self.font_size)))
-        rows = -(-panels // most)
-        return -(-panels // rows)
+        rows = math.ceil(panels / most)
+        return math.ceil(panels / rows)
 
 
 # Least width of a panel with its labels, in units of the font size.
 _LEAST_PANEL = 16.0
 
 SCREEN = FigureStyle(width=29.0, dpi=180.0, font_size=12.0)
-"""Of figures to be looked at on a screen: those of the reproduction and of notebooks."""
+"""Style of figures to be looked at on a screen: those of the reproduction and of notebooks."""

@@ -66,20 +66,20 @@ from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
 # In units of the font size: from the lower edge of a map to what is below the name of its axis, from a colour bar to what is
 # below its labels, and from the left edge of a map to that of its legend.
 _BELOW_AXIS, _BELOW_BAR, _LEFT_OF_AXIS = 3.7, 3.4, 3.0
-# Of a colour bar, in units of the side of its map.
+# Height of a colour bar, in units of the side of its map.
 _BAR_HEIGHT = 0.04
-# Of a row of maps with its legends before its height is fitted, in units of the width of a map with its labels.
+# Height of a row of maps with its legends before it is fitted, in units of the width of a map with its labels.
 _ROW_HEIGHT = 2.0
-# Of a legend, as a share of the width of a map with its labels.
+# Width of a legend, as a share of the width of a map with its labels.
 _LEGEND_WIDTH = 0.9
-# In a line of a title, about.
+# Approximate number of letters of a title per font size of its width.
 _LETTERS_PER_EM = 2.6
-# Of tick labels, in units of their font size.
+# Width of a letter of a tick label, and the space between labels, in units of the font size.
 _LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
 # Least distance of the times at a colour bar, as a share of it.
 _BETWEEN_TIMES = 0.15
 _EXIT_DASHES = (0, (2.0, 1.5))
-# Of the widths of manifolds on the page, in a file.
+# Width of manifolds in a file, relative to that on the page.
 _LINE_SCALE = 0.6
 _HALO_ORDER = 1.5
 # Curves are cut this far outside the window, in shares of it.

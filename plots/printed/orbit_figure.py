@@ -30,7 +30,7 @@ from plots.printed.potential_figure import draw_well
 
 _DrawHistory = Callable[[Axes, OrbitCurves, str, FigureStyle], None]
 
-# Of the figure, in units of its width: with two columns and with one.
+# Height of the figure with two columns and with one, in units of its width.
 _HEIGHT, _HEIGHT_OF_COLUMN = 0.58, 1.9
 _LARGEST_SALI, _EARLIEST_TIME = 10.0**0.5, 0.01
 

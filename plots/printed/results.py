@@ -57,7 +57,7 @@ _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
 _BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
 TRUST_COLOURS = ("#ffffff", "#dfe6ee", "#7da7c9", "#d1495b", "#b0b0b0")
-"""Of the codes of `Trust`."""
+"""Colours of the codes of `Trust`."""
 _MOST_DECADES = 16
 
 

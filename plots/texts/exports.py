@@ -121,7 +121,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         f"    resolution={spec.resolution!r},",
         f"    window=Window{_numbers(edges)},",
         f"    t_max={spec.t_max!r},",
-        f"    certify={spec.certify!r},",
+        f"    use_evidence={spec.use_evidence!r},",
         ")",
         "escape_map = compute_map(spec)",
         "escape_map.plot()",

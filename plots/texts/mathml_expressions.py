@@ -27,7 +27,7 @@ def _signed(coefficient: float, part: Expression) -> str:
 
 
 def _place(base: Expression) -> int:
-    """Coordinates first, functions last."""
+    """Sort key of a factor: coordinates come first, functions last."""
     return 0 if isinstance(base, CoordinateNode) else 2 if isinstance(base, Function) else 1
 
 

@@ -16,7 +16,7 @@ from reproduction.figures.map_figures import draw_energy_plane, draw_nine_maps
 from reproduction.figures.potential_figures import draw_potential
 from reproduction.figures.statistics_figures import draw_percentages, draw_statistics, draw_survival
 from reproduction.figures.sticky_figures import draw_characters, draw_super_sticky
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.paper_ranges import CHANNEL_ENERGIES, STICKY_ENERGY, plane_energies
 
 
@@ -31,16 +31,16 @@ class FigureEntry:
     caption
         Caption.
     draw
-        Draws the figure with maps of a shelf; may take minutes.
+        Draws the figure with maps of a cache; may take minutes.
     """
 
     name: str
     caption: str
-    draw: Callable[[MapShelf], Figure]
+    draw: Callable[[MapCache], Figure]
 
-    def files(self, shelf: MapShelf) -> dict[str, bytes]:
+    def files(self, cache: MapCache) -> dict[str, bytes]:
         """Draw the figure and return the content of its files by file name, with caption and quality in their metadata."""
-        figure, quality = self.draw(shelf), shelf.quality
+        figure, quality = self.draw(cache), cache.quality
         keywords = f"{quality.name} quality, {quality.resolution} x {quality.resolution} starts, t_max {quality.t_max:g}"
         facts = {"Title": self.name, "Description": self.caption, "Comment": keywords}
         return {f"{self.name}.{format}": save_figure(figure, format, facts) for format in (FigureFormat.PNG, FigureFormat.PDF)}
@@ -51,7 +51,7 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
     channels = ("green", "red", "blue", "orange")[: CASES[case].channels]
     colours = ", ".join(["bounded grey", *(f"channel {k} {colour}" for k, colour in enumerate(channels, 1))])
     speed = "darker is later; bounded grey"
-    rows: tuple[tuple[str, str, Callable[[str, MapShelf], Figure]], ...] = (
+    rows: tuple[tuple[str, str, Callable[[str, MapCache], Figure]], ...] = (
         (
             "potential",
             f"equipotentials with the escape energy in red, the Lyapunov orbits of the open channels at "
@@ -80,7 +80,7 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
     return [FigureEntry(f"{case}-{family}", f"Case {case}: {caption}", partial(draw, case)) for family, caption, draw in rows]
 
 
-def _nine(plane: Plane, picture: str) -> Callable[[str, MapShelf], Figure]:
+def _nine(plane: Plane, picture: str) -> Callable[[str, MapCache], Figure]:
     return partial(draw_nine_maps, plane=plane, picture=picture)
 
 

@@ -18,7 +18,7 @@ from plots.pictures.time_scale import TimeScale, common_scale
 from plots.printed.figure_axes import add_figure_legend, label_axes, name_panel, new_figure, patches
 from plots.printed.figure_style import SCREEN
 from plots.printed.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.notation import axis_label, plane_label
 from reproduction.paper_ranges import nine_energies, plane_energies
 
@@ -28,9 +28,9 @@ TITLES = {"basins": "basins of escape", "times": "escape times", "crossings": "u
 _SIDE = 3
 
 
-def draw_nine_maps(case: str, shelf: MapShelf, *, plane: Plane, picture: str) -> Figure:
+def draw_nine_maps(case: str, cache: MapCache, *, plane: Plane, picture: str) -> Figure:
     """One picture of `TITLES` at the paper's nine energies, all in one window."""
-    frames = [shelf.map(case, plane, energy) for energy in nine_energies(case)]
+    frames = [cache.map(case, plane, energy) for energy in nine_energies(case)]
     shown, times = _common_window(frames), common_scale(frames)
     title = f"Case {case}, {plane_label(plane)} plane: {TITLES[picture]}"
     figure = new_figure(replace(SCREEN, width=26.9 if picture == "times" else 24.4), 26.4, title, equal=True)
@@ -47,9 +47,9 @@ def draw_nine_maps(case: str, shelf: MapShelf, *, plane: Plane, picture: str) ->
     return figure
 
 
-def draw_energy_plane(case: str, shelf: MapShelf) -> Figure:
+def draw_energy_plane(case: str, cache: MapCache) -> Figure:
     """Basins on (x, h)."""
-    frame = shelf.map(case, Plane.X_H, plane_energies(case))
+    frame = cache.map(case, Plane.X_H, plane_energies(case))
     figure = new_figure(replace(SCREEN, width=19.3), 16.8, f"Case {case}, {plane_label(Plane.X_H)} plane: basins of escape")
     axes = figure.subplots()
     draw_map_panel(axes, frame, "basins", frame.spec.find_window(), equal=False)

@@ -23,7 +23,7 @@ from plots.pictures.palette import LIGHT, PAPER
 from plots.printed.figure_axes import label_axes, name_panels, new_figure, style_axes
 from plots.printed.figure_style import SCREEN
 from plots.printed.potential_figure import draw_equipotentials, draw_pieces, enlarge
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.notation import axis_label
 from reproduction.paper_ranges import CHANNEL_ENERGIES
 from reproduction.sample_orbits import find_sample_starts
@@ -33,7 +33,7 @@ _SAMPLES = 301
 _LABEL_PLACE = 1.22
 
 
-def draw_potential(case: str, shelf: MapShelf) -> Figure:
+def draw_potential(case: str, cache: MapCache) -> Figure:
     """Three panels with the same window."""
     potential, energy = CASES[case], CHANNEL_ENERGIES[case]
     window = enlarge(default_window(potential, Plane.X_Y, energy))
@@ -44,7 +44,7 @@ def draw_potential(case: str, shelf: MapShelf) -> Figure:
     orbits = find_lyapunov_orbits(potential, energy)
     draw_equipotentials(panels[0], potential, window)
     _draw_channels(panels[1], potential, energy, orbits, window)
-    _draw_escapes(panels[2], shelf, case, window)
+    _draw_escapes(panels[2], cache, case, window)
     for axes in panels:
         axes.set_xlim(window.x_low, window.x_high)
         axes.set_ylim(window.ordinate_low, window.ordinate_high)
@@ -67,13 +67,13 @@ def _draw_channels(axes: Axes, potential: Potential, energy: float, orbits: tupl
         axes.text(x, y, f"$L_{orbit.channel}$", ha="center", va="center", fontsize=14.0, color=LIGHT.text)
 
 
-def _draw_escapes(axes: Axes, shelf: MapShelf, case: str, window: Window) -> None:
+def _draw_escapes(axes: Axes, cache: MapCache, case: str, window: Window) -> None:
     potential, energy = CASES[case], CHANNEL_ENERGIES[case]
     _draw_forbidden(axes, potential, energy, window)
     draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), LIGHT.limiting_curve, 1.0)
-    for channel, start in find_sample_starts(shelf.map(case, Plane.X_PX, energy)).items():
+    for channel, start in find_sample_starts(cache.map(case, Plane.X_PX, energy)).items():
         orbit, colour = (
-            integrate_orbit(potential, start, shelf.quality.t_max, execution=shelf.execution),
+            integrate_orbit(potential, start, cache.quality.t_max, execution=cache.execution),
             PAPER.channels[channel - 1],
         )
         axes.plot(orbit.x, orbit.y, color=colour, linewidth=1.1)

@@ -17,7 +17,7 @@ from plots.printed.figure_axes import add_panel_legend, label_axes, name_panels,
 from plots.printed.figure_style import SCREEN
 from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
 from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.notation import plane_label
 from reproduction.paper_ranges import nine_energies, three_energies
 
@@ -32,18 +32,18 @@ _LIGHTEST, _DARKEST = 50, 255
 _SAMPLES = 400
 
 
-def draw_statistics(case: str, shelf: MapShelf) -> Figure:
+def draw_statistics(case: str, cache: MapCache) -> Figure:
     """Ne/N0 and Nde/N0 against h with the paper's fits and new ones; dN_n/N0 and p_n against n."""
     figure = new_figure(SCREEN, 21.8, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
-    table = shelf.curves(case, Plane.X_PX)
+    table = cache.curves(case, Plane.X_PX)
     h, paper = table.values, PAPER_FITS[case]
     escaped, direct = table["share"][:, 1:].sum(axis=1), table["direct_share"]
     _draw_fits(panels[0], h, escaped, paper.escaped, fit_escape_shares(h, escaped))
     _draw_fits(panels[1], h, direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree))
     label_axes(panels[0], "$h$", "$N_e/N_0$")
     label_axes(panels[1], "$h$", "$N_{de}/N_0$")
-    crossings = {energy: compute_statistics(shelf.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
+    crossings = {energy: compute_statistics(cache.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
     _draw_crossings(panels[2], panels[3], crossings)
     after = "after $n$ crossings"
     name_panels(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
@@ -81,13 +81,13 @@ def _draw_crossings(shares: Axes, chances: Axes, statistics: Mapping[float, Esca
     add_panel_legend(shares, "upper right", columns=3)
 
 
-def draw_percentages(case: str, shelf: MapShelf) -> Figure:
+def draw_percentages(case: str, cache: MapCache) -> Figure:
     """Percentages of the interior starts on (x, y) and (x, px)."""
     figure = new_figure(SCREEN, 11.7, f"Case {case}: percentages of bounded and escaping starts")
     panels = list(figure.subplots(1, 2, sharey=True))
     planes = (Plane.X_Y, Plane.X_PX)
     for axes, plane in zip(panels, planes, strict=True):
-        table = shelf.curves(case, plane)
+        table = cache.curves(case, plane)
         draw_shares(axes, table.values, table["share"], table.outcomes)
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
     name_panels(panels, [f"the {plane_label(plane)} plane" for plane in planes])
@@ -95,7 +95,7 @@ def draw_percentages(case: str, shelf: MapShelf) -> Figure:
     return figure
 
 
-def draw_survival(case: str, shelf: MapShelf) -> Figure:
+def draw_survival(case: str, cache: MapCache) -> Figure:
     """One panel per energy, on (x, px)."""
     energies = three_energies(case)
     figure = new_figure(
@@ -103,8 +103,8 @@ def draw_survival(case: str, shelf: MapShelf) -> Figure:
     )
     panels = list(figure.subplots(1, len(energies), sharex=True))
     for axes, energy in zip(panels, energies, strict=True):
-        statistics = compute_statistics(shelf.map(case, Plane.X_PX, energy))
-        draw_decay_laws(axes, fit_decay_laws(statistics), shelf.quality.t_max)
+        statistics = compute_statistics(cache.map(case, Plane.X_PX, energy))
+        draw_decay_laws(axes, fit_decay_laws(statistics), cache.quality.t_max)
         label_axes(axes, "$t$", "$S(t)$" if axes is panels[0] else "")
     name_panels(panels, [f"$h = {energy:.2f}$" for energy in energies])
     return figure

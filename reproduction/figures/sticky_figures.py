@@ -24,7 +24,7 @@ from plots.printed.figure_axes import (
 from plots.printed.figure_style import SCREEN
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.map_figures import draw_map_panel
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.notation import plane_label
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 
@@ -41,10 +41,10 @@ _TIME_UNIT = 1e5
 _ABOVE = 1.4
 
 
-def draw_characters(shelf: MapShelf) -> Figure:
+def draw_characters(cache: MapCache) -> Figure:
     """Bounded orbits on (x, px): regular cyan, chaotic magenta, escaping white."""
-    frame = shelf.map(STICKY_CASE, Plane.X_PX, STICKY_ENERGY)
-    regularity = shelf.regularity(frame)
+    frame = cache.map(STICKY_CASE, Plane.X_PX, STICKY_ENERGY)
+    regularity = cache.regularity(frame)
     title = f"Case {STICKY_CASE}, {plane_label(Plane.X_PX)} plane, $h = {STICKY_ENERGY}$: bounded orbits"
     figure = new_figure(replace(SCREEN, width=17.3), 18.3, title, equal=True)
     axes = figure.subplots()
@@ -53,16 +53,16 @@ def draw_characters(shelf: MapShelf) -> Figure:
     return figure
 
 
-def draw_super_sticky(shelf: MapShelf) -> Figure:
+def draw_super_sticky(cache: MapCache) -> Figure:
     """R²(t) of an orbit that escapes long after the paper's 1e5 time units: the whole orbit, and its end."""
-    search = shelf.super_sticky()
+    search = cache.super_sticky()
     place = find_shown(search)
     figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, place)}")
     panels = list(figure.subplots(1, 2, sharey=True, width_ratios=(2, 1)))
     if place is not None:
         end = float(search.escape_time[place])
-        _draw_history(panels[0], _sample_r2(search, place, 0.0, shelf), end, search.spec.t_max)
-        _draw_departure(panels[1], _sample_r2(search, place, (1.0 - _LAST) * end, shelf), end)
+        _draw_history(panels[0], _sample_r2(search, place, 0.0, cache), end, search.spec.t_max)
+        _draw_departure(panels[1], _sample_r2(search, place, (1.0 - _LAST) * end, cache), end)
     for axes in panels:
         _draw_exits(axes, search)
         style_axes(axes)
@@ -82,10 +82,10 @@ def find_shown(search: SuperStickySearch) -> int | None:
     return int(early[-1] if early.size else escapers[0])
 
 
-def _sample_r2(search: SuperStickySearch, place: int, begin: float, shelf: MapShelf) -> np.ndarray:
+def _sample_r2(search: SuperStickySearch, place: int, begin: float, cache: MapCache) -> np.ndarray:
     """(intervals, samples) R² of an orbit from a time until its escape."""
     times = np.linspace(begin, search.escape_time[place], _INTERVALS * _SAMPLES)
-    orbits = sample_orbits(search.spec.potential, search.states[place : place + 1], times, execution=shelf.execution)
+    orbits = sample_orbits(search.spec.potential, search.states[place : place + 1], times, execution=cache.execution)
     r2: np.ndarray = (orbits.x**2 + orbits.y**2).reshape(_INTERVALS, _SAMPLES)
     return r2
 

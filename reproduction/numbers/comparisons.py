@@ -1,6 +1,6 @@
 """Comparison of the numbers stated in the paper with computed ones.
 
-`compare_all(shelf, search)` returns a `Comparison` for each of `STATED_NUMBERS`; `search` is `shelf.super_sticky()`.
+`compare_all(cache, search)` returns a `Comparison` for each of `STATED_NUMBERS`; `search` is `cache.super_sticky()`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 
 from engine import Plane
 from reproduction.analyses.super_sticky import SuperStickySearch
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.numbers.map_structure import share_in_basins
 from reproduction.numbers.measures import Measures, counted_codes
 from reproduction.numbers.reasons import explain
@@ -74,13 +74,13 @@ class Comparison:
 
 
 def compare_all(
-    shelf: MapShelf, search: SuperStickySearch, numbers: tuple[StatedNumber, ...] = STATED_NUMBERS
+    cache: MapCache, search: SuperStickySearch, numbers: tuple[StatedNumber, ...] = STATED_NUMBERS
 ) -> tuple[Comparison, ...]:
     """Compute all numbers that the paper states.
 
     Parameters
     ----------
-    shelf
+    cache
         Source of the maps.
     search
         Search for super-sticky orbits of case III at h = 0.26.
@@ -90,9 +90,9 @@ def compare_all(
     Raises
     ------
     concurrent.futures.CancelledError
-        If the shelf is cancelled.
+        If the cache is cancelled.
     """
-    measures, windows = Measures(shelf, search), _Windows(shelf, numbers)
+    measures, windows = Measures(cache, search), _Windows(cache, numbers)
     return tuple(_compare(number, measures, windows) for number in numbers)
 
 
@@ -113,8 +113,8 @@ def _count(number: StatedNumber, window: FittedWindow) -> float:
 class _Windows:
     """Windows that explain the shares stated for each map."""
 
-    def __init__(self, shelf: MapShelf, numbers: tuple[StatedNumber, ...]) -> None:
-        self.shelf = shelf
+    def __init__(self, cache: MapCache, numbers: tuple[StatedNumber, ...]) -> None:
+        self.cache = cache
         self.fitting = [number for number in numbers if number.needs_window and number.quantity in _FITTED]
         self.windows: dict[tuple[str, Plane, float], FittedWindow] = {}
 
@@ -128,7 +128,7 @@ class _Windows:
                 for other in self.fitting
                 if (other.case, other.plane) == key[:2] and energy in other.energies
             }
-            self.windows[key] = fit_window(self.shelf, number.case, self.shelf.map(*key), stated, POINTS)
+            self.windows[key] = fit_window(self.cache, number.case, self.cache.map(*key), stated, POINTS)
         return self.windows[key]
 
 

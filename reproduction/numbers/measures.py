@@ -1,4 +1,4 @@
-"""Computed values of the quantities of which the paper states numbers: `Measures(shelf, search).values(number)`."""
+"""Computed values of the quantities of which the paper states numbers: `Measures(cache, search).values(number)`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from engine import CASES, EscapeMap, Fate, Plane, compute_statistics, find_lyapunov_orbits
 from reproduction.analyses.super_sticky import SuperStickySearch
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.numbers.map_structure import orders_of_escape_times, share_in_basins, share_next_to_all_basins
 from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 from reproduction.paper_ranges import STICKY_CASE, plane_energies
@@ -23,14 +23,14 @@ class Measures:
 
     Parameters
     ----------
-    shelf
+    cache
         Source of the maps.
     search
         Search for super-sticky orbits of case III at h = 0.26.
     """
 
-    def __init__(self, shelf: MapShelf, search: SuperStickySearch) -> None:
-        self.shelf, self.search = shelf, search
+    def __init__(self, cache: MapCache, search: SuperStickySearch) -> None:
+        self.cache, self.search = cache, search
 
     def values(self, number: StatedNumber) -> tuple[float, ...]:
         """Computed values in the unit of the stated one, as in `Comparison.computed`."""
@@ -39,17 +39,17 @@ class Measures:
     def maps(self, number: StatedNumber) -> list[EscapeMap]:
         """Maps of a number, one per energy."""
         assert number.plane is not None
-        return [self.shelf.map(number.case, number.plane, energy) for energy in number.energies]
+        return [self.cache.map(number.case, number.plane, energy) for energy in number.energies]
 
     def searches(self, number: StatedNumber) -> list[SuperStickySearch]:
         """Continuations of the chaotic bounded orbits at each energy of a number."""
         if number.case == STICKY_CASE:
             return [self.search]
-        return [self.shelf.late_escapes(number.case, energy) for energy in number.energies]
+        return [self.cache.late_escapes(number.case, energy) for energy in number.energies]
 
     def energy_plane(self, case: str) -> EscapeMap:
         """Map on (x, h)."""
-        return self.shelf.map(case, Plane.X_H, plane_energies(case))
+        return self.cache.map(case, Plane.X_H, plane_energies(case))
 
     def last_bounded(self, case: str) -> float:
         """Highest h on (x, h) with a bounded start; NaN if there is none."""
@@ -88,7 +88,7 @@ def _measure_median_time(measures: Measures, number: StatedNumber) -> tuple[floa
 
 def _measure_energy_error(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     assert number.plane is not None
-    return (float(measures.shelf.curves(number.case, number.plane)["worst_energy_error"].max()),)
+    return (float(measures.cache.curves(number.case, number.plane)["worst_energy_error"].max()),)
 
 
 def _measure_accurate(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
@@ -129,7 +129,7 @@ def _measure_wada(measures: Measures, number: StatedNumber) -> tuple[float, ...]
 
 def _measure_exponent(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     assert number.plane is not None
-    return tuple(measures.shelf.exponent(number.case, number.plane, energy).exponent for energy in number.energies)
+    return tuple(measures.cache.exponent(number.case, number.plane, energy).exponent for energy in number.energies)
 
 
 def _measure_time_orders(measures: Measures, number: StatedNumber) -> tuple[float, ...]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine import EscapeMap, Fate, MapSpec, Window, compute_map
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 
 LARGEST_HALF_SIDE = 3.0
 """Largest half side of the windows tried, about three times the half side of the interior."""
@@ -56,7 +56,7 @@ class FittedWindow:
 
 
 def fit_window(
-    shelf: MapShelf, case: str, interior: EscapeMap, stated: Mapping[tuple[int, ...], float], enough: float
+    cache: MapCache, case: str, interior: EscapeMap, stated: Mapping[tuple[int, ...], float], enough: float
 ) -> FittedWindow:
     """Find the square with the smallest maximal difference from the stated percentages.
 
@@ -65,7 +65,7 @@ def fit_window(
 
     Parameters
     ----------
-    shelf
+    cache
         Source of the map in the window.
     case
         Key of `engine.CASES`.
@@ -85,7 +85,7 @@ def fit_window(
         moved = [Window(-side, right, -side, side) for side in _edges(least) for right in _edges(whole.x_high)]
         other, smaller = _best(moved, outside, interior.fractions(), stated)
         best = other if smaller <= enough else best
-    counted = shelf.map(case, spec.plane, spec.energy, best)
+    counted = cache.map(case, spec.plane, spec.energy, best)
     exists = np.count_nonzero(counted.fate != Fate.FORBIDDEN)
     return FittedWindow(best, float(np.count_nonzero(counted.fate == Fate.OUTSIDE) / exists), counted)
 
@@ -102,7 +102,7 @@ class _Outside:
     @classmethod
     def of(cls, spec: MapSpec) -> _Outside:
         square = Window(-LARGEST_HALF_SIDE, LARGEST_HALF_SIDE, -LARGEST_HALF_SIDE, LARGEST_HALF_SIDE)
-        wide = compute_map(replace(spec, resolution=(_SIDE, _SIDE), window=square, t_max=_INSTANT, certify=False))
+        wide = compute_map(replace(spec, resolution=(_SIDE, _SIDE), window=square, t_max=_INSTANT, use_evidence=False))
         rows, columns = np.nonzero(wide.fate == Fate.OUTSIDE)
         channel = wide.outside[rows, columns].astype(np.intp)
         return cls(int(np.count_nonzero(wide.interior)), channel, wide.x[columns], wide.ordinate[rows])

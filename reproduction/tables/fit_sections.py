@@ -10,7 +10,7 @@ from engine import CASES, Plane, compute_statistics, fit_decay_laws
 from engine.foundations.wording import format_number
 from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
 from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.paper_ranges import three_energies
 from reproduction.tables.markdown import write_rows
 
@@ -23,11 +23,11 @@ S(t) is the share of the starts inside, on (x, px), that have not escaped by t; 
 holds ([escape laws](escape-laws.md))."""
 
 
-def write_fits(shelf: MapShelf) -> str:
+def write_fits(cache: MapCache) -> str:
     """Table of the fitted parameters with their intervals, and the deviations of both curves from the data."""
     rows, sentences = [], []
     for case in CASES:
-        table, paper = shelf.curves(case, Plane.X_PX), PAPER_FITS[case]
+        table, paper = cache.curves(case, Plane.X_PX), PAPER_FITS[case]
         h, escaped, direct = table.values, table["share"][:, 1:].sum(axis=1), table["direct_share"]
         curves: tuple[tuple[str, np.ndarray, ShareCurve, ShareFit], ...] = (
             ("Ne/N0", escaped, paper.escaped, fit_escape_shares(h, escaped)),
@@ -38,7 +38,7 @@ def write_fits(shelf: MapShelf) -> str:
             off = measure_deviation(published, h, shares)
             new = fitted.deviation.describe()
             sentences.append(f"- Case {case}, {name}: the paper's curve lies {off.describe()}; the new fit {new}.")
-    intro = _FITS.format(count=shelf.quality.curve_points)
+    intro = _FITS.format(count=cache.quality.curve_points)
     heads = ("fit", "parameter", "paper", "new fit", "95 % interval", "paper's inside")
     return "\n\n".join([intro, write_rows(heads, rows), "\n".join(sentences)])
 
@@ -57,12 +57,12 @@ def _fit_rows(name: str, published: ShareCurve, fitted: ShareFit) -> Iterator[tu
         )
 
 
-def write_laws(shelf: MapShelf) -> str:
+def write_laws(cache: MapCache) -> str:
     """Table of the preferred decay laws at three energies of each case."""
     rows = []
     for case in CASES:
         for energy in three_energies(case):
-            statistics = compute_statistics(shelf.map(case, Plane.X_PX, energy))
+            statistics = compute_statistics(cache.map(case, Plane.X_PX, energy))
             laws = fit_decay_laws(statistics)
             verdict = str(laws.preferred) if laws.preferred is not None else "none"
             rows.append((case, f"{energy:g}", verdict, laws.describe()))

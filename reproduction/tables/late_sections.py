@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from engine import CASES
 from reproduction.analyses.super_sticky import SuperStickySearch
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.paper_ranges import STICKY_CASE, nine_energies
 from reproduction.tables.markdown import write_rows
 
@@ -24,12 +24,12 @@ errors have grown to the size of the well: the escape time of a given orbit depe
 of escapes does not."""
 
 
-def write_late_escapes(shelf: MapShelf) -> str:
+def write_late_escapes(cache: MapCache) -> str:
     """Table of the bounded orbits of I and II: how many are chaotic, and how many of these leave later."""
     cases = [case for case in CASES if case != STICKY_CASE]
-    searches = [(case, h, shelf.late_escapes(case, h)) for case in cases for h in nine_energies(case)]
+    searches = [(case, h, cache.late_escapes(case, h)) for case in cases for h in nine_energies(case)]
     rows = [(case, f"{h:g}", *_describe_late(search)) for case, h, search in searches if search.bounded]
-    quality = shelf.quality
+    quality = cache.quality
     intro = _CHAOTIC.format(
         side=quality.classified_resolution, t_max=f"{quality.t_max:g}", search_t_max=f"{quality.search_t_max:g}"
     )

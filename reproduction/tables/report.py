@@ -11,7 +11,7 @@ import numpy as np
 
 from engine import CASES
 from reproduction.analyses.super_sticky import SuperStickySearch
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison, compare_all
 from reproduction.numbers.map_structure import BOUNDARY_PIXELS
 from reproduction.numbers.stated_numbers import Counting, StatedNumber
@@ -29,12 +29,12 @@ _COLUMNS = (
 _LISTED = 4
 
 
-def write_report(shelf: MapShelf, search: SuperStickySearch, rows: tuple[Comparison, ...] | None = None) -> str:
+def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Comparison, ...] | None = None) -> str:
     """Write the report as Markdown.
 
     Parameters
     ----------
-    shelf
+    cache
         Source of the maps; the report states their quality.
     search
         Search for super-sticky orbits of case III at h = 0.26.
@@ -44,15 +44,15 @@ def write_report(shelf: MapShelf, search: SuperStickySearch, rows: tuple[Compari
     Raises
     ------
     concurrent.futures.CancelledError
-        If the shelf is cancelled.
+        If the cache is cancelled.
     """
-    rows = compare_all(shelf, search) if rows is None else rows
-    parts = ["# Comparison with the numbers of the paper", _introduce(shelf, search), "## Summary", describe_verdict(rows)]
+    rows = compare_all(cache, search) if rows is None else rows
+    parts = ["# Comparison with the numbers of the paper", _introduce(cache, search), "## Summary", describe_verdict(rows)]
     for case, potential in CASES.items():
         mine = [row for row in rows if row.stated.case == case]
         parts += [f"## Case {case}: {potential.channels} channels", write_rows(_HEADS, map(_page_row, mine))]
-    parts += ["## Fits", write_fits(shelf), "## Late escapes", write_laws(shelf)]
-    parts += ["## Chaotic bounded orbits", write_late_escapes(shelf), "## Super-sticky orbits", write_super_sticky(search)]
+    parts += ["## Fits", write_fits(cache), "## Late escapes", write_laws(cache)]
+    parts += ["## Chaotic bounded orbits", write_late_escapes(cache), "## Super-sticky orbits", write_super_sticky(search)]
     parts += ["## Open points of the paper", _OPEN]
     return "\n\n".join(parts) + "\n"
 
@@ -111,8 +111,8 @@ def _cell(value: float) -> str:
     return "" if np.isnan(value) else f"{value:.6g}"
 
 
-def _introduce(shelf: MapShelf, search: SuperStickySearch) -> str:
-    quality = shelf.quality
+def _introduce(cache: MapCache, search: SuperStickySearch) -> str:
+    quality = cache.quality
     return _INTRODUCTION.format(
         version=metadata.version("escape-explorer"),
         quality=quality.name,

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import expect
 
 from app.views.components.notice import PASSING_SECONDS
-from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map, integrate_orbit
+from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, compute_map, integrate_orbit
 from tests.browser.explorer_page import ExplorerPage
 
 MAPS = ("basins", "times", "crossings")
@@ -25,7 +25,7 @@ def quick_map(energy: float, **options: object) -> EscapeMap:
 
 
 def assert_same_crossings(explorer: ExplorerPage, expected: EscapeMap) -> None:
-    """Compare escaping orbits; the counts of certified orbits end where the certificate is found."""
+    """Compare escaping orbits; the counts of orbits that are bounded on evidence end where it is found."""
     escaped = expected.fate >= 1
     np.testing.assert_array_equal(explorer.column("crossings")[escaped], expected.crossings[escaped])
     np.testing.assert_array_equal(np.isfinite(explorer.column("escape_time")), escaped)
@@ -125,7 +125,7 @@ def test_hovering_describes_the_pixel(shared: ExplorerPage, first_map: EscapeMap
         expect(shared.text(re.compile(r"escape time 3\.\d+"))).to_be_visible()
         expect(shared.text("0 upward crossings of y = 0")).to_be_visible()
         expect(shared.text(re.compile(r"\(0\.\d+, 0\.0\d+\)"))).to_be_visible()
-    row, column = np.argwhere(first_map.certificate == Certificate.ENCLOSED)[0]
+    row, column = np.argwhere(first_map.evidence == Evidence.ENCLOSED)[0]
     shared.hover("basins", float(first_map.x[column]), float(first_map.ordinate[row]))
     expect(shared.text("invariant curves separate it from every exit")).to_be_visible()
 

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity
-from engine.propagation.certificates import describe_certificate
+from engine.propagation.evidence import describe_evidence
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
@@ -60,7 +60,7 @@ def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplor
         explorer.page.locator(".bk-Tooltip").get_by_text("not tested: like")).or_(
         explorer.page.locator(".bk-Tooltip").get_by_text("doubtful")).first).to_be_visible()  # fmt: skip
     row, column = np.argwhere(regularity.character == Regularity.REGULAR)[0]
-    reason = describe_certificate(frame.certificate[row, column])
+    reason = describe_evidence(frame.evidence[row, column])
     explorer.hover("basins", xs[column], ordinates[row])
     expect_tooltip(explorer, "bounded", reason, "regular", "never entered: inside since −t_max")
     explorer.page.get_by_label("Origin and exit", exact=True).uncheck()

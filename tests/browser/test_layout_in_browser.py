@@ -51,7 +51,7 @@ _ELEMENTS = """() => {
 }"""
 _LEGEND = """foot => [...foot.querySelectorAll(".patch")]
     .map(patch => [patch.textContent.trim(), patch.getAttribute("style").replace("--colour:", "")])"""
-_IDLE = ("Whole plane", "Stop", "Continue", "Clear all", "Remove", "Find its twin", "Count the whole view")
+_IDLE = ("Whole plane", "Stop", "Continue", "Clear all", "Remove", "Find divergent start", "Count the whole view")
 
 
 def figures(explorer: ExplorerPage) -> dict[str, list[float]]:

@@ -74,8 +74,8 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     before = places(explorer)
     explorer.page.evaluate(_WATCH_SHIFTS)
     explorer.page.get_by_role("slider", name="Time along the orbits").press("ArrowRight")
-    explorer.press("Find its twin")
-    expect(explorer.text("The twin starts")).to_be_visible()
+    explorer.press("Find divergent start")
+    expect(explorer.text("The divergent start is")).to_be_visible()
     explorer.wait_for_data("separation_source", "data.t.length > 100")
     explorer.click("basins", *STARTS[1])
     explorer.wait_for_data("r2_histories", "data.xs.length == 3")
@@ -90,10 +90,10 @@ def test_messages_end_with_what_they_were_about(for_orbits: ExplorerPage) -> Non
     expect(for_orbits.text("Type a number into both boxes first.")).to_be_visible()
     for_orbits.click("basins", 0.1, 0.05)
     expect(for_orbits.text("Type a number into both boxes first.")).to_have_count(0)
-    for_orbits.press("Find its twin")
-    expect(for_orbits.text("The twin starts")).to_be_visible()
+    for_orbits.press("Find divergent start")
+    expect(for_orbits.text("The divergent start is")).to_be_visible()
     for_orbits.press("Remove")
-    expect(for_orbits.text("The twin starts")).to_have_count(0)
+    expect(for_orbits.text("The divergent start is")).to_have_count(0)
 
 
 def test_an_interval_drawn_over_a_history_is_shown_by_path_curves_and_player(for_orbits: ExplorerPage) -> None:

@@ -40,9 +40,9 @@ REQUESTS = {
         ("II", "--energy", 0.18, "--window", -0.3, 0.9, -0.5, 0.4, "--resolution", "12x9", "--t-max", 200),
         MapSpec(CASES["II"], Plane.X_PX, 0.18, (12, 9), (-0.3, 0.9, -0.5, 0.4), 200.0),  # type: ignore[arg-type]
     ),
-    "(x, y) without certificates": (
-        ("III", "--energy", 0.3, "--plane", "x_y", "--resolution", 10, "--t-max", 300, "--no-certify", "--threads", 1),
-        MapSpec(CASES["III"], Plane.X_Y, 0.3, (10, 10), t_max=300.0, certify=False),
+    "(x, y) without evidence": (
+        ("III", "--energy", 0.3, "--plane", "x_y", "--resolution", 10, "--t-max", 300, "--no-evidence", "--threads", 1),
+        MapSpec(CASES["III"], Plane.X_Y, 0.3, (10, 10), t_max=300.0, use_evidence=False),
     ),
     "(x, h)": (
         ("I", "--energies", 0.13, 0.4, "--plane", "x_h", "--resolution", 8, "--t-max", 100),

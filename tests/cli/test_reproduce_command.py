@@ -13,7 +13,7 @@ from cli.main import INTERRUPTED
 from engine import Plane
 from reproduction import members, quality
 from reproduction.figures.all_figures import FIGURES
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.quality import Quality
 
 Run = Callable[..., tuple[int, str, str]]
@@ -49,10 +49,10 @@ def test_list_names_all_figures_and_writes_nothing(run: Run, tmp_path: Path, mon
 
 
 def test_ctrl_c_keeps_finished_figures(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def make(name: str, shelf: MapShelf) -> dict[str, str | bytes]:
+    def make(name: str, cache: MapCache) -> dict[str, str | bytes]:
         if name == "I-xh":
             signal.raise_signal(signal.SIGINT)
-            shelf.map("I", Plane.X_PX, 0.13)
+            cache.map("I", Plane.X_PX, 0.13)
         return {f"{name}.png": b"data"}
 
     monkeypatch.setattr(members, "make_files", make)

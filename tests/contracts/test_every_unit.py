@@ -80,7 +80,7 @@ def escape_map(plane: Plane, scaling: Scaling | None = None, t_max: float = 2e4,
 
 
 def equal_maps(scaled: EscapeMap, usual: EscapeMap, scaling: Scaling) -> None:
-    for field in ("fate", "crossings", "certificate", "outside", "energy_error"):
+    for field in ("fate", "crossings", "evidence", "outside", "energy_error"):
         np.testing.assert_array_equal(getattr(scaled, field), getattr(usual, field), field)
     np.testing.assert_array_equal(scaled.escape_time, scaling.time * usual.escape_time)
     assert scaled.spec.find_window() == scaling.window(usual.spec.find_window(), usual.spec.plane)
@@ -89,7 +89,7 @@ def equal_maps(scaled: EscapeMap, usual: EscapeMap, scaling: Scaling) -> None:
 
 @exactly_scaled
 @pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_H, Plane.TANGENTIAL])
-def test_maps_windows_and_certificates(plane: Plane, scaling: Scaling) -> None:
+def test_maps_windows_and_evidence(plane: Plane, scaling: Scaling) -> None:
     usual = escape_map(plane)
     equal_maps(escape_map(plane, scaling), usual, scaling)
     assert np.unique(usual.fate[usual.interior]).size > 1

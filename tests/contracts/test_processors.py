@@ -26,7 +26,7 @@ SPECS = [
 def compute_maps(path: str) -> None:
     """Write the arrays of all maps to a file."""
     maps = [compute_map(spec) for spec in SPECS]
-    names = ("fate", "escape_time", "crossings", "certificate")
+    names = ("fate", "escape_time", "crossings", "evidence")
     np.savez(path, **{f"{k} {name}": getattr(found, name) for k, found in enumerate(maps) for name in names})
 
 

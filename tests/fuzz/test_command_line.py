@@ -26,7 +26,7 @@ SMALL = {
     "sweep": ("sweep", "I", "--energy", "0.19", "--resolution", "4", "--t-max", "5", "--store", "store.zarr"),
 }  # fmt: skip
 FLAGS = (
-    "--backward", "--no-certify", "--json", "--origins", "--window", "--energies", "--state", "--palette", "--picture",
+    "--backward", "--no-evidence", "--json", "--origins", "--window", "--energies", "--state", "--palette", "--picture",
     "--output", "--plane", "--manifolds", "--threads", "--most-rows", "--width", "--unknown", "--", "-",
 )  # fmt: skip
 CHEAP_NUMBERS = [repr(number) for number in EXTREMES if not 20.0 < number < 1e300]

@@ -103,7 +103,7 @@ def test_fates_of_robust_pixels_are_those_of_heyoka(number: int) -> None:
     plane, potential = random_slice(random, system), system.potential
     energy = potential.escape_energy * float(random.uniform(1.15, 1.6))
     energies: Any = energy if plane.energy_axis is None else (1.1 * potential.escape_energy, energy)
-    spec = MapSpec(potential, plane, energies, (SIDE, SIDE), t_max=T_MAX, certify=False)
+    spec = MapSpec(potential, plane, energies, (SIDE, SIDE), t_max=T_MAX, use_evidence=False)
     found, pixels = robust_pixels(plane, spec, random)
     assert len(pixels) == COMPARED
     for row, column in pixels:

@@ -49,12 +49,12 @@ export function pathOf({x, y}, {length}) {
 export class Card {
   /**
    * @param {HTMLElement} el
-   * @param {() => import("./frames.js").Wish | null} wish  what the pictures show
+   * @param {() => import("./frames.js").Scene | null} scene  what the pictures show
    * @param {() => any} maps  the columns of the pictures
    * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
    */
-  constructor(el, wish, maps, view) {
-    this.#wish = wish
+  constructor(el, scene, maps, view) {
+    this.#scene = scene
     this.#maps = maps
     this.#view = view
     this.#canvas = document.createElement("canvas")
@@ -74,7 +74,7 @@ export class Card {
     document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
   }
 
-  #wish
+  #scene
   #maps
   #view
   #canvas
@@ -155,15 +155,15 @@ export class Card {
    * @param {PointerEvent} event
    */
   #show(picture, event) {
-    const [wish, system, engine] = [this.#wish(), this.#system, this.#engine]
+    const [scene, system, engine] = [this.#scene(), this.#system, this.#engine]
     const place = picture && this.#start(picture, event)
-    if (!picture || !place || !wish || !system || !engine) {
+    if (!picture || !place || !scene || !system || !engine) {
       this.#hide()
       return
     }
     const {potential, integrator, interior} = engine
-    const {units} = wish.slice
-    const starts = new Starts(wish.slice, potential, wish.energy / energyUnit(system.units))
+    const {units} = scene.slice
+    const starts = new Starts(scene.slice, potential, scene.energy / energyUnit(system.units))
     const {found} = starts
     const exists = starts.find(place[0] / units[0], place[1] / units[1])
     if (!exists || interior.isOutside(exitCurves(system.exits, found.h), found.h, found.x, found.y)) {

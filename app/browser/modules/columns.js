@@ -60,7 +60,7 @@ export function pixelColumns(coding, view, pixels, like, compared) {
 }
 
 /**
- * Codes of the pixels that end otherwise in another view, as `difference_column` of the server gives them.
+ * Codes of the pixels that have another outcome in another view, as `difference_column` of the server gives them.
  *
  * @param {Coding} coding
  * @param {import("./pixels.js").View} view
@@ -100,13 +100,13 @@ const SAME_ENERGY = 1e-12
 export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
 
 /**
- * Whether columns from the server show a wish, with at least as many pixels as a preview of it.
+ * Whether columns from the server show a scene, with at least as many pixels as a preview of it.
  *
  * @param {Columns} columns
- * @param {import("./frames.js").Wish} wish
+ * @param {import("./frames.js").Scene} scene
  * @param {number} rows  of the preview
  */
-export function showsWish({x, y, dw, dh, energy, fate, complete}, {window, energy: wanted, slice}, rows) {
+export function showsScene({x, y, dw, dh, energy, fate, complete}, {window, energy: wanted, slice}, rows) {
   const near = (/** @type {number} */ low, /** @type {number} */ size, /** @type {number} */ from, /** @type {number} */ to) =>
     Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
   const ofEnergy = energyAxis(slice) >= 0 || sameEnergy(energy[0], wanted)

@@ -9,7 +9,7 @@ import {FLAGS, PX, PY, SIZE, T, X, X_REMAINDER, Y, Y_REMAINDER} from "./integrat
 import {seriesSlope, seriesValue} from "./series.js"
 
 /** Orbits are followed for this long beyond an exit that is no disc, in units of the well. */
-export const AFTERGLOW = 1.5
+export const FOLLOWED_BEYOND = 1.5
 const ROOT_HALVINGS = 40
 /** What a step takes and gives of each orbit, besides the time. */
 const STATE = [X, Y, PX, PY, X_REMAINDER, Y_REMAINDER]
@@ -181,7 +181,7 @@ export class Ensemble {
     if (channel > 0) {
       const exit = this.#exits[channel - 1]
       this.escapeTime[orbit] = this.#begin[orbit] + findExitTime(exit, x, y, lane, size)
-      this.#last[orbit] = this.escapeTime[orbit] + (exit.side < 0 ? 0 : AFTERGLOW)
+      this.#last[orbit] = this.escapeTime[orbit] + (exit.side < 0 ? 0 : FOLLOWED_BEYOND)
     }
     if (y0 < 0 && y1 >= 0) this.#cross(orbit, lane, size)
   }

@@ -32,19 +32,19 @@ const MOST_DRAWS = 200
  * The states x, y, px, py of the starts inside all exits, in units of the well.
  *
  * @param {Request} request
- * @param {import("./frames.js").Wish} wish  slice, energy and window
+ * @param {import("./frames.js").Scene} scene  slice, energy and window
  * @param {Surroundings} surroundings
  * @returns {Float64Array}
  */
-export function drawStarts(request, wish, {system, potential, interior, integrator}) {
-  const energy = wish.energy / energyUnit(system.units)
+export function drawStarts(request, scene, {system, potential, interior, integrator}) {
+  const energy = scene.energy / energyUnit(system.units)
   const exits = exitCurves(system.exits, energy)
   const random = randomNumbers(request.seed)
   if (request.where === "exits") return drawEntrances(request.count, exits, potential, energy, random)
   if (request.where === "tubes") return drawTubes(request.count, exits, potential, integrator, energy, random)
   const isWell = request.where === "well"
-  const slice = isWell ? space(system.units) : wish.slice
-  const window = isWell ? windowAt(system.windows.x_y, wish.energy) : request.where === "box" ? boxOf(request) : wish.window
+  const slice = isWell ? space(system.units) : scene.slice
+  const window = isWell ? windowAt(system.windows.x_y, scene.energy) : request.where === "box" ? boxOf(request) : scene.window
   if (!window) return new Float64Array(0)
   const starts = new Starts(slice, potential, energy)
   const {found} = starts

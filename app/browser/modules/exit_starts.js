@@ -22,7 +22,7 @@ const BEFORE = 9
  */
 
 /**
- * States on the exits over saddles that move into the well, distributed as the flux, as of `sample_entrances` of the library.
+ * States on the exits over saddles that move into the well, distributed as the flux, as by `sample_entrances` of the library.
  *
  * @param {number} count
  * @param {import("./exits.js").ExitCurve[]} exits  at the energy

@@ -2,11 +2,11 @@
 /**
  * Pictures at the rate of the display: as many pixels as fit a frame while the view moves, more of them, and to a later time,
  * when it rests. Only the newest view is kept; the picture that is being computed while the view moves is finished first, so that
- * a fast hand sees pictures at all.
+ * fast moves show pictures, too.
  *
  * @typedef {import("./pixels.js").View} View
  * @typedef {import("./pixels.js").Pixels} Pixels
- * @typedef {Omit<View, "columns" | "rows" | "horizon">} Wish
+ * @typedef {Omit<View, "columns" | "rows" | "horizon">} Scene  slice, energy and window to draw
  */
 
 import {mirroredAxes} from "./slice.js"
@@ -45,8 +45,8 @@ export class Frames {
   #show
   /** @type {import("./system.js").System | null} */
   #system = null
-  /** @type {Wish | null} */
-  #wish = null
+  /** @type {Scene | null} */
+  #scene = null
   /** @type {"nothing" | "moving" | "resting"} */
   #computing = "nothing"
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -67,10 +67,10 @@ export class Frames {
   /**
    * Compute this view, at once or after the picture of an earlier one.
    *
-   * @param {Wish} wish
+   * @param {Scene} scene
    */
-  want(wish) {
-    this.#wish = wish
+  request(scene) {
+    this.#scene = scene
     clearTimeout(this.#rest)
     if (this.#computing !== "moving") this.#begin()
   }
@@ -78,48 +78,48 @@ export class Frames {
   /** Compute nothing more. */
   stop() {
     clearTimeout(this.#rest)
-    this.#wish = null
+    this.#scene = null
     this.#computing = "nothing"
     this.#pool.cancel()
   }
 
   #begin() {
-    const wish = this.#wish
-    this.#wish = null
-    if (!wish) return
+    const scene = this.#scene
+    this.#scene = null
+    if (!scene) return
     this.#computing = "moving"
-    const side = Math.min(this.#side, wish.most)
+    const side = Math.min(this.#side, scene.most)
     const begun = performance.now()
-    this.#compute({...wish, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
+    this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
       const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - begun, 1))
       const next = Math.round(side * Math.min(Math.max(change, SLOWER), FASTER))
       this.#side = Math.min(Math.max(next, LEAST_SIDE), this.#mostPixels)
       this.#computing = "nothing"
-      if (this.#wish) this.#begin()
-      else this.#rest = setTimeout(() => this.#refine(wish, 0), REST_MS)
+      if (this.#scene) this.#begin()
+      else this.#rest = setTimeout(() => this.#refine(scene, 0), REST_MS)
     })
   }
 
   /**
    * Compute the pictures of a resting view, one after the other.
    *
-   * @param {Wish} wish
+   * @param {Scene} scene
    * @param {number} level
    */
-  #refine(wish, level) {
+  #refine(scene, level) {
     if (level === RESTING.length) {
       this.#computing = "nothing"
       return
     }
     const {horizon} = RESTING[level]
-    const side = Math.min(RESTING[level].side, wish.most)
+    const side = Math.min(RESTING[level].side, scene.most)
     if (side < this.#side) {
-      this.#refine(wish, level + 1)
+      this.#refine(scene, level + 1)
       return
     }
     this.#computing = "resting"
     const parts = Math.ceil((side * side) / PART_PIXELS)
-    this.#compute({...wish, columns: side, rows: side, horizon}, parts, () => this.#refine(wish, level + 1))
+    this.#compute({...scene, columns: side, rows: side, horizon}, parts, () => this.#refine(scene, level + 1))
   }
 
   /**

@@ -54,7 +54,7 @@ export function start(model, el) {
   )
   const card = new Card(
     el,
-    () => preview.wish,
+    () => preview.scene,
     () => find("maps").data,
     () => model.view,
   )
@@ -65,7 +65,7 @@ export function start(model, el) {
   const tellPresent = () => {
     const [colours, labels] = [() => model.view.colours ?? [], () => model.view.labels ?? []]
     setPresent(
-      taken && model.view.system === taken.system.key ? {...taken, wish: () => preview.wish, colours, labels, host: el} : null,
+      taken && model.view.system === taken.system.key ? {...taken, scene: () => preview.scene, colours, labels, host: el} : null,
     )
   }
   const takeView = () => {

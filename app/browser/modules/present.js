@@ -5,7 +5,7 @@
  * @typedef {object} Shown
  * @property {import("./system.js").System} system
  * @property {WebAssembly.Module} module
- * @property {() => import("./frames.js").Wish | null} wish  slice, energy and window in view; null if the browser cannot compute it
+ * @property {() => import("./frames.js").Scene | null} scene  slice, energy and window in view; null if the browser cannot compute it
  * @property {() => string[]} colours  of the outcomes, exits first
  * @property {() => string[]} labels  of the outcomes
  * @property {HTMLElement} host  for canvases over the pictures

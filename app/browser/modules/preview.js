@@ -4,7 +4,7 @@
  * view with at least as many.
  */
 
-import {pixelColumns, sameEnergy, showsWish} from "./columns.js"
+import {pixelColumns, sameEnergy, showsScene} from "./columns.js"
 import {exitLines, LimitingCurves} from "./curves.js"
 import {Local, LocalWhenPresent} from "./local.js"
 import {makePotential} from "./potential.js"
@@ -140,8 +140,8 @@ export class Preview {
     this.#held = false
   }
 
-  /** What is to be seen now; null if it cannot be computed here. @returns {import("./frames.js").Wish | null} */
-  get wish() {
+  /** What is to be seen now; null if it cannot be computed here. @returns {import("./frames.js").Scene | null} */
+  get scene() {
     const [view, system, window] = [this.#view, this.#system, this.#present]
     if (!view?.slice || !system || view.system !== system.key) return null
     if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
@@ -176,19 +176,19 @@ export class Preview {
 
   /** Show what is wanted: the server's map if it has it, else a preview. */
   #follow() {
-    const wish = this.wish
-    if (!wish) {
+    const scene = this.scene
+    if (!scene) {
       this.#maps.accept()
       return
     }
-    const same = this.#shown && JSON.stringify(wish) === JSON.stringify(pick(this.#shown))
+    const same = this.#shown && JSON.stringify(scene) === JSON.stringify(pick(this.#shown))
     const rows = same && this.#shown ? this.#shown.rows : LEAST_SIDE
-    if (showsWish(this.#maps.server.data, wish, rows)) {
+    if (showsScene(this.#maps.server.data, scene, rows)) {
       this.#restore()
       return
     }
     this.#maps.keep()
-    if (!same) this.#frames.want(wish)
+    if (!same) this.#frames.request(scene)
   }
 
   /**
@@ -254,9 +254,9 @@ export class Preview {
 const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("status"))?.model
 
 /**
- * The wish of a view.
+ * The scene of a view.
  *
  * @param {import("./pixels.js").View} view
- * @returns {import("./frames.js").Wish}
+ * @returns {import("./frames.js").Scene}
  */
 const pick = ({slice, energy, window, most}) => ({slice, energy, window, most})

@@ -1,7 +1,7 @@
 // @ts-check
 /** The player of an ensemble: controls, particles over the well and the section, counters, and the survival. */
 
-import {Destinies} from "./destinies.js"
+import {Outcomes} from "./outcomes.js"
 import {Ensemble} from "./ensemble.js"
 import {drawStarts} from "./ensemble_starts.js"
 import {Integrator} from "./integrator.js"
@@ -15,7 +15,7 @@ import {windowAt} from "./system.js"
 
 /** Longest time, in units of the well. */
 const LONGEST = 100
-/** Time between the begin and the first frame on a logarithmic scale. */
+/** Time of the first frame after the start on a logarithmic scale. */
 const FIRST = 0.5
 const STEPS = 1000
 /** What a press of "Step" shows of a playing ensemble. */
@@ -24,10 +24,10 @@ const STEP_SECONDS = 0.05
 const [SIDE, TRAIL] = [2.5, 0.88]
 const FRAMES_PER_NUMBER = 6
 /** Share of the map under the passages of the section that is covered. */
-const COVER = 0.85
-/** Time for the destinies of orbits in a frame, in ms. */
-const DESTINIES_MS = 6
-/** Frames longer than this, such as those of a hidden page, do not let the time jump. */
+const COVERED = 0.85
+/** Time in each frame for finding the outcomes of orbits, in ms. */
+const OUTCOMES_MS = 6
+/** A longer frame, such as one of a hidden page, advances the time by this only. */
 const LONGEST_FRAME_MS = 100
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none"
 
@@ -122,9 +122,9 @@ class Watch {
   #section = make("canvas")
   /** @type {Ensemble | null} */
   #ensemble = null
-  /** @type {Destinies | null} */
-  #destinies = null
-  #foretelling = 0
+  /** @type {Outcomes | null} */
+  #outcomes = null
+  #nextSearch = 0
   /** What the ensemble was made of. */
   #made = ""
   #frame = 0
@@ -162,7 +162,7 @@ class Watch {
     this.#model.send_msg({where, count, seed, radius, ...choice})
   }
 
-  /** Follow the page and the choices: with other starts the time begins anew, and goes on if it did. */
+  /** Follow the page and the choices. Other starts begin at time 0; a playing ensemble keeps playing. */
   #follow() {
     const {where, count, seed, radius, point, box} = this.#model
     Object.assign(this.#where, {value: where})
@@ -170,45 +170,45 @@ class Watch {
     this.#radius.value = String(radius)
     this.#radiusText.textContent = `10^${radius}`
     this.#radius.closest(".radius").hidden = where !== "disc"
-    const [shown, wish] = [present(), present()?.wish() ?? null]
+    const [shown, scene] = [present(), present()?.scene() ?? null]
     /** @type {Record<string, unknown>} */
-    const places = {view: wish, disc: [wish, radius, point], box: [wish, box]}
-    const place = places[where] ?? wish?.energy
-    const made = JSON.stringify([where, count, seed, place, wish?.slice, shown?.system.key])
+    const places = {view: scene, disc: [scene, radius, point], box: [scene, box]}
+    const place = places[where] ?? scene?.energy
+    const made = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
     if (made === this.#made) return this.#draw()
     this.#made = made
-    this.#ensemble = this.#destinies = null
-    if (shown && wish && energyAxis(wish.slice) < 0) this.#make(shown, wish)
-    this.#foretell()
+    this.#ensemble = this.#outcomes = null
+    if (shown && scene && energyAxis(scene.slice) < 0) this.#make(shown, scene)
+    this.#findOutcomes()
     this.#show(0)
   }
 
-  /** Find in the next frames through which exits the orbits will leave. */
-  #foretell() {
-    cancelAnimationFrame(this.#foretelling)
+  /** Find in the next frames through which exits the orbits leave. */
+  #findOutcomes() {
+    cancelAnimationFrame(this.#nextSearch)
     const tick = () => {
-      const [destinies, begun] = [this.#destinies, performance.now()]
-      while (destinies && !destinies.complete && performance.now() - begun < DESTINIES_MS) destinies.continue()
+      const [outcomes, begun] = [this.#outcomes, performance.now()]
+      while (outcomes && !outcomes.complete && performance.now() - begun < OUTCOMES_MS) outcomes.continue()
       if (this.#frame === 0) this.#draw()
-      this.#foretelling = destinies && !destinies.complete ? requestAnimationFrame(tick) : 0
+      this.#nextSearch = outcomes && !outcomes.complete ? requestAnimationFrame(tick) : 0
     }
-    this.#foretelling = requestAnimationFrame(tick)
+    this.#nextSearch = requestAnimationFrame(tick)
   }
 
   /**
    * @param {import("./present.js").Shown} shown
-   * @param {import("./frames.js").Wish} wish
+   * @param {import("./frames.js").Scene} scene
    */
-  #make({system, module}, wish) {
+  #make({system, module}, scene) {
     const {where, count, seed, radius, point, box} = this.#model
     const [potential, integrator] = [makePotential(system.formula), new Integrator(system, module)]
     const surroundings = {system, potential, integrator, interior: new Interior(potential)}
     const isMissing = (where === "disc" && !point.length) || (where === "box" && !box.length)
     const request = {where: isMissing ? "view" : where, count, seed, point, box, radius: 10 ** radius}
-    const states = drawStarts(request, wish, surroundings)
-    const energy = wish.energy / energyUnit(system.units)
+    const states = drawStarts(request, scene, surroundings)
+    const energy = scene.energy / energyUnit(system.units)
     this.#ensemble = new Ensemble(integrator, energy, states)
-    this.#destinies = new Destinies(system, module, energy, states, LONGEST)
+    this.#outcomes = new Outcomes(system, module, energy, states, LONGEST)
   }
 
   /** @param {boolean} on */
@@ -292,8 +292,8 @@ class Watch {
    * @param {Ensemble} ensemble
    * @param {import("./present.js").Shown} shown
    */
-  #paintWell(ensemble, {system, wish, colours}) {
-    const [frame, energy] = [wellFrame(), wish()?.energy]
+  #paintWell(ensemble, {system, scene, colours}) {
+    const [frame, energy] = [wellFrame(), scene()?.energy]
     const window = energy === undefined ? null : windowAt(system.windows.x_y, energy)
     if (!frame || !window) return void (this.#well.style.display = "none")
     this.#paint(
@@ -315,14 +315,14 @@ class Watch {
    * @param {Ensemble} ensemble
    * @param {import("./present.js").Shown} shown
    */
-  #paintSection(ensemble, {wish, colours}) {
-    const [frame, view] = [frames()[0], wish()]
+  #paintSection(ensemble, {scene, colours}) {
+    const [frame, view] = [frames()[0], scene()]
     const isSection = view?.slice.axes.join() === "x,px" && !view.slice.fixed.y
     // Before the first passage the map stays as it is.
     if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
       return void (this.#section.style.display = "none")
     const style = getComputedStyle(this.#note)
-    this.#section.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVER}%, transparent)`
+    this.#section.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVERED}%, transparent)`
     const [xs, ps] = [ensemble.sectionX, ensemble.sectionPx]
     this.#paint(this.#section, frame.box, view.window, colours(), ensemble, xs, ps, ...view.slice.units)
   }
@@ -341,7 +341,7 @@ class Watch {
    * @param {number} unitY
    */
   #paint(canvas, box, window, colours, {count}, xs, ys, unitX, unitY) {
-    const channel = this.#destinies?.channel ?? []
+    const channel = this.#outcomes?.channel ?? []
     const context = cover(canvas, box)
     if (!context) return
     if (this.#trails.checked) {
@@ -399,7 +399,7 @@ class Watch {
 
   #end() {
     cancelAnimationFrame(this.#frame)
-    cancelAnimationFrame(this.#foretelling)
+    cancelAnimationFrame(this.#nextSearch)
     this.#unlisten()
     for (const canvas of [this.#well, this.#section]) canvas.remove()
   }

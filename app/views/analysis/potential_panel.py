@@ -42,7 +42,7 @@ _DEFINITION = "V = ½(ω1² x² + ω2² y²) + ε V1, and Φ = V − ½Ω²(x² 
 
 
 class Propose(Protocol):
-    """Called with the system of the widgets."""
+    """Callback that receives the system of the widgets."""
 
     def __call__(self, system: System, *, done: bool) -> None:
         """`done` is False while the visitor is typing or dragging."""

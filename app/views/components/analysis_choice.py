@@ -17,7 +17,7 @@ LAYER_LABELS = {
     "manifolds": "Stable manifolds",
     "origins": "Origin and exit",
 }
-"""Of the layers of a view state."""
+"""Labels of the layers of a view state."""
 
 IMAGE_LABELS = {f"Image {name}" if image == 1 else name.capitalize(): image for name, image in IMAGE_CHOICES.items()}
 """Labels of the images of the manifolds, in a row."""
@@ -29,7 +29,7 @@ ANALYSIS_LABELS = {
     Analysis.ENERGIES: "Against",
     Analysis.WATCH: "Watch",
 }
-"""Of the tabs beside the maps."""
+"""Labels of the tabs beside the maps."""
 
 
 class LayerSwitches:

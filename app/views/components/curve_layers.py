@@ -14,7 +14,7 @@ from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits, trace_zero_velo
 from engine.slices.limiting_curves import trace_equipotentials
 from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
-from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
+from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, LineColours, Palette
 
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
@@ -32,33 +32,33 @@ class CurveLayers:
         # Figures that the Lyapunov orbits are still to be added to, and whether with numbers: when there are some.
         self._without_exits: list[tuple[figure, bool]] = []
         self._palette: Palette = PAPER
-        self._inks: Inks = LIGHT
-        # Glyphs whose colour depends on the theme, by the name of the colour in `Inks`.
-        self._inked: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
+        self._line_colours: LineColours = LIGHT
+        # Glyphs whose colour depends on the theme, by the name of the colour in `LineColours`.
+        self._themed: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
 
     def draw(self, plot: figure, *, full: bool) -> None:
         """Add the curves to a figure; the equipotentials only when `full`."""
         if full:
-            self._draw_inked(plot, self._levels, "equipotential", 1.0)
-            self._draw_inked(plot, self._critical, "critical_equipotential", 1.5)
-        self._draw_inked(plot, self._limit, "limiting_curve", 2.0 if full else 1.0)
+            self._draw_themed(plot, self._levels, "equipotential", 1.0)
+            self._draw_themed(plot, self._critical, "critical_equipotential", 1.5)
+        self._draw_themed(plot, self._limit, "limiting_curve", 2.0 if full else 1.0)
         self._without_exits.append((plot, full))
 
     def _draw_exits(self) -> None:
         plots, self._without_exits = self._without_exits, []
         with batched_additions([plot for plot, _ in plots]):
             for plot, numbered in plots:
-                plot.add_glyph(self._exits, MultiLine(line_color=self._inks.halo, line_width=5))
+                plot.add_glyph(self._exits, MultiLine(line_color=self._line_colours.halo, line_width=5))
                 plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
                 if numbered:
                     number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
                     number.text_font_style = "bold"
                     plot.add_glyph(self._labels, number)
 
-    def _draw_inked(self, plot: figure, source: ColumnDataSource, ink: str, width: float) -> None:
-        line = MultiLine(line_color=getattr(self._inks, ink), line_width=width)
+    def _draw_themed(self, plot: figure, source: ColumnDataSource, name: str, width: float) -> None:
+        line = MultiLine(line_color=getattr(self._line_colours, name), line_width=width)
         plot.add_glyph(source, line)
-        self._inked[ink].append(line)
+        self._themed[name].append(line)
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the channels for the next `show`."""
@@ -66,10 +66,10 @@ class CurveLayers:
 
     def set_dark(self, dark: bool) -> None:
         """Use the line colours of the dark or the light theme."""
-        self._inks = DARK if dark else LIGHT
-        for ink, glyphs in self._inked.items():
+        self._line_colours = DARK if dark else LIGHT
+        for name, glyphs in self._themed.items():
             for glyph in glyphs:
-                glyph.line_color = getattr(self._inks, ink)
+                glyph.line_color = getattr(self._line_colours, name)
 
     def show(self, spec: MapSpec) -> None:
         """Draw the curves of a map's plane, window and energy."""
@@ -102,11 +102,11 @@ class CurveLayers:
 
     def entries(self, spec: MapSpec) -> list[Entry]:
         """Legend entries of the curves shown on this plane."""
-        entries = [Entry(spec.plane.limiting_curve, self._inks.limiting_curve)]
+        entries = [Entry(spec.plane.limiting_curve, self._line_colours.limiting_curve)]
         if spec.common_energy is not None:
             has_exits = spec.potential.escape_radius is None
-            entries += [Entry("escape energy" if has_exits else "through saddles", self._inks.critical_equipotential)]
-            entries += [Entry("others", self._inks.equipotential)] if has_exits else []
+            entries += [Entry("escape energy" if has_exits else "through saddles", self._line_colours.critical_equipotential)]
+            entries += [Entry("others", self._line_colours.equipotential)] if has_exits else []
         return entries
 
 

@@ -15,7 +15,7 @@ from app.views.components.analysis_choice import LAYER_LABELS
 from app.views.components.numbers import grouped, percent
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
-from engine import Certificate, EscapeMap, Fate
+from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number
 from engine.propagation.fates import UNRESOLVED
 from engine.systems.outcomes import OutcomeKind
@@ -120,7 +120,7 @@ def _result(frame: EscapeMap) -> str:
     numbers = f"s 1 to {len(numbered)}" if len(numbered) > 1 else " 1"
     parts = [f"channel{numbers}: {', '.join(part[fate] for fate in numbered)}"] if numbered else []
     parts += [f"{escape(end.label)} {part[fate]}" for fate, end in ends if fate not in numbered]
-    parts += [f"bounded {part[Fate.BOUNDED]}{_certified(frame)}"]
+    parts += [f"bounded {part[Fate.BOUNDED]}{_share_on_evidence(frame)}"]
     parts += [f"{UNRESOLVED} {part[Fate.FAILED]}"] if shares[Fate.FAILED] else []
     return (
         f"Done, t = {grouped(frame.spec.t_max)}. Interior starts: {', '.join(parts)}. "
@@ -140,8 +140,8 @@ def _rounding(frame: EscapeMap) -> str:
     return f" At the limit of double precision: about {percent(frame.rounded_share, 0)} of the pixels depend on rounding errors."
 
 
-def _certified(frame: EscapeMap) -> str:
-    """The share of bounded orbits that are certified before t_max, in brackets; empty if there are none."""
-    certificates = frame.certificate[frame.fate == Fate.BOUNDED]
-    early = ~np.isin(certificates, (Certificate.NONE, Certificate.INTEGRATED))
-    return f" ({percent(np.mean(early), 0)} of them certified)" if early.any() else ""
+def _share_on_evidence(frame: EscapeMap) -> str:
+    """The share of bounded orbits that are called bounded before t_max, in brackets; empty if there are none."""
+    evidence = frame.evidence[frame.fate == Fate.BOUNDED]
+    early = ~np.isin(evidence, (Evidence.NONE, Evidence.INTEGRATED))
+    return f" ({percent(np.mean(early), 0)} of them on evidence)" if early.any() else ""

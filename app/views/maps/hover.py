@@ -5,8 +5,8 @@ from __future__ import annotations
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
 from app.browser.callbacks import callback_code
-from engine import Certificate, Fate, Regularity, Trust
-from engine.propagation.certificates import describe_certificate
+from engine import Evidence, Fate, Regularity, Trust
+from engine.propagation.evidence import describe_evidence
 from plots.pictures.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
 
 TRUST = {
@@ -81,12 +81,12 @@ def pixel_hover(
     codes = {
         "bounded": list(OUTCOMES).index(Fate.BOUNDED),
         "first": len(OUTCOMES),
-        "firstCertificate": len(OUTCOMES) + len(CROSSING_CLASSES),
+        "firstEvidence": len(OUTCOMES) + len(CROSSING_CLASSES),
         "ends": len(PAPER.ends) + 1,
         "channels": MOST_CHANNELS,
     }
     words = {
-        "certificates": [describe_certificate(code) for code in Certificate],
+        "evidence": [describe_evidence(code) for code in Evidence],
         "characters": [CHARACTER.get(code, "") for code in Regularity],
         "trusts": [TRUST.get(code, "") for code in Trust],
         "fates": _FATES,

@@ -35,7 +35,7 @@ class OtherView:
 
 
 @dataclass(frozen=True)
-class Described:
+class LegendContents:
     """What the legends of a map depend on.
 
     Attributes
@@ -65,18 +65,18 @@ class Described:
     other: OtherView | None = None
 
 
-def map_legend(name: str, described: Described, overlays: Iterable[Entry]) -> str:
+def map_legend(name: str, contents: LegendContents, overlays: Iterable[Entry]) -> str:
     """HTML of the legend of a map, by the name of its picture, with the entries of what is drawn over it."""
-    palette, ends = described.palette, described.spec.outcomes
-    outcomes = [entry for fate, entry in reversed(palette.outcomes.items()) if fate in described.fates]
+    palette, ends = contents.palette, contents.spec.outcomes
+    outcomes = [entry for fate, entry in reversed(palette.outcomes.items()) if fate in contents.fates]
     items = {
         "basins": lambda: chips([*palette.legend_entries(ends), *outcomes]),
-        "times": lambda: _colour_scale(palette, described.times, locked=described.locked),
+        "times": lambda: _colour_scale(palette, contents.times, locked=contents.locked),
         "crossings": lambda: legend_items(palette.crossing_entries),
-        "characters": lambda: f"{legend_items(palette.character_entries[1:])} <span>{described.regularity}</span>",
+        "characters": lambda: f"{legend_items(palette.character_entries[1:])} <span>{contents.regularity}</span>",
         "origins": lambda: passage_legend(palette, ends),
-        "compared": lambda: _other_legend(palette, described.other),
-        "differences": lambda: _difference_legend(described),
+        "compared": lambda: _other_legend(palette, contents.other),
+        "differences": lambda: _difference_legend(contents),
     }[name]()
     return f"<div class='legend'>{items}{legend_items(overlays)}</div>"
 
@@ -86,11 +86,11 @@ def _other_legend(palette: Palette, other: OtherView | None) -> str:
     return f"{chips(palette.legend_entries(other.outcomes))} <span>{escape(other.title)}</span>" if other is not None else "…"
 
 
-def _difference_legend(described: Described) -> str:
+def _difference_legend(contents: LegendContents) -> str:
     """The classes of pixels, or why they are not compared."""
-    if described.other is not None and described.other.axes != described.spec.plane.axis_symbols:
+    if contents.other is not None and contents.other.axes != contents.spec.plane.axis_symbols:
         return "<span>Other axes: pixels are not compared.</span>"
-    return legend_items(described.palette.difference_entries)
+    return legend_items(contents.palette.difference_entries)
 
 
 def _colour_scale(palette: Palette, times: TimeScale, *, locked: bool) -> str:

@@ -31,7 +31,7 @@ from app.views.components.numbers import percent
 from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
 from app.views.maps.comparison import ComparedMap
 from app.views.maps.hover import pixel_hover
-from app.views.maps.map_legend import Described, map_legend
+from app.views.maps.map_legend import LegendContents, map_legend
 from app.views.maps.map_ranges import MapRanges, TwoFingers
 from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
@@ -63,7 +63,7 @@ _LEAST_MAGNIFICATION = 1.5
 
 @dataclass(frozen=True)
 class MapActions:
-    """What a hand does on the maps.
+    """Callbacks for the user's actions on the maps.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class MapActions:
 
 
 class MapsView:
-    """Draws frames of maps, and the marks over them; `alone` as of `PictureGrid`."""
+    """Draws frames of maps, and the marks over them; `alone` has the meaning that it has in `PictureGrid`."""
 
     def __init__(self, actions: MapActions, *, alone: bool = False) -> None:
         self._actions = actions
@@ -255,7 +255,7 @@ class MapsView:
         notes = label_axes(self.figures.values(), spec.plane.axis_symbols, spec.find_window())
         if self.ranges.magnification > _LEAST_MAGNIFICATION:
             notes.append(f"{format_number(float(f'{self.ranges.magnification:.2g}'))} times enlarged")
-        described = Described(
+        contents = LegendContents(
             spec,
             self._palette,
             self.times,
@@ -272,7 +272,7 @@ class MapsView:
                 shown = overlays if name in DOUBTED else []
                 other = self.compared.other if name == "compared" else None
                 axes = spec.plane.axis_symbols if other is None else other.axes
-                annotate_picture(self.figures[name], _TITLES[name], axes, map_legend(name, described, shown), notes)
+                annotate_picture(self.figures[name], _TITLES[name], axes, map_legend(name, contents, shown), notes)
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""

@@ -1,4 +1,4 @@
-"""The ranges of the maps: they follow the map that is shown and two fingers, and report the window to which a hand moves them."""
+"""The ranges of the maps: they follow the displayed map and two fingers, and report the window to which the user moves them."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class MapRanges:
     Parameters
     ----------
     on_zoom
-        Called with the window when the ranges have stopped changing; None is the whole interior. It calls `finish_report`, also
-        later: until then the ranges follow no other window, as a hand may have moved them on.
+        Called with the window when the ranges have stopped changing; None is the whole interior. It must call `finish_report`, at
+        once or later; until then the ranges follow no other window, because the user may have moved them again.
     on_rest
         Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
     """

@@ -14,7 +14,7 @@ from engine import Window
 from plots.pictures.palette import LIGHT, MARK_EDGE, PAPER, Palette
 
 MOST_SECTION_POINTS = 2000
-"""Of each orbit at most this many section points are drawn."""
+"""Largest number of section points that are drawn of one orbit."""
 
 NO_POINTS = np.zeros((0, 2))
 """An empty section."""

@@ -26,7 +26,7 @@ SHORT_TITLES = {
 FIRST = "basins"
 """The largest picture, and on narrow screens the only one, until another one is chosen."""
 
-# As many pictures have the same size; of more, one is twice as large as the others.
+# Up to this many pictures have the same size; of more, one is twice as large as the others.
 _MOST_EQUAL = 4
 
 

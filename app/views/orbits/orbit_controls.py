@@ -51,7 +51,7 @@ class OrbitControls:
         self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
         self.button = button("Integrate", self._submit, kind="primary", align="end")
         self.list = OrbitList(self._choose, visible=False)
-        self.divergent_start = button("Find its twin", actions.find_divergent_start, margin=0)
+        self.divergent_start = button("Find divergent start", actions.find_divergent_start, margin=0)
         self.remove = button("Remove", actions.remove, margin=0)
         self.clear = button("Clear all", actions.clear, margin=0)
         self.open_plane = button("", actions.open_plane, margin=0)

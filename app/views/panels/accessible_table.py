@@ -17,7 +17,7 @@ from engine.propagation.fates import UNRESOLVED
 
 
 class AccessibleTable:
-    """A table of what the page shows, written while it is open."""
+    """A table of what the page shows; it is only written while it is open."""
 
     def __init__(self, state: ViewState) -> None:
         self._state = state

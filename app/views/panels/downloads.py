@@ -15,7 +15,7 @@ from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED
-from app.views.panels.figure_choices import Shown
+from app.views.panels.figure_choices import ShownResults
 from app.views.panels.figure_form import FigureForm
 from engine import EscapeMap, Sweep
 from plots.pictures.map_analyses import MapAnalyses
@@ -127,7 +127,7 @@ class Downloads:
             one.disabled = self._frame is None
         self.curves.disabled = self._curves is None
         self.orbits.disabled = not any(one.orbit is not None for one in self._orbits)
-        self.figure.show(Shown(self._frame, self._analyses, self._orbits, self._curves))
+        self.figure.show(ShownResults(self._frame, self._analyses, self._orbits, self._curves))
 
     def _figure_name(self, ending: str) -> str:
         return f"escapes-{self._state.case}{ending}" if self._frame is None else self._named(ending)

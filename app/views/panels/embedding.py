@@ -11,7 +11,7 @@ from app.views.components.texts import TextPane
 
 NOT_ALLOWED = "This server lets no other page embed it."
 
-# Of the frame, in pixels; pictures are square.
+# Side of the frame in pixels; pictures are square.
 _SIDE = 600
 
 
@@ -47,5 +47,5 @@ class OpenLink:
         self.pane = TextPane("", margin=0, css_classes=["open-explorer"])
 
     def show(self, link: str) -> None:
-        """Lead to a view; `link` as of `app.state.permalink.write_link`."""
+        """Lead to a view; `link` is the result of `app.state.permalink.write_link`."""
         self.pane.object = f'<a href="{escape(link)}" target="_blank" rel="noopener">Open in the explorer</a>'

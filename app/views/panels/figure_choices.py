@@ -30,7 +30,7 @@ FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curve
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownResults:
     """What the page shows; None and empty for what is not computed."""
 
     frame: EscapeMap | None = None
@@ -39,7 +39,7 @@ class Shown:
     curves: Sweep | None = None
 
 
-def figure_choices(shown: Shown, state: ViewState) -> dict[str, Make]:
+def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
     """The figures by title; they show what is shown now, however the page changes afterwards."""
     choices: dict[str, Make] = {}
     drawings = [one.drawing for one in shown.orbits if one.drawing is not None]
@@ -58,7 +58,7 @@ def figure_choices(shown: Shown, state: ViewState) -> dict[str, Make]:
     return choices
 
 
-def _map_choices(frame: EscapeMap, shown: Shown, state: ViewState) -> dict[str, Make]:
+def _map_choices(frame: EscapeMap, shown: ShownResults, state: ViewState) -> dict[str, Make]:
     available = {"characters": shown.analyses.regularity, "origins": shown.analyses.origins}
     pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or available[name] is not None)]
 

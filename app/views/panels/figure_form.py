@@ -16,7 +16,7 @@ from app.browser.number_box import NumberBox
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane
 from app.views.components.widgets import SegmentedControl, Switches, button
-from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, Shown, figure_choices
+from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, ShownResults, figure_choices
 from plots.printed.figure_style import FigureFormat, FigureStyle
 
 _TITLES = "Titles"
@@ -44,7 +44,7 @@ class FigureForm:
 
     def __init__(self, state: ViewState, saver: FileSaver, name: Callable[[str], str], on_copied: Callable[[bool], None]) -> None:
         self._state, self._saver, self._name = state, saver, name
-        self._shown = Shown()
+        self._shown = ShownResults()
         self._style: dict[str, float] = {name: getattr(FigureStyle(), name) for name in _NUMBERS}
         self.what = pn.widgets.Select(label="What to draw", options=[ALL_MAPS], sizing_mode="stretch_width", margin=(0, 10))
         formats = {format.name: format for format in FigureFormat}
@@ -64,7 +64,7 @@ class FigureForm:
         numbers = pn.Row(*boxes, margin=0)
         return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
 
-    def show(self, shown: Shown) -> None:
+    def show(self, shown: ShownResults) -> None:
         """Offer the figures of what the page shows; what is chosen stays, as the next map may have it."""
         self._shown = shown
         offered = {ALL_MAPS, self.what.value, *figure_choices(shown, self._state)}

@@ -141,7 +141,7 @@ class SlicePanel:
         self._submit(changed)
 
     def _changed(self, mode: _Mode | None = None, fixed: dict[Coordinate, float] | None = None) -> Slice:
-        """The slice of the state with another decision of the energy, or other held values."""
+        """Return the slice of the state with another mode or other held values."""
         plane = self._state.plane
         held = dict(plane.fixed) if fixed is None else fixed
         if mode is None:
@@ -155,7 +155,7 @@ class SlicePanel:
         return Slice(plane.abscissa, plane.ordinate, solved, sign, tuple(kept.items()))
 
     def _submit(self, make: Callable[[], Slice]) -> None:
-        """Use a slice, or say why there is none."""
+        """Report a slice, or show why it cannot be made."""
         try:
             chosen = make()
         except ValueError as error:
@@ -165,7 +165,7 @@ class SlicePanel:
             self._on_slice(chosen)
 
     def _follow_axes(self) -> None:
-        """Show the axes of the state again after a choice that is refused."""
+        """Show the axes of the state again after a choice was refused."""
         self._following = True
         try:
             for axis, shown in zip(self.axes, self._state.plane.axes, strict=True):
@@ -183,7 +183,7 @@ def _symbol(key: str) -> str:
 
 
 def _mode_of(plane: Slice) -> str:
-    """The text of what the energy decides on a slice."""
+    """Return the label of what the energy decides on a slice."""
     if plane.decided is Coordinate.SPEED:
         used = (*plane.axes, *dict(plane.fixed))
         return next(text for angle, text in _ANGLES.items() if angle in used)
@@ -191,7 +191,7 @@ def _mode_of(plane: Slice) -> str:
 
 
 def _with_axes(plane: Slice, axes: tuple[Any, Any]) -> Slice:
-    """A slice with other axes; what its energy decides and its held values stay where they can."""
+    """Return a slice with other axes that keeps the decided momentum and the held values if these are legal with the new axes."""
     kept = tuple((c, value) for c, value in plane.fixed if c not in axes)
     for solved, sign, fixed in ((plane.solved, plane.sign, kept), (None, 1, kept), (None, 1, ())):
         try:

@@ -134,7 +134,7 @@ class _Descent:
         # needs a steady flow: after a very slow start its steps would become shorter than the rounding error of the time.
         for method, flow in ((LSODA, self.flow), (Radau, self._steady_flow)):
             with warnings.catch_warnings():
-                # Where it fails, the other method is next.
+                # If LSODA fails, the other method is tried.
                 warnings.filterwarnings("ignore", "lsoda: ", UserWarning)
                 end = self._follow(method, flow, saddle, side)
             if end is not None:

@@ -31,27 +31,27 @@ MOST_CONVOLUTIONS = 120
 # Results of searches for zeros, some 0.1 kB each, and the share of the operations that a search may take.
 _ZEROS, _EFFORT_FOR_ZEROS = 1024, 0.1
 
-# Rotations up to this are looked for, with V compared on circles and at angles up to a relative error.
+# Largest order of the rotations to look for, and the relative error within which V must agree on the circles below.
 _MOST_ROTATIONS, _ROTATION_ERROR = 12, 1e-11
 _RADII, _ANGLES = 2.0 ** np.arange(-6.0, 3.0)[:, None], np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
 # Values of an expression that count as 0, relative to its curvature.
 _ZERO = 1e-14
-# A rotation that is none by 2π/n: by 1 radian.
+# An angle that is not 2π/n, in radians.
 _ANY_ROTATION = 1.0
 
 
 @dataclass(frozen=True)
 class ExpressionForm:
-    """V as an expression; a parameter of it has its value.
+    """V as an expression, with numbers in place of its parameters.
 
-    What is divided by, or of which a root or a logarithm is taken, is written from its zero, as (x − 1)² + y² instead of
-    x² − 2x + y² + 1, which would lose digits near it.
+    Polynomials that are divisors or arguments of roots and logarithms are expanded about their zero: (x − 1)² + y² instead of
+    x² − 2x + y² + 1, which would lose digits near the zero.
     """
 
     expression: Expression
 
     def __post_init__(self) -> None:
-        # An expression that is refused for its size is not searched.
+        # An expression that is refused for its size is not searched for zeros.
         if self.limits_refusal() is None:
             object.__setattr__(self, "expression", replace_parts(self.expression, _from_zeros(self.expression)))
 
@@ -119,7 +119,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(-1.0, derivative(self.expression, axis))]))
 
     def find_critical_points(self) -> np.ndarray:
-        """(n, 3) those of a region, see `engine.systems.forms.stationary_points`."""
+        """(n, 3) critical points of a region with their indices, see `engine.systems.forms.stationary_points`."""
         return self._critical_points
 
     @cached_property
@@ -127,7 +127,7 @@ class ExpressionForm:
         return find_stationary_points(Derivatives.of(self.expression))
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """−sign ∇V, no faster than the slope that the well's quadratic part has at `length`, or V on average around a centre."""
+        """Return −sign ∇V, slowed to at most the slope of the quadratic part at `length`, or the mean slope around a centre."""
         curvature = np.abs(self.hessian(0.0, 0.0)).max()
         around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
         steep = length * curvature if np.isfinite(curvature) else float(np.hypot(*around).mean())
@@ -143,17 +143,17 @@ class ExpressionForm:
 
     @cached_property
     def singular_points(self) -> np.ndarray:
-        """(n, 2) isolated zeros of what is divided by, or of which a root or a logarithm is taken."""
+        """(n, 2) isolated zeros of divisors and of the arguments of roots and logarithms."""
         found = [_isolated_zeros(base) for base in singular_bases(self.expression)]
         return read_only(np.concatenate([NO_POINTS, *found]))
 
     def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
-        """Whether what is divided by, or of which a root or a logarithm is taken, has both signs."""
+        """Whether a divisor, or the argument of a root or a logarithm, takes both signs at the points."""
         signs = (np.sign(self._evaluate(x, y, base)[0]) for base in singular_bases(self.expression))
         return any(bool((each > 0.0).any() and (each < 0.0).any()) for each in signs)
 
     def plus(self, terms: Terms) -> ExpressionForm:
-        """A sum."""
+        """Return V plus a polynomial."""
         return ExpressionForm(linear_combination([(1.0, self.expression), (1.0, from_terms(terms))]))
 
     def scaled(self, length: float, energy: float) -> ExpressionForm:
@@ -162,7 +162,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(1.0 / energy, substitute(self.expression, x, y))]))
 
     def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> ExpressionForm:
-        """ε V with the constant, linear and quadratic terms of the expansion about the origin as the parameters want them."""
+        """Return ε V, but about the origin the constant and linear terms of V, and its quadratic ones scaled by ω₁ and ω₂."""
         if omega_1 == omega_2 == epsilon == 1.0:
             return self
         vxx, vxy, vyy = map(float, self.hessian(0.0, 0.0))
@@ -183,7 +183,7 @@ class ExpressionForm:
         return ExpressionForm(substitute(self.expression, *axes))
 
     def count_rotations(self) -> int:
-        """From values of V on circles."""
+        """Count the rotations that leave V unchanged, by its values on circles; 0 for all."""
         if self._is_turned_by(_ANY_ROTATION):
             return 0
         return next(n for n in range(_MOST_ROTATIONS, 0, -1) if n == 1 or self._is_turned_by(2.0 * math.pi / n))
@@ -196,7 +196,7 @@ class ExpressionForm:
         return bool(known.any() and np.all(error <= _ROTATION_ERROR * np.abs(one[known]).max(axis=1)))
 
     def limits_refusal(self) -> str | None:
-        """Size of V and of its derivatives, each before the next ones are made: they can be a hundred times as large."""
+        """Check the size of V before that of its derivatives, which can be a hundred times as large."""
         graphs = (
             ("V has", lambda: (self.expression,)),
             ("The first derivatives of V have", lambda: slopes(self.expression)),
@@ -210,7 +210,7 @@ class ExpressionForm:
 
 
 def _from_zeros(expression: Expression) -> dict[Expression, Expression]:
-    """The polynomials with one isolated zero, away from the origin, among the singular bases, and what they are from there."""
+    """Map each singular base that is a polynomial with one isolated zero, not at the origin, to its expansion about that zero."""
     found = {}
     for base in singular_bases(expression):
         terms, zeros = as_terms(base), _isolated_zeros(base)
@@ -233,7 +233,7 @@ def _shifted(terms: Terms, a: float, b: float) -> Expression:
 
 @lru_cache(maxsize=_ZEROS)
 def _isolated_zeros(expression: Expression) -> np.ndarray:
-    """(n, 2) the stationary points of an expression at which it is 0, to rounding; none where these form a curve."""
+    """(n, 2) the stationary points at which an expression is 0 up to rounding; none if these form a curve."""
     terms = as_terms(expression)
     form = ExpressionForm(expression) if terms is None else PolynomialForm(tuple((i, j, c) for (i, j), c in terms.items()))
     try:

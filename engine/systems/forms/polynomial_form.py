@@ -139,11 +139,11 @@ class PolynomialForm:
 
     @property
     def singular_points(self) -> np.ndarray:
-        """None."""
+        """Return no points: a polynomial has no singular points."""
         return NO_POINTS
 
     def is_singular_on_curve(self, _x: np.ndarray, _y: np.ndarray) -> bool:
-        """False."""
+        """Return False: a polynomial has no singular points."""
         return False
 
     def plus(self, terms: Terms) -> PolynomialForm:
@@ -175,7 +175,10 @@ class PolynomialForm:
         return checked_form(tuple((k, m, c) for (k, m), c in kept.items()))
 
     def count_rotations(self) -> int:
-        """From V = Σ c z^a z̄^b with z = x + iy, where a rotation by φ multiplies each term by exp(i (a − b) φ)."""
+        """Count the rotations that leave V unchanged; 0 for all.
+
+        In V = Σ c z^a z̄^b with z = x + iy a rotation by φ multiplies each term by exp(i (a − b) φ).
+        """
         return math.gcd(*(a - b for a, b in self._complex_terms() if a != b))
 
     def _complex_terms(self) -> dict[Powers, complex]:

@@ -96,7 +96,7 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         A `FormulaError` with the position and the problem, if the text cannot be parsed, has more than 500 characters, more than
         50 nested brackets or roots, neither x nor y, a function of a number outside its domain, as a polynomial a degree above
         12, more than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9, or else more than 120 products and
-        functions with the derivatives up to the second. A ValueError, if a parameter is no letter of the formula, its value is
+        functions with the derivatives up to the second. A ValueError, if a parameter is not a letter of the formula, its value is
         not legal, or V has no minimum to which the axes could be moved.
 
     Examples
@@ -167,7 +167,7 @@ def _exact_values(text: str, parameters: Mapping[str, float]) -> dict[str, Fract
     for name in parameters:
         if name not in letters:
             legal = f"its letters are {', '.join(letters)}" if letters else "it has no letters"
-            raise ValueError(f"parameters: {reprlib.repr(name)} is no letter of the formula; {legal}")
+            raise ValueError(f"parameters: {reprlib.repr(name)} is not a letter of the formula; {legal}")
     return {name: Fraction(repr(checked_letter_value(name, value))) for name, value in parameters.items()}
 
 

@@ -1,7 +1,7 @@
-"""Arithmetic of the parser: polynomials with exact coefficients as long as possible, expressions where they end.
+"""Arithmetic of the parser: polynomials with exact coefficients as far as possible, otherwise expressions.
 
-A part of a formula without functions, roots or divisions by x and y is expanded exactly. As a part of an expression each of its
-coefficients is rounded once.
+A part of a formula without functions, roots or divisions by x and y is expanded exactly. Its coefficients are rounded once, when
+it becomes part of an expression.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def quotient(one: FormulaValue, other: FormulaValue) -> FormulaValue:
 
 
 def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
-    """A power; ArithmeticError or ValueError for one of a number that is not a finite real number."""
+    """A power; ArithmeticError or ValueError if it is a number that is not finite and real."""
     if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
         return exact_power(base, int(exponent))
     if exponent.denominator == 1 and base and not isinstance(base, Expression):
@@ -69,7 +69,7 @@ def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
 
 
 def _power_of_factors(base: ExactTerms, exponent: int) -> Expression:
-    """A power of a polynomial; of its factors if one of them is repeated, so that 1/(x² + 2x + 1) is (x + 1)^−2."""
+    """A power of a polynomial. Repeated factors are raised separately, so that 1/(x² + 2x + 1) is (x + 1)^−2."""
     constant, factors = exact_polynomial(base).factor_squarefree()
     if all(n == 1 for _, n in factors):
         return power(_rounded(base), float(exponent))
@@ -105,7 +105,7 @@ def _rounded(value: FormulaValue) -> Expression:
 
 
 def _simplified(value: Expression) -> FormulaValue:
-    """A number or a polynomial, whose coefficients are exact from here on; others unchanged."""
+    """Turn an expression that is a number or a polynomial into one with exact coefficients; others stay expressions."""
     number = as_number(value)
     if number is not None:
         return {(0, 0): Fraction(number)} if number else {}

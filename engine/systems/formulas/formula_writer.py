@@ -12,7 +12,7 @@ from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.formulas.outcome_clauses import write_clauses
 from engine.systems.potential import Potential
 
-# Of a double, none are lost.
+# Digits that determine a double.
 _MOST_DIGITS = 17
 
 

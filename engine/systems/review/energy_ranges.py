@@ -55,7 +55,7 @@ def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float
 
 
 def _range_around(potential: Potential, energies: np.ndarray) -> EnergyRange:
-    """From below the lowest critical point to above the highest one, where all of the plane is allowed."""
+    """Return energies from below the lowest critical point to above the highest one, where all of the plane is allowed."""
     span = max(float(np.ptp(energies)), _LEAST_SPREAD * float(np.abs(energies).max()), _NARROWEST * potential.units.energy)
     decimals = 2 - math.floor(math.log10(span))
     ends = energies.min() - 0.5 * span, energies.max() + 0.5 * span, np.median(energies)

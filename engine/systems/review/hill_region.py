@@ -13,7 +13,7 @@ _ENERGY_SHARE = 0.9
 _ANGLES, _RADII_PER_E_FOLD = 720, 35
 # Smallest and largest radius of the grid, in units of the distances of the nearest and of the outermost critical point.
 _SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-2, 50.0
-# Where an opening without a saddle is searched: at this multiple of the range of the critical energies.
+# Openings without a saddle are searched at this multiple of the range of the critical energies.
 _OPEN_ENERGY_FACTOR = 100.0
 _CACHE_SIZE = 256
 

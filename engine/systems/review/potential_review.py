@@ -101,7 +101,7 @@ class SystemReview(PotentialReview):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore: those of the catalogue at its values, else as of any potential."""
+        """Energies to explore: those of the catalogue for its parameter values, otherwise those derived from the potential."""
         known = self.system.entry.energies
         return super().energies if known is None or self.system.parameters else known
 

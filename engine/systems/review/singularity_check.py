@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
-# Where it is tested whether V is defined: radii in units of the escape radius, and angles off the axes.
+# Places at which V must be defined: radii in units of the escape radius, and angles off the axes.
 _SCANNED_RADII, _SCANNED_ANGLES = np.geomspace(1e-3, 1.0, 60), 0.1 + np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
 _CACHE_SIZE = 256
 

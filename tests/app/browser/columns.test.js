@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {pixelColumns, showsWish} from "../../../app/browser/modules/columns.js"
+import {pixelColumns, showsScene} from "../../../app/browser/modules/columns.js"
 import {X_PX as slice} from "./x_px.js"
 
 class Image {
@@ -26,8 +26,8 @@ const coding = {
   withoutOrbit: [2, 3],
 }
 const window = {xLow: -1, xHigh: 1, ordinateLow: -2, ordinateHigh: 2}
-const wish = {slice, energy: 0.3, window, most: 224}
-const view = {...wish, columns: 3, rows: 1, horizon: 30}
+const scene = {slice, energy: 0.3, window, most: 224}
+const view = {...scene, columns: 3, rows: 1, horizon: 30}
 const like = {fate: [new Image(new ArrayBuffer(1), [1, 1])], escape_time: [new Image(new ArrayBuffer(4), [1, 1])]}
 const pixels = {fate: Int8Array.of(-3, 1, 4), time: Float32Array.of(NaN, 2, 3), crossings: Uint16Array.of(9, 0, 12)}
 
@@ -65,13 +65,13 @@ const server = (/** @type {Record<string, any>} */ changes) => ({
 })
 
 test("a map of the server replaces a preview with as many pixels", () => {
-  assert.ok(showsWish(server({}), wish, 112))
-  assert.ok(!showsWish(server({}), wish, 224))
-  assert.ok(showsWish(server({complete: [true]}), wish, 224))
+  assert.ok(showsScene(server({}), scene, 112))
+  assert.ok(!showsScene(server({}), scene, 224))
+  assert.ok(showsScene(server({complete: [true]}), scene, 224))
 })
 
 test("a map at another energy or of another window does not", () => {
-  assert.ok(!showsWish(server({energy: [0.31]}), wish, 1))
-  assert.ok(!showsWish(server({x: [-1.01]}), wish, 1))
-  assert.ok(!showsWish(server({dw: [1]}), wish, 1))
+  assert.ok(!showsScene(server({energy: [0.31]}), scene, 1))
+  assert.ok(!showsScene(server({x: [-1.01]}), scene, 1))
+  assert.ok(!showsScene(server({dw: [1]}), scene, 1))
 })

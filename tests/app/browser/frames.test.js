@@ -7,8 +7,8 @@ import {X_PX as slice} from "./x_px.js"
 
 const window = {xLow: -1, xHigh: 1, ordinateLow: -1, ordinateHigh: 1}
 const system = /** @type {any} */ ({mirror: [0, 2, 1]})
-const wish = (/** @type {number} */ energy) => ({slice, energy, window, most: 224})
-const view = {...wish(0.3), columns: 3, rows: 3, horizon: 30}
+const scene = (/** @type {number} */ energy) => ({slice, energy, window, most: 224})
+const view = {...scene(0.3), columns: 3, rows: 3, horizon: 30}
 
 test("half of a symmetric picture is computed, the other half has the mirror images of the channels", () => {
   const picture = new Picture(system, view)
@@ -48,10 +48,10 @@ function startFrames() {
   return {frames, asked, shown, pool}
 }
 
-test("while a picture is computed only the newest wish waits", () => {
+test("while a picture is computed only the newest scene waits", () => {
   mock.timers.enable({apis: ["setTimeout"]})
   const {frames, asked, shown} = startFrames()
-  for (const energy of [0.3, 0.31, 0.32]) frames.want(wish(energy))
+  for (const energy of [0.3, 0.31, 0.32]) frames.request(scene(energy))
   assert.deepEqual(
     asked.map(({view: {energy}}) => energy),
     [0.3],
@@ -66,15 +66,15 @@ test("while a picture is computed only the newest wish waits", () => {
   mock.timers.reset()
 })
 
-test("at rest the picture gets finer and longer, and a new wish replaces that at once", () => {
+test("at rest the picture gets finer and longer, and a new scene replaces that at once", () => {
   mock.timers.enable({apis: ["setTimeout"]})
   const {frames, asked} = startFrames()
-  frames.want(wish(0.3))
+  frames.request(scene(0.3))
   assert.equal(asked[0].view.columns, LEAST_SIDE)
   asked[0].finish()
   mock.timers.tick(100)
   assert.deepEqual([asked[1].view.columns, asked[1].view.horizon], [112, 100])
-  frames.want(wish(0.4))
+  frames.request(scene(0.4))
   assert.equal(asked[2].view.energy, 0.4)
   frames.stop()
   mock.timers.reset()
@@ -83,7 +83,7 @@ test("at rest the picture gets finer and longer, and a new wish replaces that at
 test("a preview has no more pixels than the map", () => {
   mock.timers.enable({apis: ["setTimeout"]})
   const {frames, asked} = startFrames()
-  frames.want({...wish(0.3), most: 112})
+  frames.request({...scene(0.3), most: 112})
   for (let k = 0; k < 3; k++) {
     asked[k]?.finish()
     mock.timers.tick(100)

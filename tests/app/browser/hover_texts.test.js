@@ -4,9 +4,9 @@ import {test} from "node:test"
 
 import {coordinate, count, fateName, number, percent, pixelDetails} from "../../../app/browser/hover_texts.js"
 
-const CODES = {bounded: 4, first: 5, firstCertificate: 10, ends: 9, channels: 8}
+const CODES = {bounded: 4, first: 5, firstEvidence: 10, ends: 9, channels: 8}
 const WORDS = {
-  certificates: ["integrated", "enclosed"],
+  evidence: ["integrated", "enclosed"],
   characters: ["regular", "chaotic"],
   trusts: ["not tested", "doubtful"],
   fates: ["undecided", "failed", "outside", "forbidden", "bounded", "channel 1", "channel 2"],
@@ -39,7 +39,7 @@ test("an escaping pixel has its time and crossings", () => {
   assert.deepEqual(details(1), ["escape time 12.346", "1 upward crossing of y = 0"])
 })
 
-test("a bounded pixel has its certificate", () => {
+test("a bounded pixel has its evidence", () => {
   assert.deepEqual(details(0), ["enclosed"])
 })
 

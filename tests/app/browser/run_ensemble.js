@@ -1,7 +1,7 @@
 // @ts-check
-/** Places, exits and passages of an ensemble at rising times, and its destinies; or the starts that a request draws. */
+/** Places, exits and passages of an ensemble at rising times, and its outcomes; or the starts that a request draws. */
 
-import {Destinies} from "../../../app/browser/modules/destinies.js"
+import {Outcomes} from "../../../app/browser/modules/outcomes.js"
 import {Ensemble} from "../../../app/browser/modules/ensemble.js"
 import {drawStarts} from "../../../app/browser/modules/ensemble_starts.js"
 import {Integrator} from "../../../app/browser/modules/integrator.js"
@@ -9,10 +9,10 @@ import {Interior} from "../../../app/browser/modules/interior.js"
 import {makePotential} from "../../../app/browser/modules/potential.js"
 import {input, module} from "./read_input.js"
 
-const {system, requests, wish, energy, states, times} = input
+const {system, requests, scene, energy, states, times} = input
 const potential = makePotential(system.formula)
 const surroundings = {system, potential, interior: new Interior(potential), integrator: new Integrator(system, module)}
-const draw = (/** @type {any} */ request) => [...drawStarts(request, wish, surroundings)]
+const draw = (/** @type {any} */ request) => [...drawStarts(request, scene, surroundings)]
 
 function follow() {
   const starts = Float64Array.from(states)
@@ -29,10 +29,10 @@ function follow() {
       growth: ensemble.growth(),
     }
   })
-  const destinies = new Destinies(system, module, energy, starts, times.at(-1))
-  while (!destinies.complete) destinies.continue()
+  const outcomes = new Outcomes(system, module, energy, starts, times.at(-1))
+  while (!outcomes.complete) outcomes.continue()
   ensemble.advance(times[0])
-  return {frames, escapeTime: [...ensemble.escapeTime], destinies: [...destinies.channel], again: [...ensemble.x]}
+  return {frames, escapeTime: [...ensemble.escapeTime], outcomes: [...outcomes.channel], again: [...ensemble.x]}
 }
 
 console.log(JSON.stringify(requests ? requests.map(draw) : follow()))

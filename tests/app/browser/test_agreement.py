@@ -62,7 +62,7 @@ def random_specs(number: int) -> Iterator[MapSpec]:
         ends = potential.escape_energy, highest
         energy = ends if plane.energy_axis is not None else chance.uniform(*ends)
         window = default_window(potential, plane, energy)
-        spec = MapSpec(potential, plane, energy, (SIDE, SIDE), window, HORIZON * potential.units.time, certify=False)
+        spec = MapSpec(potential, plane, energy, (SIDE, SIDE), window, HORIZON * potential.units.time, use_evidence=False)
         for _ in range(zooms):
             spec = zoom_on_boundary(spec, chance)
         yield spec

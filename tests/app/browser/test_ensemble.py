@@ -46,7 +46,7 @@ class Followed:
     states: np.ndarray
     times: np.ndarray
     frames: list[dict[str, np.ndarray]]
-    destinies: np.ndarray
+    outcomes: np.ndarray
     again: np.ndarray
 
 
@@ -62,7 +62,7 @@ def followed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     data |= {"states": states.ravel().tolist(), "times": times.tolist()}
     found = run_node("run_ensemble.js", data, tmp_path_factory.mktemp("ensemble"))
     frames = [{name: np.array(values, float) for name, values in frame.items()} for frame in found["frames"]]
-    return Followed(potential, energy, states, times, frames, np.array(found["destinies"]), np.array(found["again"], float))
+    return Followed(potential, energy, states, times, frames, np.array(found["outcomes"]), np.array(found["again"], float))
 
 
 def positions_of_heyoka(potential: Potential, state: np.ndarray, times: np.ndarray) -> np.ndarray:
@@ -98,7 +98,7 @@ def test_exits_are_those_of_the_server_at_each_time(followed: Followed) -> None:
         gone = np.where(outcomes.escape_time <= time, outcomes.fate, 0)
         np.testing.assert_array_equal(frame["channel"][clear], gone[clear])
     before_end = outcomes.escape_time < followed.times[-1] - 1e-6
-    np.testing.assert_array_equal(followed.destinies[before_end], outcomes.fate[before_end])
+    np.testing.assert_array_equal(followed.outcomes[before_end], outcomes.fate[before_end])
 
 
 @needs_node
@@ -135,7 +135,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
     portable = make_portable_system(system.potential, review_system(system).energies.high)
     view, well = (default_window(system.potential, plane, energy) for plane in (Plane.X_PX, Plane.X_Y))
     names = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
-    wish = {
+    scene = {
         "slice": Plane.X_PX.to_dict(system.potential.units),
         "energy": energy,
         "window": dict(zip(names, vars(view).values(), strict=True)),
@@ -152,7 +152,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
         "other": request_for("view", seed=2),
         "outside": request_for("disc", point=[5.0, 5.0]),
     }
-    data = {"system": {**portable.to_dict(), "windows": windows}, "module": portable.module, "wish": wish}
+    data = {"system": {**portable.to_dict(), "windows": windows}, "module": portable.module, "scene": scene}
     found = run_node("run_ensemble.js", data | {"requests": list(requests.values())}, tmp_path_factory.mktemp("starts"))
     return {name: np.array(states, float).reshape(-1, 4) for name, states in zip(requests, found, strict=True)}
 

@@ -182,7 +182,7 @@ def test_pixels_are_those_of_the_map(name: str, plane: Plane, tmp_path: Path) ->
     example = EXAMPLES[name]
     potential, edge = example.potential, 1.1 * example.half_side
     t_max = VIEW_HORIZON * potential.units.time
-    spec = MapSpec(potential, plane, example.energy, (SIDE, SIDE), Window(-edge, edge, -edge, edge), t_max, certify=False)
+    spec = MapSpec(potential, plane, example.energy, (SIDE, SIDE), Window(-edge, edge, -edge, edge), t_max, use_evidence=False)
     portable = make_portable_system(potential, example.energy)
     data = {"system": portable.to_dict(), "module": portable.module, "views": [as_view(spec)]}
     (found,) = run_node("run_view.js", data, tmp_path)

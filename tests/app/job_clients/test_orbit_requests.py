@@ -123,13 +123,13 @@ def test_the_divergent_start_has_another_fate_and_is_chosen(session: Session) ->
     assert second is not None
     assert first.fate != second.fate
     assert state.chosen == 1
-    assert "twin starts" in recorder.messages[-1]
+    assert "divergent start is" in recorder.messages[-1]
 
 
 def test_without_a_start_there_is_no_search(session: Session) -> None:
     state, _, recorder, jobs = session
     DivergentStartRequests(state, jobs, recorder.notify, unlocked).search()
-    assert recorder.messages == ["Click a start first: its twin is the nearest start that escapes elsewhere."]
+    assert recorder.messages == ["Click a start first. The nearest start that escapes elsewhere is then searched for."]
 
 
 @pytest.mark.parametrize("change", ["energy", "close"])
@@ -199,7 +199,7 @@ def test_an_escaping_orbit_gets_no_conclusion(session: Session) -> None:
     assert recorder.verdicts[-1] == ()
 
 
-def test_all_bounded_orbits_get_their_certificate_and_keep_it(session: Session) -> None:
+def test_all_bounded_orbits_get_their_evidence_and_keep_it(session: Session) -> None:
     state, _, recorder, jobs = session
     indicators = IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked)
     state.param.update(energy=0.14, t_max=1e4)

@@ -66,7 +66,7 @@ def session(jobs: Jobs) -> Iterator[Session]:
 def test_the_share_of_other_ends_is_that_of_two_maps(session: Session, frame: EscapeMap) -> None:
     session.state.compared = OTHER
     session.show(frame)
-    session.wait_for("starts end otherwise")
+    session.wait_for("starts have different outcomes")
     other = compute_map(OTHER.map_spec(CASES["I"], SPEC))
     both = (frame.fate >= Fate.BOUNDED) & (other.fate >= Fate.BOUNDED)
     differ = np.count_nonzero(both & (frame.fate != other.fate))

@@ -5,7 +5,7 @@ import pytest
 
 from engine import CASES, Plane, Potential, start_states
 from engine.evidence import birkhoff_averages
-from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, count_agreeing_digits
+from engine.evidence.birkhoff_averages import TORUS_DIGITS, count_agreeing_digits
 
 # Two uncoupled oscillators, one of them anharmonic: every orbit lies on a torus.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (4, 0, 0.3), (0, 2, 0.8)))
@@ -13,7 +13,7 @@ SEPARABLE = Potential("separable", ((2, 0, 0.5), (4, 0, 0.3), (0, 2, 0.8)))
 
 def test_all_orbits_of_a_separable_potential_are_quasi_periodic() -> None:
     states = np.random.default_rng(1).uniform(-0.6, 0.6, (60, 4))
-    assert np.all(count_agreeing_digits(SEPARABLE, states, 1000.0) >= CERTIFIED_DIGITS)
+    assert np.all(count_agreeing_digits(SEPARABLE, states, 1000.0) >= TORUS_DIGITS)
 
 
 def test_chaotic_orbits_agree_to_few_digits() -> None:
@@ -22,18 +22,18 @@ def test_chaotic_orbits_agree_to_few_digits() -> None:
     states = start_states(CASES["II"], Plane.X_PX, 0.1666, x, px)
     digits = count_agreeing_digits(CASES["II"], states, 4000.0)
     assert np.median(digits) < 3.5
-    assert np.mean(digits >= CERTIFIED_DIGITS) < 0.2
+    assert np.mean(digits >= TORUS_DIGITS) < 0.2
 
 
 def test_two_averages_that_agree_by_chance_are_not_enough() -> None:
     # The orbit escapes at t = 55 000; two consecutive averages agree to 8.03 digits.
     state = np.array([[-0.7565352939370201, -0.357878414590201, -0.0256990807857555, -0.21336712097303748]])
-    assert count_agreeing_digits(CASES["III"], state, 4000.0) < CERTIFIED_DIGITS - 1.0
+    assert count_agreeing_digits(CASES["III"], state, 4000.0) < TORUS_DIGITS - 1.0
 
 
 def test_an_orbit_whose_energy_drifts_has_zero_digits(monkeypatch: pytest.MonkeyPatch) -> None:
     torus = np.array([[0.1, 0.0, 0.0, 0.3]])
-    assert count_agreeing_digits(CASES["II"], torus, 1000.0) > CERTIFIED_DIGITS
+    assert count_agreeing_digits(CASES["II"], torus, 1000.0) > TORUS_DIGITS
     # With a step that is too long the energy drifts, and averages agree to 6 digits.
     monkeypatch.setattr(birkhoff_averages, "fixed_step_size", lambda potential: 1.5)
     assert count_agreeing_digits(CASES["II"], torus, 1000.0) == 0.0

@@ -25,11 +25,11 @@ from engine import (
     parse_formula,
     sample_entrances,
 )
-from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS
-from engine.maps.run import certifies_tori
+from engine.evidence.birkhoff_averages import TORUS_DIGITS
+from engine.maps.run import looks_for_tori
 from engine.periodic.exit_entry_points import find_entry_points
 from engine.periodic.unstable_manifold import UnstableManifold
-from engine.propagation.certificates import Certificate
+from engine.propagation.evidence import Evidence
 from engine.systems.outcomes import Centre
 
 ROTATING = parse_formula("½(x² + y²) + ½(x² + y²) - x² y").in_rotating_frame(0.5)
@@ -54,18 +54,18 @@ def test_what_rests_on_time_reversal_refuses_rotating_frames(call: Callable[[Pot
 
 
 @pytest.mark.parametrize(
-    ("potential", "certifies"), [(CASES["I"], True), (ROTATING, False), (WITH_CENTRE, False), (WITH_RADIUS, False)]
+    ("potential", "expected"), [(CASES["I"], True), (ROTATING, False), (WITH_CENTRE, False), (WITH_RADIUS, False)]
 )
-def test_tori_are_evidence_in_wells_at_rest_only(potential: Potential, certifies: bool) -> None:
+def test_tori_are_evidence_in_wells_at_rest_only(potential: Potential, expected: bool) -> None:
     spec = MapSpec(potential, Plane.X_PX, 0.12, (4, 4), t_max=1e5)
-    assert certifies_tori(spec) == certifies
+    assert looks_for_tori(spec) == expected
 
 
 def test_a_quasi_periodic_orbit_in_a_rotating_frame_is_bounded_by_integration_only() -> None:
     state = (0.0, -0.1, np.sqrt(2.0 * (1.02 * ROTATING.escape_energy - ROTATING.value(0.0, -0.1))), 0.0)
     digits = compute_birkhoff_digits(ROTATING, state, t_max=3000.0)
-    assert digits.digits[-1] > CERTIFIED_DIGITS
-    assert judge_orbit(integrate_orbit(ROTATING, state, t_max=3000.0), digits).certificate is Certificate.INTEGRATED
+    assert digits.digits[-1] > TORUS_DIGITS
+    assert judge_orbit(integrate_orbit(ROTATING, state, t_max=3000.0), digits).evidence is Evidence.INTEGRATED
 
 
 def test_orbits_below_all_saddles_are_closed_unless_they_can_collide() -> None:

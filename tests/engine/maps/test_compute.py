@@ -23,7 +23,7 @@ def test_map_computed_in_blocks_is_bit_identical(spec: MapSpec, monkeypatch: pyt
     shares: list[float] = []
     in_blocks = compute_map(spec, lambda frame: shares.append(frame.progress))
     assert in_blocks.complete
-    for name in ("fate", "escape_time", "crossings", "energy_error", "outside", "certificate"):
+    for name in ("fate", "escape_time", "crossings", "energy_error", "outside", "evidence"):
         np.testing.assert_array_equal(getattr(in_blocks, name), getattr(whole, name))
     assert len(shares) >= 5
     assert shares == sorted(shares)

@@ -8,10 +8,10 @@ import pytest
 from engine import (
     CASES,
     CHAOS_THRESHOLD,
-    Certificate,
     Coordinate,
     Direction,
     EscapeMap,
+    Evidence,
     Fate,
     MapSpec,
     Plane,
@@ -65,7 +65,7 @@ def test_sali_is_the_smallest_of_the_orbit_and_decides_the_character() -> None:
     # Too short for tests for tori, so that each orbit is followed to t_max.
     whole, regularity = map_and_regularity("I", 0.12, 6, 1500.0)
     judged = np.isfinite(regularity.sali)
-    np.testing.assert_array_equal(judged, (whole.fate == Fate.BOUNDED) & (whole.certificate != Certificate.QUASI_PERIODIC))
+    np.testing.assert_array_equal(judged, (whole.fate == Fate.BOUNDED) & (whole.evidence != Evidence.QUASI_PERIODIC))
     np.testing.assert_array_equal(regularity.sali[judged] <= CHAOS_THRESHOLD, regularity.character[judged] == Regularity.CHAOTIC)
     rows, columns = np.nonzero(regularity.sali > 1e-3)
     assert rows.size > 5

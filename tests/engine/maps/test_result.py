@@ -10,8 +10,8 @@ import pytest
 
 from engine import (
     CASES,
-    Certificate,
     EscapeMap,
+    Evidence,
     Fate,
     MapSpec,
     Outcomes,
@@ -47,7 +47,7 @@ def test_orbits_below_every_saddle_are_bounded_without_integration() -> None:
     result = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.12, (40, 40), t_max=1e5))
     inside = result.fate != Fate.FORBIDDEN
     assert inside.any()
-    assert set(result.certificate[inside]) == {Certificate.CLOSED}
+    assert set(result.evidence[inside]) == {Evidence.CLOSED}
     assert set(result.crossings[inside]) == {0}
 
 

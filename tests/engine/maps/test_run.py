@@ -12,9 +12,9 @@ import pytest
 
 from engine import (
     CASES,
-    Certificate,
     Coordinate,
     EscapeMap,
+    Evidence,
     MapSpec,
     ParameterAxis,
     Plane,
@@ -54,7 +54,7 @@ def assert_same_map(one: EscapeMap, other: EscapeMap) -> None:
 
 def early(escape_map: EscapeMap) -> np.ndarray:
     """(rows, columns) bool: pixels called bounded before t_max."""
-    return ~np.isin(escape_map.certificate, (Certificate.NONE, Certificate.INTEGRATED))
+    return ~np.isin(escape_map.evidence, (Evidence.NONE, Evidence.INTEGRATED))
 
 
 class CallCounter(SerialExecutor):
@@ -95,7 +95,7 @@ def test_a_map_interrupted_at_any_call_is_resumed_to_the_same_result(name: str) 
         assert_same_map(compute_map(spec, resume=interrupted), at_once(spec))
 
 
-def test_a_test_for_certificates_that_is_interrupted_leaves_none() -> None:
+def test_a_test_for_evidence_that_is_interrupted_leaves_none() -> None:
     spec, counter = SPECS["III"], CallCounter()
     after_each_test = [early(compute_map(replace(spec, t_max=t_max))) for t_max in (1e3, 1e4)] + [early(at_once(spec))]
     compute_map(spec, executor=counter)

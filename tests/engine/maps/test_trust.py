@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map, default_window
+from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, Window, compute_map, default_window
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.execution import Execution, SerialExecutor
 from engine.integrator.kernels.dense_output import advance_states
@@ -37,10 +37,10 @@ def map_and_trust(
     plane: Plane = Plane.X_PX,
     side: int = 61,
     t_max: float = 1000.0,
-    certify: bool = True,
+    use_evidence: bool = True,
     window: Window = None,  # type: ignore[assignment]
 ) -> tuple[EscapeMap, TrustMap]:
-    spec = MapSpec(CASES[name], plane, energy, (side, side), window, t_max, certify)
+    spec = MapSpec(CASES[name], plane, energy, (side, side), window, t_max, use_evidence)
     whole = compute_map(spec)
     return whole, compute_trust(whole)
 
@@ -95,7 +95,7 @@ def test_bounded_orbits_of_a_slow_chaotic_sea_are_doubtful() -> None:
     window = Window(x - 0.01, x + 0.01, y - 0.01, y + 0.01)
     sea = compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.3, (1, 1), window))
     assert sea.fate == Fate.BOUNDED
-    assert sea.certificate == Certificate.INTEGRATED
+    assert sea.evidence == Evidence.INTEGRATED
     assert compute_trust(sea).trust == Trust.DOUBTFUL
 
 
@@ -104,9 +104,9 @@ def test_shifts_do_not_free_trusted_bounded_orbits() -> None:
     spec = MapSpec(CASES["III"], Plane.X_Y, 0.3, (57, 57))
     whole = compute_map(spec)
     trusted = np.isin(compute_trust(whole).trust, (Trust.LIKE_NEIGHBOURS, Trust.CONFIRMED))
-    rows, columns = np.nonzero(trusted & (whole.certificate == Certificate.INTEGRATED))
+    rows, columns = np.nonzero(trusted & (whole.evidence == Evidence.INTEGRATED))
     assert rows.size >= 10
-    doubtful = np.count_nonzero(whole.certificate == Certificate.INTEGRATED) - rows.size
+    doubtful = np.count_nonzero(whole.evidence == Evidence.INTEGRATED) - rows.size
     assert doubtful > 5 * rows.size
     for shift in 1e-12 * np.random.default_rng(3).uniform(-10.0, 10.0, (4, 2, rows.size)):
         assert np.all(
@@ -153,7 +153,7 @@ def test_deeper_zooms_have_more_doubtful_pixels() -> None:
     assert zoom.doubtful_share > 3.0 * whole_picture.doubtful_share
 
 
-def test_pixels_are_tested_if_uncertified_or_a_neighbour_has_another_outcome() -> None:
+def test_pixels_are_tested_without_evidence_or_if_a_neighbour_has_another_outcome() -> None:
     whole, trust = map_and_trust("III", 0.45, side=31)
     rows, columns = whole.fate.shape
     for row, column in np.ndindex(rows, columns):
@@ -165,7 +165,7 @@ def test_pixels_are_tested_if_uncertified_or_a_neighbour_has_another_outcome() -
         fates, crossings = whole.fate[near], whole.crossings[near]
         other = (fates >= 0) & ((fates != fate) | ((fate >= 1) & (crossings != whole.crossings[row, column])))
         tested = trust.trust[row, column] in (Trust.CONFIRMED, Trust.DOUBTFUL)
-        assert tested == (other.any() or whole.certificate[row, column] == Certificate.INTEGRATED)
+        assert tested == (other.any() or whole.evidence[row, column] == Evidence.INTEGRATED)
 
 
 def test_mirror_images_have_the_same_trust() -> None:
@@ -185,15 +185,15 @@ def test_shifted_starts_from_the_axis_have_no_additional_crossing() -> None:
     assert not np.any(early & (trust.trust == Trust.DOUBTFUL))
 
 
-def test_pixels_doubtful_with_certificates_are_doubtful_without() -> None:
-    certified, trust = map_and_trust("III", 0.28, side=25, t_max=1e4)
-    integrated, integrated_trust = map_and_trust("III", 0.28, side=25, t_max=1e4, certify=False)
-    np.testing.assert_array_equal(certified.fate, integrated.fate)
+def test_pixels_doubtful_with_evidence_are_doubtful_without() -> None:
+    on_evidence, trust = map_and_trust("III", 0.28, side=25, t_max=1e4)
+    integrated, integrated_trust = map_and_trust("III", 0.28, side=25, t_max=1e4, use_evidence=False)
+    np.testing.assert_array_equal(on_evidence.fate, integrated.fate)
     doubtful = integrated_trust.trust == Trust.DOUBTFUL
     assert np.all(doubtful[trust.trust == Trust.DOUBTFUL])
-    # Some chaotic orbits are shut in by tori: without certificates, nothing tells that they stay inside.
-    assert np.all(certified.certificate[doubtful & (trust.trust != Trust.DOUBTFUL)] > Certificate.INTEGRATED)
-    assert np.any((trust.trust == Trust.CONFIRMED) & (certified.fate == Fate.BOUNDED))
+    # Some chaotic orbits are shut in by tori: without evidence, nothing tells that they stay inside.
+    assert np.all(on_evidence.evidence[doubtful & (trust.trust != Trust.DOUBTFUL)] > Evidence.INTEGRATED)
+    assert np.any((trust.trust == Trust.CONFIRMED) & (on_evidence.fate == Fate.BOUNDED))
 
 
 def test_result_does_not_depend_on_the_executor() -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 import threading
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from functools import cache
@@ -45,7 +46,7 @@ def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.
 def separating_share(potential: Potential, energy: float, channel: int, image: int, most: int = 60) -> float:
     """Share of the points of an image where orbits `STEP` to one side escape and those `STEP` to the other turn back."""
     points = points_with_normals(manifolds(potential, energy), channel, image)
-    points = points[:: -(-len(points) // most)]
+    points = points[:: math.ceil(len(points) / most)]
     sides = []
     pairs = [start_states(potential, Plane.X_PX, energy, *(points[:, :2] + s * points[:, 2:]).T) for s in (STEP, -STEP)]
     exist = np.isfinite(pairs).all(axis=(0, 2))
@@ -112,7 +113,7 @@ def test_all_basin_boundaries_lie_on_arcs(name: str, energy: float, channel: int
 def test_points_of_an_image_are_mapped_to_the_previous_image(name: str, energy: float, channel: int) -> None:
     found = manifolds(CASES[name], energy)
     second = points_with_normals(found, channel, 2)[:, :2]
-    second = second[:: -(-len(second) // 200)]
+    second = second[:: math.ceil(len(second) / 200)]
     next_points = find_section_points(CASES[name], start_states(CASES[name], Plane.X_PX, energy, *second.T), 1, 30.0)[:, 0]
     first = shapely.MultiLineString([np.column_stack([a.x, a.px]) for a in found.arcs if (a.channel, a.image) == (channel, 1)])
     assert np.mean(shapely.distance(first, shapely.points(next_points)) < 1e-3) > 0.98

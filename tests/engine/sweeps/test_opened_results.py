@@ -55,7 +55,7 @@ TYPED = parse_formula("½(x² + 1.21y²) − 0.123456789012345x²y − 0.1a x³"
 SPECS = {
     "paper": SPEC,
     "window": replace(SPEC, window=(-0.3, 0.1, -0.2, 0.4)),
-    "backward": replace(SPEC, backward=True, certify=False),
+    "backward": replace(SPEC, backward=True, use_evidence=False),
     "energies": MapSpec(III, Plane.X_H, (0.2, 0.5), (8, 8), t_max=50.0),
     "tangential": MapSpec(POTENTIALS["HH"], Plane.TANGENTIAL, 0.2, (8, 8), t_max=50.0),
     "held": MapSpec(TYPED, Slice(C.X, C.PX, C.PY, -1, ((C.Y, 0.1),)), 0.5, (8, 8), t_max=50.0),

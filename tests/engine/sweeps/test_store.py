@@ -23,7 +23,7 @@ from engine.foundations.execution import Execution, count_workers
 from tests.forked import Finished, run
 
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.3, 0.5), (12, 10), t_max=300.0, measures=("maps", "shares"))
-# Long enough for all kinds of certificates.
+# Long enough for all kinds of evidence.
 LONG_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.38, 0.4, 0.42), (15, 15), t_max=2e4)
 
 
@@ -118,7 +118,7 @@ def test_arrays_are_read_on_access(tmp_path: Path) -> None:
         ({"plane": Plane.X_Y}, "plane"),
         ({"resolution": (12, 11)}, "resolution"),
         ({"window": Window(-1.0, 1.0, -1.0, 1.0)}, "window"),
-        ({"certify": False}, "certify"),
+        ({"use_evidence": False}, "use_evidence"),
         ({"measures": ("maps",)}, "measures"),
         ({"values": (0.3, 0.41, 0.5)}, "requested"),
     ],
@@ -217,7 +217,7 @@ def test_dask_cluster_is_byte_identical(tmp_path: Path, processes: bool) -> None
     with cluster, distributed.Client(cluster) as client:
         assert count_workers(client.get_executor()) == 2
         spread = compute_sweep(LONG_SPEC, tmp_path / "cluster", execution=Execution(client.get_executor()))
-    assert np.unique(spread["certificate"]).size >= 3
+    assert np.unique(spread["evidence"]).size >= 3
     if processes:
         run_in_child(tmp_path, "straight")
     else:

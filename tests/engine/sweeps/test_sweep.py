@@ -14,7 +14,6 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-import engine
 from engine import (
     CASES,
     Coordinate,
@@ -275,12 +274,3 @@ def test_invalid_parameters_are_named(change: dict[str, Any], message: str) -> N
 def test_invalid_parameters_along_a_parameter_are_named(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         replace(ALONG, **change)
-
-
-def test_former_names_are_deprecated_and_agree(sweep: Sweep) -> None:
-    with pytest.warns(DeprecationWarning, match="^CurvesSpec is deprecated: use SweepSpec$") as caught:
-        spec = engine.CurvesSpec(CASES["II"], Plane.X_PX, (0.1, 0.2, 0.25, 0.3), (40, 40), 500.0, exponent=False)  # type: ignore[attr-defined]
-    assert caught[0].filename == __file__
-    assert spec == SPEC
-    with pytest.warns(DeprecationWarning, match="^compute_curves is deprecated: use compute_sweep$"):
-        assert engine.compute_curves is compute_sweep  # type: ignore[attr-defined]

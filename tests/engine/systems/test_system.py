@@ -54,5 +54,5 @@ def test_letters_are_parameters_beside_those_of_the_well() -> None:
 
 @pytest.mark.parametrize("parameters", [{"b": 2.0}, {"a": float("nan")}, {"a": 1e10}])
 def test_an_illegal_value_of_a_letter_is_named(parameters: dict[str, float]) -> None:
-    with pytest.raises(ValueError, match=r"b.* is no letter of the formula; its letters are a|a=.*: must be"):
+    with pytest.raises(ValueError, match=r"b.* is not a letter of the formula; its letters are a|a=.*: must be"):
         _ = System(TYPED, "½r² − a x y²", parameters).potential

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Orbit, Plane, Potential, classify_orbits, integrate_orbit, start_states
-from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS
+from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS
 from engine.foundations.execution import Execution
 from engine.foundations.wording import format_time
 from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, compute_birkhoff_digits, evaluate_indicators
@@ -44,11 +44,11 @@ def late_escape() -> tuple[np.ndarray, Orbit]:
 # Digits by window length.
 
 
-def test_digits_of_a_torus_rise_to_the_certified_value() -> None:
+def test_digits_of_a_torus_rise_to_those_of_evidence() -> None:
     found = compute_birkhoff_digits(CASES["I"], start_states(CASES["I"], Plane.X_PX, 0.12, np.array([-0.2]), np.zeros(1))[0], 1e5)
     assert found.digits.size > 1
     assert np.all(np.diff(found.digits) > 1.0)
-    assert found.digits[-2] < CERTIFIED_DIGITS <= found.digits[-1]
+    assert found.digits[-2] < TORUS_DIGITS <= found.digits[-1]
 
 
 @pytest.mark.parametrize(("t_max", "count"), [(1999.0, 0), (2000.0, 1), (8000.0, 2)])

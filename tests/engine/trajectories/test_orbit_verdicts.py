@@ -10,7 +10,7 @@ import pytest
 from engine import (
     CASES,
     BirkhoffDigits,
-    Certificate,
+    Evidence,
     Orbit,
     Plane,
     Verdict,
@@ -47,7 +47,7 @@ def with_end(orbit: Orbit, *, sali: float, growth: float, halves: float) -> Orbi
 @pytest.fixture(scope="module")
 def bounded() -> Orbit:
     """An orbit that could escape but does not."""
-    return replace(integrate_orbit(CASES["II"], ISLAND, 2000.0), certificate=Certificate.INTEGRATED)
+    return replace(integrate_orbit(CASES["II"], ISLAND, 2000.0), evidence=Evidence.INTEGRATED)
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_sticky_orbits_are_not_called_regular(case: str, state: tuple[float, ...
 @pytest.mark.parametrize(("state", "character"), [(ISLAND, Verdict.REGULAR), (SEA, Verdict.CHAOTIC)])
 def test_an_orbit_below_the_escape_energy_is_bounded_for_ever(state: list[float], character: Verdict) -> None:
     verdict = judge_orbit(integrate_orbit(CASES["II"], state, 2000.0))
-    assert (verdict.certificate, verdict.character) == (Certificate.CLOSED, character)
+    assert (verdict.evidence, verdict.character) == (Evidence.CLOSED, character)
     assert verdict.describe().startswith(f"Bounded for ever (its energy is below every saddle), {character} (")
 
 
@@ -93,7 +93,7 @@ def test_digits_as_on_a_torus_are_evidence_that_an_orbit_is_bounded_for_ever(
 ) -> None:
     verdict = judge_orbit(bounded, digits_of(digits))
     assert not verdict.is_bounded_for_ever
-    assert (verdict.certificate is Certificate.QUASI_PERIODIC) is on_a_torus
+    assert (verdict.evidence is Evidence.QUASI_PERIODIC) is on_a_torus
     reason = "Bounded until t = 2 000 and probably for ever (evidence: its averages converge as on an invariant torus), regular"
     assert verdict.describe().startswith(reason) is on_a_torus
     assert verdict.summarize() == "bounded until t = 2 000, regular"
@@ -102,7 +102,7 @@ def test_digits_as_on_a_torus_are_evidence_that_an_orbit_is_bounded_for_ever(
 @pytest.mark.parametrize(("sali", "growth"), [(4.9e-11, 1.0), (0.1, 2.5)])
 def test_signs_of_chaos_withdraw_the_evidence_of_a_torus(bounded: Orbit, sali: float, growth: float) -> None:
     verdict = judge_orbit(with_end(bounded, sali=sali, growth=growth, halves=9.0), digits_of(8.5))
-    assert (verdict.certificate, verdict.character) == (Certificate.INTEGRATED, Verdict.UNDECIDED)
+    assert (verdict.evidence, verdict.character) == (Evidence.INTEGRATED, Verdict.UNDECIDED)
     assert "for ever" not in verdict.describe()
 
 
@@ -110,7 +110,7 @@ def test_an_escape_names_channel_time_and_crossings() -> None:
     orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_PX, 0.3, np.array([0.1]), np.array([0.2]))[0], 1e3)
     verdict = judge_orbit(orbit)
     assert orbit.fate >= 1
-    assert (verdict.certificate, verdict.character) == (Certificate.NONE, None)
+    assert (verdict.evidence, verdict.character) == (Evidence.NONE, None)
     assert f"channel {orbit.fate} at t = {orbit.escape_time:.6g}" in verdict.describe()
     assert verdict.summarize() == f"channel {orbit.fate} at t = {orbit.escape_time:.5g}"
     aligned = judge_orbit(replace(orbit, sali=np.full_like(orbit.sali, 1e-9)))

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from engine import (
     CASES,
     POTENTIALS,
-    Certificate,
+    Evidence,
     Fate,
     Orbit,
     Plane,
@@ -109,7 +109,7 @@ def test_t_max_around_the_escape_time_decides(escaping: tuple[str, np.ndarray, O
 def test_an_outside_start_stays_where_it_is() -> None:
     orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_Y, 0.3, np.array([1.3]), np.zeros(1))[0], 10.0)
     assert (orbit.fate, orbit.t.tolist(), orbit.x.tolist()) == (Fate.OUTSIDE, [0.0], [1.3])
-    assert orbit.certificate is Certificate.NONE
+    assert orbit.evidence is Evidence.NONE
 
 
 # SALI.
@@ -193,7 +193,7 @@ def test_an_orbit_at_rest_on_a_saddle_is_bounded_and_does_not_run_away(side: flo
     x, y = np.nextafter(saddle, saddle + side * saddle) if side else saddle
     orbit = integrate_orbit(CASES[name], (x, y, 0.0, 0.0), 100.0)
     assert orbit.energy == pytest.approx(CASES[name].escape_energy, abs=1e-16)
-    assert (orbit.fate, orbit.certificate) == (Fate.BOUNDED, Certificate.CLOSED)
+    assert (orbit.fate, orbit.evidence) == (Fate.BOUNDED, Evidence.CLOSED)
     assert np.hypot(orbit.x, orbit.y).max() < 1.01 * np.hypot(*saddle)
 
 

@@ -10,8 +10,8 @@ import pytest
 
 from engine import (
     CASES,
-    Certificate,
     EscapeMap,
+    Evidence,
     Fate,
     MapSpec,
     Plane,
@@ -80,13 +80,13 @@ def test_regular_and_chaotic_orbits_have_different_colours() -> None:
     assert set(colours[whole.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
 
 
-def test_certified_tori_are_regular() -> None:
+def test_tori_are_regular() -> None:
     whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.28, (41, 41), t_max=1e4))
     colours = character_colours(map_columns(whole))
-    certified = whole.certificate == Certificate.QUASI_PERIODIC
-    assert certified.any()
-    assert set(colours[certified]) == {character_colour(Regularity.REGULAR)}
-    assert set(colours[whole.certificate == Certificate.ENCLOSED]) == {character_colour(Regularity.NOT_JUDGED)}
+    tori = whole.evidence == Evidence.QUASI_PERIODIC
+    assert tori.any()
+    assert set(colours[tori]) == {character_colour(Regularity.REGULAR)}
+    assert set(colours[whole.evidence == Evidence.ENCLOSED]) == {character_colour(Regularity.NOT_JUDGED)}
     assert set(colours[whole.fate >= 1]) == {character_colour(Regularity.NOT_APPLICABLE)}
 
 

@@ -78,7 +78,7 @@ def test_one_of_the_tones_of_doubtful_pixels_is_visible_on_any_colour(palette: P
 
 
 @of_each_palette
-@pytest.mark.parametrize(("inks", "page"), [(LIGHT, "light"), (DARK, "dark")], ids=PAGES)
-def test_the_curve_of_the_escape_energy_is_visible_and_no_channel(palette: Palette, inks, page: str) -> None:
-    assert contrast(inks.critical_equipotential, PAGES[page]) > 4.5
-    assert differences([inks.critical_equipotential], palette.channels).min() > CLEAR
+@pytest.mark.parametrize(("colours", "page"), [(LIGHT, "light"), (DARK, "dark")], ids=PAGES)
+def test_the_curve_of_the_escape_energy_is_visible_and_no_channel(palette: Palette, colours, page: str) -> None:
+    assert contrast(colours.critical_equipotential, PAGES[page]) > 4.5
+    assert differences([colours.critical_equipotential], palette.channels).min() > CLEAR

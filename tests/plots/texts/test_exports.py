@@ -35,7 +35,9 @@ SPECS = {
     "a window": MapSpec(CASES["II"], Plane.X_PX, 0.18, (20, 15), window=(-1.0, 1.4, -0.8, 0.8), t_max=200.0),
     "the whole interior": MapSpec(CASES["II"], Plane.X_Y, 0.1 + 0.2, (11, 11), t_max=100.0),
     "energies": MapSpec(CASES["II"], Plane.X_H, (1 / 6, 0.4), (11, 11), t_max=100.0),
-    "a deep zoom": MapSpec(CASES["II"], Plane.X_PX, 0.18, (7, 7), (0.1, 0.1 + 1e-10, 1 / 3, 1 / 3 + 1e-10), 100.0, certify=False),
+    "a deep zoom": MapSpec(
+        CASES["II"], Plane.X_PX, 0.18, (7, 7), (0.1, 0.1 + 1e-10, 1 / 3, 1 / 3 + 1e-10), 100.0, use_evidence=False
+    ),
     "NumPy's numbers": MapSpec(
         CASES["II"], Plane.X_PX, np.float64(0.2), (np.int64(9), 9), tuple(np.linspace(-0.3, 0.3, 2)) * 2, np.float64(50.0)
     ),

@@ -18,7 +18,7 @@ from plots.pictures.palette import PAPER
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.all_figures import FIGURES
 from reproduction.figures.sticky_figures import LONGEST_DRAWN, find_shown
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.paper_ranges import curve_energies, nine_energies, plane_energies
 from reproduction.quality import FULL, QUICK, Quality
 from reproduction.sample_orbits import SHOWN_CROSSINGS, find_sample_starts
@@ -44,8 +44,8 @@ FAMILIES = tuple(DRAWN)
 
 
 @pytest.fixture(scope="module")
-def shelf() -> MapShelf:
-    return MapShelf(TINY)
+def cache() -> MapCache:
+    return MapCache(TINY)
 
 
 def panels(figure: Figure) -> list[Axes]:
@@ -68,9 +68,9 @@ def test_every_case_has_every_figure() -> None:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_figures_have_a_title_and_their_maps_lines_and_labels(family: str, shelf: MapShelf) -> None:
+def test_figures_have_a_title_and_their_maps_lines_and_labels(family: str, cache: MapCache) -> None:
     case, maps, lines, across, up = DRAWN[family]
-    figure = FIGURES[f"{case}-{family}"].draw(shelf)
+    figure = FIGURES[f"{case}-{family}"].draw(cache)
     assert case in figure.get_suptitle()
     assert sum(len(axes.images) for axes in figure.axes) == maps
     assert [len(axes.lines) for axes in figure.axes] == lines
@@ -79,31 +79,31 @@ def test_figures_have_a_title_and_their_maps_lines_and_labels(family: str, shelf
 
 
 @pytest.mark.parametrize("place", [0, 4, 8])
-def test_the_pixels_of_a_basin_panel_have_the_colours_of_their_channels(place: int, shelf: MapShelf) -> None:
-    axes = panels(FIGURES["I-basins-xpx"].draw(shelf))[place]
-    frame = shelf.map("I", Plane.X_PX, nine_energies("I")[place])
+def test_the_pixels_of_a_basin_panel_have_the_colours_of_their_channels(place: int, cache: MapCache) -> None:
+    axes = panels(FIGURES["I-basins-xpx"].draw(cache))[place]
+    frame = cache.map("I", Plane.X_PX, nine_energies("I")[place])
     known = frame.fate >= Fate.BOUNDED
     wanted = rgba([PAPER.bounded, *PAPER.channels])[frame.fate[known]]
     np.testing.assert_array_equal(pixels_of(axes)[known], wanted)
     assert not pixels_of(axes)[~known][:, 3].any()
 
 
-def test_a_map_is_drawn_at_its_window(shelf: MapShelf) -> None:
-    axes = panels(FIGURES["II-basins-xpx"].draw(shelf))[0]
-    window = shelf.map("II", Plane.X_PX, nine_energies("II")[0]).spec.find_window()
+def test_a_map_is_drawn_at_its_window(cache: MapCache) -> None:
+    axes = panels(FIGURES["II-basins-xpx"].draw(cache))[0]
+    window = cache.map("II", Plane.X_PX, nine_energies("II")[0]).spec.find_window()
     left, right, low, high = axes.images[0].get_extent()
-    frames = [shelf.map("II", Plane.X_PX, energy) for energy in nine_energies("II")]
+    frames = [cache.map("II", Plane.X_PX, energy) for energy in nine_energies("II")]
     shown_low, shown_high = min(f.spec.find_window().x_low for f in frames), max(f.spec.find_window().x_high for f in frames)
     # Axes are in shares of the window that all panels show.
     assert shown_low + np.array([left, right]) * (shown_high - shown_low) == pytest.approx([window.x_low, window.x_high])
     assert low + high == pytest.approx(1.0)
 
 
-def test_escape_times_of_all_panels_share_one_scale(shelf: MapShelf) -> None:
-    figure = FIGURES["I-times-xpx"].draw(shelf)
+def test_escape_times_of_all_panels_share_one_scale(cache: MapCache) -> None:
+    figure = FIGURES["I-times-xpx"].draw(cache)
     shown: dict[float, tuple[int, ...]] = {}
     for axes, energy in zip(panels(figure), nine_energies("I"), strict=True):
-        frame = shelf.map("I", Plane.X_PX, energy)
+        frame = cache.map("I", Plane.X_PX, energy)
         left = frame.fate > Fate.BOUNDED
         shown |= dict(zip(frame.escape_time[left].tolist(), map(tuple, pixels_of(axes)[left].tolist()), strict=True))
     scale = {tuple(colour): place for place, colour in enumerate(rgba(list(PAPER.escape_time)).tolist())}
@@ -112,10 +112,10 @@ def test_escape_times_of_all_panels_share_one_scale(shelf: MapShelf) -> None:
     assert places[0] < 30 < places[-1]
 
 
-def test_regular_orbits_are_cyan_chaotic_magenta_and_escaping_white(shelf: MapShelf) -> None:
-    axes = FIGURES["III-regular-chaotic"].draw(shelf).axes[0]
-    frame = shelf.map("III", Plane.X_PX, 0.26)
-    character, pixels = shelf.regularity(frame).character, pixels_of(axes)
+def test_regular_orbits_are_cyan_chaotic_magenta_and_escaping_white(cache: MapCache) -> None:
+    axes = FIGURES["III-regular-chaotic"].draw(cache).axes[0]
+    frame = cache.map("III", Plane.X_PX, 0.26)
+    character, pixels = cache.regularity(frame).character, pixels_of(axes)
     for code, colour in ((1, PAPER.characters[1]), (2, PAPER.characters[2])):
         assert np.all(pixels[character == code] == rgba([colour])[0])
     assert (frame.fate > Fate.BOUNDED).any()
@@ -123,22 +123,22 @@ def test_regular_orbits_are_cyan_chaotic_magenta_and_escaping_white(shelf: MapSh
 
 
 @pytest.mark.parametrize("panel", [0, 1])
-def test_percentages_sum_to_all(panel: int, shelf: MapShelf) -> None:
-    axes = FIGURES["III-percentages"].draw(shelf).axes[panel]
+def test_percentages_sum_to_all(panel: int, cache: MapCache) -> None:
+    axes = FIGURES["III-percentages"].draw(cache).axes[panel]
     lines = [np.asarray(line.get_ydata(), float) for line in axes.lines]
     assert len(lines) == 5
     np.testing.assert_allclose(np.sum(lines, axis=0), 100.0, rtol=1e-12)
 
 
-def test_curves_of_symmetric_channels_are_both_visible(shelf: MapShelf) -> None:
-    lines = FIGURES["III-percentages"].draw(shelf).axes[1].lines
+def test_curves_of_symmetric_channels_are_both_visible(cache: MapCache) -> None:
+    lines = FIGURES["III-percentages"].draw(cache).axes[1].lines
     np.testing.assert_array_equal(np.asarray(lines[1].get_ydata()), np.asarray(lines[2].get_ydata()))
     assert lines[1].get_linestyle() == "-"
     assert lines[2].get_linestyle() == "--"
 
 
-def test_orbits_of_the_potential_figure_have_the_colour_of_their_channel(shelf: MapShelf) -> None:
-    escapes = FIGURES["III-potential"].draw(shelf).axes[2]
+def test_orbits_of_the_potential_figure_have_the_colour_of_their_channel(cache: MapCache) -> None:
+    escapes = FIGURES["III-potential"].draw(cache).axes[2]
     by_colour = {to_rgba(line.get_color()): line for line in escapes.lines if len(np.asarray(line.get_xdata())) > 1}
     saddles = CASES["III"].saddles
     for channel in range(1, 5):
@@ -147,18 +147,18 @@ def test_orbits_of_the_potential_figure_have_the_colour_of_their_channel(shelf: 
         assert 1 + int(np.argmin(np.hypot(*(saddles - end).T))) == channel
 
 
-def test_sample_orbits_cross_a_few_times_before_they_escape(shelf: MapShelf) -> None:
-    frame = shelf.map("II", Plane.X_PX, 0.2)
+def test_sample_orbits_cross_a_few_times_before_they_escape(cache: MapCache) -> None:
+    frame = cache.map("II", Plane.X_PX, 0.2)
     starts = find_sample_starts(frame)
     outcomes = classify_orbits(CASES["II"], 0.2, np.array(list(starts.values())), 300.0)
     assert outcomes.fate.tolist() == list(starts) == [1, 2, 3]
     assert all(SHOWN_CROSSINGS <= n <= SHOWN_CROSSINGS + 2 for n in outcomes.crossings.tolist())
 
 
-def test_the_published_and_the_new_fit_are_drawn_over_the_shares(shelf: MapShelf) -> None:
-    escaped = FIGURES["I-statistics"].draw(shelf).axes[0]
+def test_the_published_and_the_new_fit_are_drawn_over_the_shares(cache: MapCache) -> None:
+    escaped = FIGURES["I-statistics"].draw(cache).axes[0]
     data, paper, own = escaped.lines
-    table = shelf.curves("I", Plane.X_PX)
+    table = cache.curves("I", Plane.X_PX)
     shares = table["share"][:, 1:].sum(axis=1)
     np.testing.assert_array_equal(np.asarray(data.get_ydata()), shares)
     h = np.asarray(paper.get_xdata(), float)
@@ -166,8 +166,8 @@ def test_the_published_and_the_new_fit_are_drawn_over_the_shares(shelf: MapShelf
     assert np.abs(np.interp(table.values, h, np.asarray(own.get_ydata())) - shares).max() < 0.15
 
 
-class ShelfWithSearch(MapShelf):
-    """A shelf with a given search."""
+class CacheWithSearch(MapCache):
+    """A cache with a given search."""
 
     def __init__(self, search: SuperStickySearch) -> None:
         super().__init__(TINY)
@@ -177,40 +177,40 @@ class ShelfWithSearch(MapShelf):
         return self.search
 
 
-def search_with(times: list[float], shelf: MapShelf) -> SuperStickySearch:
+def search_with(times: list[float], cache: MapCache) -> SuperStickySearch:
     count = len(times)
     fate = np.where(np.isfinite(times), 2, 0).astype(np.int8)
-    search = shelf.super_sticky()
+    search = cache.super_sticky()
     arrays: dict[str, Any] = {"x": np.zeros(count), "ordinate": np.zeros(count), "states": np.zeros((count, 4))}
     return replace(search, **arrays, fate=fate, escape_time=np.array(times), crossings=np.zeros(count, np.int32))
 
 
-def test_the_last_escape_within_the_axis_is_shown(shelf: MapShelf) -> None:
-    assert find_shown(search_with([2e5, np.nan, 0.9 * LONGEST_DRAWN, 2.0 * LONGEST_DRAWN, 4e5], shelf)) == 2
-    assert find_shown(search_with([3.0 * LONGEST_DRAWN, np.nan, 2.0 * LONGEST_DRAWN], shelf)) == 2
-    assert find_shown(search_with([np.nan, np.nan], shelf)) is None
+def test_the_last_escape_within_the_axis_is_shown(cache: MapCache) -> None:
+    assert find_shown(search_with([2e5, np.nan, 0.9 * LONGEST_DRAWN, 2.0 * LONGEST_DRAWN, 4e5], cache)) == 2
+    assert find_shown(search_with([3.0 * LONGEST_DRAWN, np.nan, 2.0 * LONGEST_DRAWN], cache)) == 2
+    assert find_shown(search_with([np.nan, np.nan], cache)) is None
 
 
-def test_a_search_without_escapes_is_stated(shelf: MapShelf) -> None:
-    stayed = ShelfWithSearch(search_with([np.nan], shelf))
+def test_a_search_without_escapes_is_stated(cache: MapCache) -> None:
+    stayed = CacheWithSearch(search_with([np.nan], cache))
     assert "no chaotic orbit" in FIGURES["III-super-sticky"].draw(stayed).get_suptitle()
 
 
-def test_the_band_of_a_late_escape_ends_at_its_exit(shelf: MapShelf) -> None:
-    frame = shelf.map("III", Plane.X_PX, 0.26)
+def test_the_band_of_a_late_escape_ends_at_its_exit(cache: MapCache) -> None:
+    frame = cache.map("III", Plane.X_PX, 0.26)
     row, column = np.argwhere(frame.fate >= 1)[0]
     state = frame.spec.start_states(frame.x[[column]], frame.ordinate[[row]])
-    leaving = replace(search_with([float(frame.escape_time[row, column])], shelf), states=state)
-    figure = FIGURES["III-super-sticky"].draw(ShelfWithSearch(leaving))
+    leaving = replace(search_with([float(frame.escape_time[row, column])], cache), states=state)
+    figure = FIGURES["III-super-sticky"].draw(CacheWithSearch(leaving))
     band = figure.axes[1].collections[0].get_paths()[0].vertices
     assert f"channel {frame.fate[row, column]}" in figure.get_suptitle()
     assert 1.003 < float(np.asarray(band)[:, 1].max()) < 1.017
 
 
-def test_files_are_reproducible_and_state_their_origin(shelf: MapShelf) -> None:
+def test_files_are_reproducible_and_state_their_origin(cache: MapCache) -> None:
     entry = FIGURES["II-xh"]
-    files = entry.files(shelf)
-    assert files == entry.files(shelf)
+    files = entry.files(cache)
+    assert files == entry.files(cache)
     with Image.open(BytesIO(files["II-xh.png"])) as picture:
         picture.load()
         assert picture.info["Software"].startswith("escape-explorer ")

@@ -19,7 +19,7 @@ from engine import (
     compute_uncertainty_exponent,
 )
 from reproduction.analyses.super_sticky import SuperStickySearch
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.numbers.comparisons import Comparison, compare_all
 from reproduction.numbers.stated_numbers import Counting, Quantity, Relation, StatedNumber
 from reproduction.numbers.unknown_windows import fit_window
@@ -45,7 +45,7 @@ DIRECT = StatedNumber("I", Plane.X_PX, (0.5,), "0.5", Quantity.DIRECT, Relation.
 
 
 def measure(number: StatedNumber) -> Comparison:
-    return compare_all(MapShelf(SMALL), SEARCH, (number,))[0]
+    return compare_all(MapCache(SMALL), SEARCH, (number,))[0]
 
 
 def share_of(channels: tuple[int, ...], energies: tuple[float, ...] = (0.5,)) -> StatedNumber:
@@ -99,13 +99,13 @@ def test_the_search_gives_the_last_escape_and_the_nearest_to_the_stated_one() ->
     last = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_ESCAPE, Relation.ABOUT, 3.5e6)
     nearest = replace(last, quantity=Quantity.NEAREST_ESCAPE, value=851e3, channels=(2,))
     chaotic = replace(last, quantity=Quantity.CHAOTIC, value=10.0)
-    rows = compare_all(MapShelf(SMALL), SEARCH, (last, nearest, chaotic))
+    rows = compare_all(MapCache(SMALL), SEARCH, (last, nearest, chaotic))
     assert [row.computed for row in rows] == [(1.2e6,), (8e5,), (10.0,)]
 
 
 def test_without_escapes_there_is_no_last_escape() -> None:
     last = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_ESCAPE, Relation.ABOUT, 3.5e6)
-    assert not compare_all(MapShelf(SMALL), make_search([0], [np.nan]), (last,))[0].agrees
+    assert not compare_all(MapCache(SMALL), make_search([0], [np.nan]), (last,))[0].agrees
 
 
 def test_chaotic_shares_of_other_cases_are_those_of_the_coarser_maps() -> None:
@@ -172,9 +172,9 @@ def counted(window: Window) -> dict[tuple[int, ...], float]:
 
 @pytest.mark.parametrize("window", [Window(-1.6, 1.6, -1.6, 1.6), Window(-1.2, 2.4, -1.2, 1.2)], ids=str)
 def test_a_window_is_recovered_from_its_percentages(window: Window) -> None:
-    shelf = MapShelf(replace(SMALL, resolution=60))
-    found = fit_window(shelf, "II", shelf.map("II", Plane.X_PX, 0.5), counted(window), enough=1.0)
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=1e-9, certify=False))
+    cache = MapCache(replace(SMALL, resolution=60))
+    found = fit_window(cache, "II", cache.map("II", Plane.X_PX, 0.5), counted(window), enough=1.0)
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=1e-9, use_evidence=False))
     outside = np.sum(whole.fate == Fate.OUTSIDE) / np.sum(whole.fate != Fate.FORBIDDEN)
     assert found.outside_share == pytest.approx(outside, abs=0.03)
     assert found.share((1,)) == pytest.approx(counted(window)[1,], abs=2.0)

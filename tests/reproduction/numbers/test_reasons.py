@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Fate, MapSpec, Plane, compute_map
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.numbers.measures import Measures
 from reproduction.numbers.reasons import explain
 from reproduction.numbers.stated_numbers import Quantity, Relation, StatedNumber
@@ -23,8 +23,8 @@ NUMBER = StatedNumber("I", Plane.X_PX, (0.13,), "0.13", Quantity.BOUNDED, Relati
 
 @pytest.fixture(scope="module")
 def measures() -> Measures:
-    shelf = MapShelf(SMALL)
-    return Measures(shelf, shelf.super_sticky())
+    cache = MapCache(SMALL)
+    return Measures(cache, cache.super_sticky())
 
 
 def test_bounded_shares_at_earlier_times_count_later_escapes(measures: Measures) -> None:
@@ -42,7 +42,7 @@ def test_late_escapes_are_a_share_of_the_escapes(measures: Measures) -> None:
 
 def test_chaotic_orbits_are_counted_over_all_energies(measures: Measures) -> None:
     number = replace(NUMBER, energies=(0.13, 0.15), quantity=Quantity.CHAOTIC, remark="{chaotic_escapes} of {chaotic_orbits}")
-    searches = [measures.shelf.late_escapes("I", energy) for energy in number.energies]
+    searches = [measures.cache.late_escapes("I", energy) for energy in number.energies]
     left, chaotic = (sum(sizes) for sizes in zip(*((s.escapers.size, s.fate.size) for s in searches), strict=True))
     assert explain(measures, number) == f"{left} of {chaotic}"
 
@@ -66,5 +66,5 @@ def test_the_stated_energy_is_compared_with_the_one_of_the_largest_share(measure
         NUMBER, energies=(0.15, 0.17, 0.5), quantity=Quantity.LARGEST_SHARE_ENERGY, value=0.17, channels=(2,),
         remark="{below_largest}",
     )  # fmt: skip
-    shares = [100.0 * measures.shelf.map("I", Plane.X_PX, energy).fractions()[2] for energy in number.energies]
+    shares = [100.0 * measures.cache.map("I", Plane.X_PX, energy).fractions()[2] for energy in number.energies]
     assert float(explain(measures, number)) == pytest.approx(max(shares) - shares[1])

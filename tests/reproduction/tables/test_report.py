@@ -9,7 +9,7 @@ import pytest
 
 from engine import CASES, MapSpec, Plane
 from reproduction.analyses.super_sticky import SuperStickySearch
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.numbers.comparisons import Comparison, compare_all
 from reproduction.numbers.stated_numbers import Counting, Quantity, Relation, StatedNumber
 from reproduction.paper_ranges import nine_energies
@@ -46,7 +46,7 @@ def test_without_differences_nothing_is_listed() -> None:
 
 
 def test_the_table_has_one_line_per_energy() -> None:
-    rows = compare_all(MapShelf(SMALL), make_search(), (HALF, IN_A_WINDOW, SADDLE))
+    rows = compare_all(MapCache(SMALL), make_search(), (HALF, IN_A_WINDOW, SADDLE))
     lines = list(csv.DictReader(io.StringIO(write_table(rows))))
     assert [(line["case"], line["h"]) for line in lines] == [("I", "0.3"), ("I", "0.5"), ("II", "0.5"), ("III", "")]
     assert float(lines[1]["computed"]) == pytest.approx(rows[0].computed[1], rel=1e-5)
@@ -56,9 +56,9 @@ def test_the_table_has_one_line_per_energy() -> None:
 
 
 def test_the_report_states_its_quality_and_has_every_section() -> None:
-    shelf, search = MapShelf(SMALL), make_search()
-    rows = compare_all(shelf, search, (replace(HALF, derivation="the rest to 100"), IN_A_WINDOW, SADDLE))
-    page = write_report(shelf, search, rows)
+    cache, search = MapCache(SMALL), make_search()
+    rows = compare_all(cache, search, (replace(HALF, derivation="the rest to 100"), IN_A_WINDOW, SADDLE))
+    page = write_report(cache, search, rows)
     assert "at small quality: 16 × 16 starts per map, integrated to t = 300;" in " ".join(page.split())
     headings = [line for line in page.splitlines() if line.startswith("## ")]
     assert headings == [
@@ -96,9 +96,9 @@ def test_missing_values_are_empty_in_the_table() -> None:
 
 
 def test_late_escapes_are_counted_at_each_energy_with_bounded_starts() -> None:
-    shelf = MapShelf(SMALL)
-    counts = [shelf.late_escapes("I", h) for h in nine_energies("I")]
-    rows = [line.split(" | ") for line in write_late_escapes(shelf).splitlines() if line.startswith("| I |")]
+    cache = MapCache(SMALL)
+    counts = [cache.late_escapes("I", h) for h in nine_energies("I")]
+    rows = [line.split(" | ") for line in write_late_escapes(cache).splitlines() if line.startswith("| I |")]
     assert [(row[2], row[3], row[5]) for row in rows] == [
         (str(s.bounded), str(s.fate.size), str(s.escapers.size)) for s in counts if s.bounded
     ]

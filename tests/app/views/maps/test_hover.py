@@ -5,7 +5,7 @@ from __future__ import annotations
 from bokeh.models import ColumnDataSource, CustomJSHover, Range1d
 
 from app.views.maps.hover import CHARACTER, TRUST, pixel_hover
-from engine import Certificate, Regularity, Trust
+from engine import Evidence, Regularity, Trust
 
 
 def test_every_code_of_a_layer_has_words_in_its_order() -> None:
@@ -14,6 +14,6 @@ def test_every_code_of_a_layer_has_words_in_its_order() -> None:
     assert isinstance(formatter, CustomJSHover)
     assert formatter.args["words"]["trusts"] == [TRUST.get(code, "") for code in sorted(Trust)]
     assert formatter.args["words"]["characters"] == [CHARACTER.get(code, "") for code in sorted(Regularity)]
-    assert len(formatter.args["words"]["certificates"]) == len(Certificate)
+    assert len(formatter.args["words"]["evidence"]) == len(Evidence)
     assert set(TRUST) == set(Trust) - {Trust.NOT_APPLICABLE}
     assert set(CHARACTER) == set(Regularity) - {Regularity.NOT_APPLICABLE}

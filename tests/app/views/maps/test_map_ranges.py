@@ -1,4 +1,4 @@
-"""Ranges report the window where a hand leaves them, and end at double precision."""
+"""Ranges report the window where the user leaves them, and end at double precision."""
 
 from __future__ import annotations
 

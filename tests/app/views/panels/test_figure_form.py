@@ -11,7 +11,7 @@ import pytest
 from app.browser.file_saver import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Shown, figure_choices
+from app.views.panels.figure_choices import ALL_MAPS, FIGURES, ShownResults, figure_choices
 from app.views.panels.figure_form import FigureForm
 from engine import (
     CASES,
@@ -37,12 +37,12 @@ def escape_map() -> EscapeMap:
 
 
 @pytest.fixture(scope="module")
-def shown(escape_map: EscapeMap) -> Shown:
+def shown(escape_map: EscapeMap) -> ShownResults:
     """Everything that can be drawn."""
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
     analyses = MapAnalyses(regularity=compute_regularity(escape_map))
-    return Shown(escape_map, analyses, [ChosenOrbit((0.1, 0.05), orbit)], curves)
+    return ShownResults(escape_map, analyses, [ChosenOrbit((0.1, 0.05), orbit)], curves)
 
 
 @pytest.fixture
@@ -54,23 +54,23 @@ def saved(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, bytes]]:
 
 
 @pytest.fixture
-def form(shown: Shown) -> FigureForm:
+def form(shown: ShownResults) -> FigureForm:
     made = FigureForm(ViewState(case="I", energy=0.19), FileSaver(), lambda ending: f"escapes{ending}", lambda copied: None)
     made.show(shown)
     return made
 
 
-def test_what_is_shown_can_be_drawn(shown: Shown) -> None:
+def test_what_is_shown_can_be_drawn(shown: ShownResults) -> None:
     state = ViewState(case="I", energy=0.19)
-    assert list(figure_choices(Shown(), state)) == []
+    assert list(figure_choices(ShownResults(), state)) == []
     maps = [ALL_MAPS, "Basins of escape", "Escape time", "Crossings of y = 0"]
-    assert list(figure_choices(Shown(shown.frame), state)) == [*maps, "The well in (x, y)", "Statistics"]
+    assert list(figure_choices(ShownResults(shown.frame), state)) == [*maps, "The well in (x, y)", "Statistics"]
     others = ["Regular or chaotic", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"]
     assert list(figure_choices(shown, state)) == [*maps, *others]
 
 
 @pytest.mark.parametrize("title", ["The well in (x, y)", "Orbits", "Statistics", "Curves against energy", "Regular or chaotic"])
-def test_each_figure_can_be_made(title: str, shown: Shown) -> None:
+def test_each_figure_can_be_made(title: str, shown: ShownResults) -> None:
     make = figure_choices(shown, ViewState(case="I", energy=0.19))[title]
     assert make(FigureFormat.PNG, FigureStyle(8.5, 60.0)).startswith(b"\x89PNG")
 
@@ -91,11 +91,13 @@ def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
     assert sent == [b"figure"]
 
 
-def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, shown: Shown, saved: list[tuple[str, bytes]]) -> None:
+def test_a_choice_stays_while_the_next_map_is_computed(
+    form: FigureForm, shown: ShownResults, saved: list[tuple[str, bytes]]
+) -> None:
     assert form.figure()[0] == ""
     form.what.value = "Regular or chaotic"
     assert form.figure()[0] == "-regular-or-chaotic"
-    form.show(Shown())
+    form.show(ShownResults())
     assert (form.what.options, form.what.value) == ([ALL_MAPS, "Regular or chaotic"], "Regular or chaotic")
     form.save.clicks += 1
     assert form.text.object == "Regular or chaotic: this is not computed yet."

@@ -31,7 +31,7 @@ from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
 
 
-class MapShelf:
+class MapCache:
     """Complete maps of one quality, stored without the state of their orbits, and analyses of them.
 
     All methods raise `concurrent.futures.CancelledError` when the execution is cancelled.

@@ -10,7 +10,7 @@ import pytest
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, compute_regularity
 from engine.foundations.execution import Execution
-from reproduction.map_shelf import MapShelf
+from reproduction.map_cache import MapCache
 from reproduction.paper_ranges import curve_energies, nine_energies
 from reproduction.quality import Quality
 
@@ -22,19 +22,19 @@ TINY = Quality(
 
 def test_a_map_is_computed_once() -> None:
     computed: list[EscapeMap] = []
-    shelf = MapShelf(TINY, on_map=computed.append)
-    assert shelf.map("I", Plane.X_PX, 0.2) is shelf.map("I", Plane.X_PX, 0.2)
+    cache = MapCache(TINY, on_map=computed.append)
+    assert cache.map("I", Plane.X_PX, 0.2) is cache.map("I", Plane.X_PX, 0.2)
     assert [frame.spec for frame in computed] == [MapSpec(CASES["I"], Plane.X_PX, 0.2, (11, 11), t_max=300.0)]
 
 
 def test_curves_are_the_shares_of_maps_that_are_not_stored() -> None:
     computed: list[EscapeMap] = []
-    shelf = MapShelf(TINY, on_map=computed.append)
-    table = shelf.curves("II", Plane.X_PX)
+    cache = MapCache(TINY, on_map=computed.append)
+    table = cache.curves("II", Plane.X_PX)
     energies = curve_energies("II", 7)
     assert table.values.tolist() == list(energies)
-    assert shelf.curves("II", Plane.X_PX) is table
-    frame = shelf.map("II", Plane.X_PX, energies[2])
+    assert cache.curves("II", Plane.X_PX) is table
+    frame = cache.map("II", Plane.X_PX, energies[2])
     shares = frame.fractions()
     assert table["share"][2].tolist() == [shares[code] for code in (0, 1, 2, 3)]
     assert len(computed) == 8
@@ -42,24 +42,24 @@ def test_curves_are_the_shares_of_maps_that_are_not_stored() -> None:
 
 def test_curves_use_stored_maps() -> None:
     computed: list[EscapeMap] = []
-    shelf = MapShelf(TINY, on_map=computed.append)
-    shelf.map("I", Plane.X_PX, nine_energies("I")[0])
-    shelf.curves("I", Plane.X_PX)
+    cache = MapCache(TINY, on_map=computed.append)
+    cache.map("I", Plane.X_PX, nine_energies("I")[0])
+    cache.curves("I", Plane.X_PX)
     assert len(computed) == 7
 
 
 def test_the_super_sticky_search_has_its_own_resolution() -> None:
-    shelf = MapShelf(TINY)
-    search = shelf.super_sticky()
+    cache = MapCache(TINY)
+    search = cache.super_sticky()
     frame = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.26, (9, 9), t_max=300.0))
     assert (search.spec, search.t_max) == (frame.spec, 2000.0)
     assert search.fate.size == np.count_nonzero(compute_regularity(frame).character == 2)
-    assert shelf.super_sticky() is search
+    assert cache.super_sticky() is search
 
 
-def test_a_cancelled_shelf_returns_no_incomplete_map() -> None:
+def test_a_cancelled_cache_returns_no_incomplete_map() -> None:
     cancel = threading.Event()
     cancel.set()
-    shelf = MapShelf(TINY, execution=Execution(cancel=cancel))
+    cache = MapCache(TINY, execution=Execution(cancel=cancel))
     with pytest.raises(CancelledError):
-        shelf.map("I", Plane.X_PX, 0.13)
+        cache.map("I", Plane.X_PX, 0.13)

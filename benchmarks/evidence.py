@@ -1,8 +1,9 @@
-"""Certified orbits that escape when they are integrated to t_max: all maps of the paper, three cases, two planes, nine energies.
+"""Orbits bounded on evidence that escape when they are integrated to t_max.
 
-Each map of 61 x 61 starts is computed with and without certificates.
+All maps of the paper are computed: three cases, two planes, nine energies.
+Each map of 61 x 61 starts is computed with and without evidence.
 
-Run: uv run python -m benchmarks.certificates
+Run: uv run python -m benchmarks.evidence
 """
 
 from __future__ import annotations
@@ -12,11 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine import CASES, Certificate, Fate, MapSpec, Plane, compute_map
+from engine import CASES, Evidence, Fate, MapSpec, Plane, compute_map
 from engine.systems.catalogue.table import PAPER_ENERGIES
 
 SIDE, T_MAX = 61, 1e5
-EARLY = [code for code in Certificate if code > Certificate.INTEGRATED]
+EARLY = [code for code in Evidence if code > Evidence.INTEGRATED]
 
 
 def specs() -> Iterator[MapSpec]:
@@ -27,16 +28,16 @@ def specs() -> Iterator[MapSpec]:
 
 
 def count_orbits(spec: MapSpec) -> np.ndarray:
-    """Bounded orbits, those certified early, of these the ones that escape, and escapes after t = 1000."""
-    certified, whole = compute_map(spec), compute_map(replace(spec, certify=False))
-    early = np.isin(certified.certificate, EARLY)
-    assert np.array_equal(certified.fate[~early], whole.fate[~early])
+    """Bounded orbits, those on evidence, of these the ones that escape, and escapes after t = 1000."""
+    on_evidence, whole = compute_map(spec), compute_map(replace(spec, use_evidence=False))
+    early = np.isin(on_evidence.evidence, EARLY)
+    assert np.array_equal(on_evidence.fate[~early], whole.fate[~early])
     late = whole.escape_time > 1000.0
     return np.array([np.sum(whole.fate == Fate.BOUNDED), early.sum(), np.sum(early & (whole.fate >= 1)), late.sum()])
 
 
 def main() -> None:
-    print("| case | plane | h | bounded | certified early | wrong | escape after t = 1000 |\n|---|---|---|---|---|---|---|")
+    print("| case | plane | h | bounded | on evidence | wrong | escape after t = 1000 |\n|---|---|---|---|---|---|---|")
     totals = np.zeros(4, int)
     for spec in specs():
         counts = count_orbits(spec)

@@ -1,7 +1,8 @@
-"""Early certificates that orbits of a map are bounded: quasi-periodic orbits, and orbits enclosed by their invariant curves."""
+"""Evidence that orbits of a map are bounded: quasi-periodic orbits, and orbits enclosed by their invariant curves."""
 
 from __future__ import annotations
 
+import math
 import pickle
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -9,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from engine.evidence.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, compare_averages
+from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS, compare_averages
 from engine.evidence.invariant_curves import InvariantCurve, find_invariant_curve
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.source.recurrence import LANES
 from engine.periodic.exit_entry_points import find_entry_points
-from engine.propagation.certificates import Certificate
+from engine.propagation.evidence import Evidence
 from engine.propagation.fixed_step_batches import run_tiles
 from engine.propagation.section_points import find_section_points, trace_section_points
 from engine.systems.potential import Potential
@@ -37,8 +38,8 @@ _FIRST_POINT_TIME = 30.0
 _FEW_POINTS = 2000
 
 
-class BoundednessCertifier:
-    """Certifies undecided orbits of one map, all of one energy or, on the (x, h) plane, of several.
+class BoundedOrbitSearch:
+    """Looks for evidence that undecided orbits of one map are bounded; they have one energy or, on the (x, h) plane, several.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ class BoundednessCertifier:
     grid_indices
         (n, 2) row and column of each orbit's pixel.
     time_left
-        Time until the next test, or until t_max, dimensionless: the integration that a certificate saves.
+        Time until the next test, or until t_max, dimensionless: the integration that evidence saves.
     execution
         How the computation runs.
     tested_for
@@ -61,8 +62,8 @@ class BoundednessCertifier:
 
     Attributes
     ----------
-    certificate
-        (n,) int8 `Certificate` codes found so far.
+    evidence
+        (n,) int8 `Evidence` codes found so far.
     digits
         (n,) digits to which the averages over two windows of the greatest length tried agree; infinite before any.
     """
@@ -81,7 +82,7 @@ class BoundednessCertifier:
     ) -> None:
         self.potential, self.states, self.grid_indices = potential, states, grid_indices
         self._execution, self._time_left, self._tested_for = execution, time_left, tested_for
-        self.certificate = np.zeros(len(states), np.int8)
+        self.evidence = np.zeros(len(states), np.int8)
         self.digits = np.full(len(states), np.inf) if digits is None else digits.copy()
         self._entry_points = () if energy is None else find_entry_points(potential, energy)
         self._use_curves = bool(self._entry_points) and all(map(len, self._entry_points))
@@ -91,7 +92,7 @@ class BoundednessCertifier:
             self._separated = np.zeros((len(states), len(self._entry_points)), bool)
 
     def run(self, on_round: Callable[[], None]) -> bool:
-        """Certify as many orbits as possible; `on_round` is called after each round of tests.
+        """Find evidence for as many orbits as possible; `on_round` is called after each round of tests.
 
         Returns whether the test was completed; False if it was cancelled.
         """
@@ -100,15 +101,15 @@ class BoundednessCertifier:
                 return False
             two, three = compare_averages(self.potential, self.states[tested], window, execution=self._execution).T
             self.digits[tested] = two
-            self.certificate[tested[three >= CERTIFIED_DIGITS]] = Certificate.QUASI_PERIODIC
+            self.evidence[tested[three >= TORUS_DIGITS]] = Evidence.QUASI_PERIODIC
             if self._use_curves:
                 # Two averages are enough here, since the curve is evidence of a torus as well.
-                self._certify_enclosed(tested[two >= CERTIFIED_DIGITS])
+                self._find_enclosed(tested[two >= TORUS_DIGITS])
             on_round()
         return not self._execution.is_cancelled
 
     def _rounds(self) -> Iterator[tuple[float, np.ndarray]]:
-        """(window, orbits) of each round; orbits certified in one round are left out of the next."""
+        """(window, orbits) of each round; orbits with evidence from one round are left out of the next."""
         for window in WINDOWS:
             promising = self.digits >= _PROMISING_DIGITS
             duration = 2.0 * window
@@ -121,7 +122,7 @@ class BoundednessCertifier:
         """All candidates, pixels of a coarse lattice first, as the curves of a few orbits can enclose many others."""
         for stride in _LATTICE_STRIDES:
             on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
-            tested = np.flatnonzero(self._uncertified() & candidates & on_lattice)
+            tested = np.flatnonzero(self._without_evidence() & candidates & on_lattice)
             if tested.size >= _SMALLEST_ROUND or (stride == _LATTICE_STRIDES[-1] and tested.size):
                 yield tested
 
@@ -129,28 +130,29 @@ class BoundednessCertifier:
         """Small groups of candidates with the most digits, until a group costs more than it saves."""
         candidates = candidates.copy()
         while True:
-            before = np.count_nonzero(self._uncertified())
+            before = np.count_nonzero(self._without_evidence())
             affordable = int(_MAX_WORK_SHARE * before * self._time_left / duration) // LANES * LANES
-            remaining = np.flatnonzero(self._uncertified() & candidates)
+            remaining = np.flatnonzero(self._without_evidence() & candidates)
             best_first = remaining[np.argsort(-self.digits[remaining], kind="stable")]
             tested = best_first[: min(affordable, _MAX_SEEDS)]
             if not tested.size:
                 return
             candidates[tested] = False
             yield tested
-            saved = before - np.count_nonzero(self._uncertified())
+            saved = before - np.count_nonzero(self._without_evidence())
             if saved * self._time_left < tested.size * duration:
                 return
 
-    def _uncertified(self) -> np.ndarray:
-        """(n,) bool: orbits without a certificate."""
-        uncertified: np.ndarray = self.certificate == Certificate.NONE
-        return uncertified
+    def _without_evidence(self) -> np.ndarray:
+        """(n,) bool: orbits without evidence."""
+        without_evidence: np.ndarray = self.evidence == Evidence.NONE
+        return without_evidence
 
-    def _certify_enclosed(self, regular: np.ndarray) -> None:
-        """Certify orbits enclosed by the invariant curves of some of the given orbits."""
+    def _find_enclosed(self, regular: np.ndarray) -> None:
+        """Mark orbits enclosed by the invariant curves of some of the given orbits."""
         regular = regular[self._on_section[regular]]
-        regular = regular[:: -(-regular.size // _MAX_CURVES_PER_ROUND) or 1]
+        step = max(1, math.ceil(regular.size / _MAX_CURVES_PER_ROUND))
+        regular = regular[::step]
         arguments = (self.potential.well.mirror_in_x, self._entry_points)
         tiles = run_tiles(_find_barriers, self.potential, self.states[regular], *arguments, execution=self._execution)
         found = [barrier for _, tile in tiles for barrier in tile]
@@ -162,7 +164,7 @@ class BoundednessCertifier:
             self._separated[left] = _separated_by_any(barriers, self._points[left], self._separated[left])
         else:
             self._separate_in_parallel(barriers, left)
-        self.certificate[self._separated.all(axis=1) & self._uncertified()] = Certificate.ENCLOSED
+        self.evidence[self._separated.all(axis=1) & self._without_evidence()] = Evidence.ENCLOSED
 
     def _separate_in_parallel(self, barriers: list[_Barrier], orbits: np.ndarray) -> None:
         # Prepared polygons must not be used by two threads at once: each task unpickles its own.
@@ -230,7 +232,7 @@ def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separ
 
 
 def _separated_by_pickled(barriers: bytes, points: np.ndarray, separated: np.ndarray) -> np.ndarray:
-    """As `_separated_by_any`; runs in a worker."""
+    """Call `_separated_by_any` with pickled barriers, in a worker."""
     return _separated_by_any(pickle.loads(barriers), points, separated)
 
 

@@ -8,7 +8,7 @@ import {propagate} from "./propagate.js"
 /** Orbits of a portion. */
 const PORTION = 256
 
-export class Destinies {
+export class Outcomes {
   /**
    * @param {import("./system.js").System} system
    * @param {WebAssembly.Module} module

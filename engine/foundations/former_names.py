@@ -1,0 +1,93 @@
+"""Former names of what the library offers, which are deprecated: those of the package, of fields, and of what files hold."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Mapping
+from dataclasses import fields
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "Certificate": ("Evidence", "engine.propagation.evidence:Evidence"),
+        "Curves": ("Sweep", "engine.sweeps.sweep:Sweep"),
+        "CurvesSpec": ("SweepSpec", "engine.sweeps.former_calls:make_curves_spec"),
+        "compute_curves": ("compute_sweep", "engine.sweeps.sweep:compute_sweep"),
+        "run_sweep": ("compute_sweep", "engine.sweeps.former_calls:run_sweep"),
+    }
+)
+"""Former public names: the new name, and the module and object that stand for the former one."""
+
+FORMER_FIELDS: Mapping[str, str] = MappingProxyType(
+    {
+        "certificate": "evidence",
+        "certify": "use_evidence",
+        "certifies_tori": "tori_are_evidence",
+    }
+)
+"""Former names of attributes and parameters of the public classes, and of variables and attributes in files."""
+
+
+def find_former_name(name: str) -> Any:
+    """Return what stands for a former public name, with a warning; AttributeError for any other name."""
+    if name not in FORMER_NAMES:
+        raise AttributeError(f"module 'engine' has no attribute {name!r}")
+    new, place = FORMER_NAMES[name]
+    _warn(name, new)
+    module, _, attribute = place.partition(":")
+    return getattr(import_module(module), attribute)
+
+
+def with_former_fields[T](cls: type[T]) -> type[T]:
+    """Add the former names of its attributes and parameters, each with a warning, to a dataclass."""
+    names = {each.name for each in fields(cls)}  # type: ignore[arg-type]
+    for old, new in FORMER_FIELDS.items():
+        if hasattr(cls, new) or new in names:
+            setattr(cls, old, _former_attribute(old, new))
+    _accept_former_parameters(cls, {old: new for old, new in FORMER_FIELDS.items() if new in names})
+    return cls
+
+
+def _former_attribute(old: str, new: str) -> property:
+    def get(self: Any) -> Any:
+        _warn(old, new)
+        return getattr(self, new)
+
+    return property(get)
+
+
+def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
+    initialize = cls.__init__
+
+    @functools.wraps(initialize)
+    def __init__(self: Any, *args: Any, **options: Any) -> None:  # noqa: N807
+        for old in former.keys() & options.keys():
+            _warn(old, former[old])
+            # `dataclasses.replace` also passes the present value by its new name.
+            options[former[old]] = options.pop(old)
+        initialize(self, *args, **options)
+
+    cls.__init__ = __init__
+
+
+def _warn(old: str, new: str) -> None:
+    """Warn the caller of the function that calls this one."""
+    warnings.warn(f"{old} is deprecated: use {new}", DeprecationWarning, stacklevel=3)
+
+
+def rename_stored(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset of an earlier version with the present names of its variables and attributes."""
+    renamed = dataset.rename({old: new for old, new in FORMER_FIELDS.items() if old in dataset.variables})
+    renamed.attrs = with_present_names(dataset.attrs)
+    return renamed
+
+
+def with_present_names(attributes: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Return the attributes of a file by their present names."""
+    return {FORMER_FIELDS.get(name, name): value for name, value in attributes.items()}

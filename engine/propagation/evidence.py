@@ -1,0 +1,38 @@
+"""Why an orbit is classified as bounded: integrated to t_max, or on evidence that ends its integration early."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Evidence(IntEnum):
+    """The reason why an orbit is classified as bounded.
+
+    ``NONE``: not classified as bounded. ``INTEGRATED``: integrated to t_max. ``CLOSED``: its energy is below every saddle, which
+    proves it. The others are numerical evidence that the orbit never escapes, and no proof.
+    ``QUASI_PERIODIC``: its weighted Birkhoff averages converge as on an invariant torus, which is very rare for other orbits.
+    ``ENCLOSED``: invariant curves of quasi-periodic orbits separate it from every exit; it may itself be chaotic.
+    ``MIRRORED``: the mirror image of an orbit that is bounded on evidence.
+    """
+
+    NONE = 0
+    INTEGRATED = 1
+    CLOSED = 2
+    QUASI_PERIODIC = 3
+    ENCLOSED = 4
+    MIRRORED = 5
+
+
+_PHRASES = {
+    Evidence.NONE: "",
+    Evidence.INTEGRATED: "integrated to t_max",
+    Evidence.CLOSED: "its energy is below every saddle",
+    Evidence.QUASI_PERIODIC: "evidence: its averages converge as on an invariant torus",
+    Evidence.ENCLOSED: "evidence: invariant curves separate it from every exit",
+    Evidence.MIRRORED: "evidence: that of its mirror image",
+}
+
+
+def describe_evidence(evidence: int) -> str:
+    """Return a phrase for an `Evidence` code."""
+    return _PHRASES[Evidence(evidence)]

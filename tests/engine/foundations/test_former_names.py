@@ -1,0 +1,123 @@
+"""Former names warn, and stand for the present ones; files of earlier versions are read, and their stores are continued."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from concurrent.futures import CancelledError
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import engine
+from engine import CASES, Evidence, Execution, MapSpec, Plane, SweepSpec, compute_map, compute_sweep, integrate_orbit, open_result
+
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (12, 10), t_max=200.0, use_evidence=False)
+SWEEP = SweepSpec(CASES["III"], Plane.X_PX, (0.3, 0.4, 0.5), (12, 10), t_max=300.0, measures=("maps",))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("Certificate", "Evidence"), ("Curves", "Sweep"), ("compute_curves", "compute_sweep")],
+)
+def test_former_public_names_stand_for_the_present_ones(old: str, new: str) -> None:
+    with pytest.warns(DeprecationWarning, match=f"^{old} is deprecated: use {new}$") as caught:
+        assert getattr(engine, old) is getattr(engine, new)
+    assert caught[0].filename == __file__
+
+
+def test_the_former_request_of_curves_is_one_of_a_sweep() -> None:
+    with pytest.warns(DeprecationWarning, match="^CurvesSpec is deprecated: use SweepSpec$"):
+        spec = engine.CurvesSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), 500.0, exponent=False)  # type: ignore[attr-defined]
+    measures = ("shares", "escape_times", "islands", "basin_entropy", "wada", "decay_rate")
+    assert spec == SweepSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), t_max=500.0, measures=measures)
+
+
+def test_an_unknown_name_is_no_former_one() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'Certificates'"):
+        engine.Certificates  # type: ignore[attr-defined]  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: MapSpec(SPEC.potential, SPEC.plane, 0.36, (12, 10), t_max=200.0, certify=False),  # type: ignore[call-arg]
+        lambda: replace(SPEC, use_evidence=True, certify=False),  # type: ignore[call-arg]
+    ],
+)
+def test_former_parameters_are_taken(make: Callable[[], MapSpec]) -> None:
+    with pytest.warns(DeprecationWarning, match="^certify is deprecated: use use_evidence$"):
+        assert make() == SPEC
+
+
+def test_former_attributes_are_those_of_the_present_names() -> None:
+    orbit, frame = integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=100.0), compute_map(SPEC)
+    for thing, old, value in (
+        (orbit, "certificate", Evidence.CLOSED),
+        (frame, "certificate", frame.evidence),
+        (SPEC, "certify", False),
+        (SPEC.potential, "certifies_tori", True),
+    ):
+        with pytest.warns(DeprecationWarning, match=f"^{old} is deprecated") as caught:
+            assert getattr(thing, old) is value
+        assert caught[0].filename == __file__
+
+
+# Files.
+
+
+def as_earlier(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset as earlier versions wrote it."""
+    earlier = dataset.rename({"evidence": "certificate"} if "evidence" in dataset else {})
+    earlier.attrs = {"certify" if name == "use_evidence" else name: value for name, value in dataset.attrs.items()}
+    return earlier
+
+
+def test_the_map_of_an_earlier_version_is_read(tmp_path: Path) -> None:
+    wanted = compute_map(SPEC)
+    as_earlier(wanted.to_xarray()).to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
+    found = open_result(tmp_path / "map.nc")
+    assert found.spec == SPEC
+    np.testing.assert_array_equal(found.evidence, wanted.evidence)
+
+
+def test_the_sweep_of_an_earlier_version_is_read_and_measured(tmp_path: Path) -> None:
+    wanted = compute_sweep(SWEEP)
+    as_earlier(wanted.dataset).to_zarr(tmp_path / "sweep.zarr", consolidated=False, zarr_format=3)
+    xr.testing.assert_identical(open_result(tmp_path / "sweep.zarr").dataset.load(), wanted.dataset)
+
+
+def test_measures_take_the_dataset_of_an_earlier_version() -> None:
+    whole = compute_map(SPEC)
+    assert engine.compute_statistics(as_earlier(whole.to_xarray())).shares[0] == engine.compute_statistics(whole).shares[0]
+
+
+def make_earlier_store(store: Path, values: int) -> None:
+    """The store of an earlier version that was interrupted after some values."""
+    cancel = Event()
+
+    def stop(sweep: Any) -> None:
+        if sweep.values.size == values:
+            cancel.set()
+
+    with pytest.raises(CancelledError):
+        compute_sweep(SWEEP, store, on_frame=stop, execution=Execution(cancel=cancel))
+    (store / "evidence").rename(store / "certificate")
+    group = json.loads((store / "zarr.json").read_text())
+    group["attributes"]["certify"] = group["attributes"].pop("use_evidence")
+    del group["consolidated_metadata"]
+    (store / "zarr.json").write_text(json.dumps(group))
+
+
+def test_the_store_of_an_earlier_version_is_continued(tmp_path: Path) -> None:
+    make_earlier_store(tmp_path / "store", 1)
+    found = compute_sweep(SWEEP, tmp_path / "store").dataset.load()
+    xr.testing.assert_identical(found.drop_attrs(), compute_sweep(SWEEP).dataset.drop_attrs())
+    with xr.open_zarr(tmp_path / "store") as stored:
+        assert "evidence" in stored
+        assert not {"certificate", "certify"} & {*stored.variables, *stored.attrs}
