@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from engine.exits.continuation import Steps, follow
 from engine.foundations.root_finding import find_root
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
@@ -152,22 +153,14 @@ def find_from_outside(potential: Potential, energy: float, axes: Axes, size: flo
 
 def continue_in_energy(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """The orbit over a saddle, followed from small oscillations up to an energy with an adaptive step; None if this fails."""
-    reached = bottom = float(potential.well.saddle_energies[channel - 1])
-    step = _FIRST_ENERGY_STEP * (energy - bottom)
-    smallest_step = _SMALLEST_ENERGY_STEP * (energy - bottom)
-    orbit: BrakeOrbit | None = None
-    for _ in range(_MOST_ENERGY_STEPS):
-        target = min(reached + step, energy)
-        following = _next_orbit(potential, target, channel, orbit) if orbit else find_directly(potential, target, channel)
-        if following is not None:
-            orbit, reached, step = following, target, 2.0 * step
-            if reached == energy:
-                return orbit
-        elif step > smallest_step:
-            step *= 0.5
-        else:
-            return None
-    return None
+    bottom = float(potential.well.saddle_energies[channel - 1])
+    height = energy - bottom
+
+    def advance(orbit: BrakeOrbit | None, target: float) -> BrakeOrbit | None:
+        return _next_orbit(potential, target, channel, orbit) if orbit else find_directly(potential, target, channel)
+
+    steps = Steps(_FIRST_ENERGY_STEP * height, _SMALLEST_ENERGY_STEP * height, _MOST_ENERGY_STEPS)
+    return follow(advance, None, bottom, energy, steps)
 
 
 def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, rest: float) -> _Shot | None:

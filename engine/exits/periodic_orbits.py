@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.exits.brake_orbits import Axes, saddle_axes
+from engine.exits.continuation import Steps, follow
 from engine.exits.exit_shapes import ridge_bend
 from engine.integrator.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
 from engine.systems.compiled import kernels_of
@@ -41,6 +42,9 @@ _MOST_STEPS_PER_PART = 400
 _SHARPNESS = 50.0
 # Largest distance between the ends of neighbouring parts of an orbit, in units of the well.
 _LARGEST_GAP = 1e-10
+
+# The last σ reached, with the unknowns of their orbits, see `_correct`.
+_Known = list[tuple[float, np.ndarray]]
 
 
 class PeriodicOrbit(NamedTuple):
@@ -127,23 +131,13 @@ def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> 
 
 def _follow(family: _Family, sigma: float) -> np.ndarray | None:
     """The unknowns of the orbit at σ, see `_correct`, followed from σ = 0 with an adaptive step; None if this fails."""
-    places, found = [0.0], [_small_oscillation(family)]
-    step = sigma
-    for _ in range(_MOST_STEPS):
-        target = min(places[-1] + step, sigma)
-        predicted = _extrapolate(places[-_PREDICTED_FROM:], found[-_PREDICTED_FROM:], target)
-        corrected = _correct(family, target, predicted)
-        if corrected is not None:
-            places.append(target)
-            found.append(corrected)
-            step *= 2.0
-            if target == sigma:
-                return corrected
-        elif step > _SMALLEST_STEP * sigma:
-            step *= 0.5
-        else:
-            return None
-    return None
+
+    def advance(known: _Known, target: float) -> _Known | None:
+        corrected = _correct(family, target, _extrapolate(known, target))
+        return None if corrected is None else [*known, (target, corrected)][-_PREDICTED_FROM:]
+
+    known = follow(advance, [(0.0, _small_oscillation(family))], 0.0, sigma, Steps(sigma, _SMALLEST_STEP * sigma, _MOST_STEPS))
+    return None if known is None else known[-1][1]
 
 
 def _small_oscillation(family: _Family) -> np.ndarray:
@@ -166,11 +160,11 @@ def _small_oscillation(family: _Family) -> np.ndarray:
     return np.append(nodes, 2.0 * np.pi / frequency)
 
 
-def _extrapolate(places: list[float], values: list[np.ndarray], target: float) -> np.ndarray:
-    """The polynomial through the values at the places, at the target."""
-    points = np.array(places)
+def _extrapolate(known: _Known, target: float) -> np.ndarray:
+    """The polynomial through the unknowns at some σ, at the target."""
+    points = np.array([place for place, _ in known])
     weights = [np.prod((target - np.delete(points, k)) / (place - np.delete(points, k))) for k, place in enumerate(points)]
-    predicted: np.ndarray = np.array(weights) @ np.array(values)
+    predicted: np.ndarray = np.array(weights) @ np.array([unknowns for _, unknowns in known])
     return predicted
 
 

@@ -127,21 +127,18 @@ class LineStack:
 
     def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, *, keeps_states: bool = True) -> None:
         self.spec, self._keeps_states = spec, keeps_states
-        self._lines = find_lines(spec)
+        lines = find_lines(spec)
+        self._count, self._lines = len(lines), {k: line for k, line in enumerate(lines) if line is not None}
         self._found: dict[int, EscapeMap] = {}
         self._stride, self._horizon = _STRIDES[0], 0.0
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
-        for k, line in enumerate(self._lines):
-            if line is None:
+        for k in range(self._count):
+            if k not in self._lines:
                 # There is no system of this value.
                 here = (slice(None), k) if spec.plane.parameter_axis == 0 else k
                 self._arrays["fate"][here], self._arrays["started"][here] = Fate.FORBIDDEN, True
             elif resume is not None:
-                self._put(k, line.of(resume))
-
-    @property
-    def _existing(self) -> list[tuple[int, Line]]:
-        return [(k, line) for k, line in enumerate(self._lines) if line is not None]
+                self._put(k, self._lines[k].of(resume))
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
         """See `Staged`: a stage integrates the orbits of some lines to a horizon."""
@@ -155,11 +152,10 @@ class LineStack:
     def _refinements(self) -> Iterator[tuple[int, list[int]]]:
         """(stride, lines): coarse to fine, each line once."""
         seen: set[int] = set()
-        existing = dict(self._existing)
         for stride in _STRIDES:
-            chosen = [k for k in np.unique(representative_indices(len(self._lines), stride)).tolist() if k not in seen]
+            chosen = [k for k in np.unique(representative_indices(self._count, stride)).tolist() if k not in seen]
             seen |= set(chosen)
-            yield stride, [k for k in chosen if k in existing]
+            yield stride, [k for k in chosen if k in self._lines]
 
     def _advance(self, stride: int, lines: list[int], horizon: float, execution: Execution, on_change: OnChange) -> None:
         """Integrate the orbits of some lines up to a time."""
@@ -179,7 +175,6 @@ class LineStack:
 
     def _put(self, k: int, found: EscapeMap) -> None:
         line = self._lines[k]
-        assert line is not None
         self._found[k] = found if self._keeps_states else replace(found, batch=None)
         for name, array in self._arrays.items():
             codes = getattr(found, name)
@@ -192,9 +187,8 @@ class LineStack:
 
     def progress(self) -> float:
         """Share of the work done, averaged over the lines."""
-        existing = self._existing
         done = (found.progress * min(1.0, found.spec.t_max / self.spec.t_max) for found in self._found.values())
-        return sum(done) / len(existing) if existing else 1.0
+        return sum(done) / len(self._lines) if self._lines else 1.0
 
     def frame(self) -> EscapeMap:
         """The map so far."""
@@ -209,7 +203,7 @@ class LineStack:
             return frame
         numbers = np.arange(frame.fate.size).reshape(frame.fate.shape)
         pixels, batches = [np.zeros(0, int)], [OrbitBatch.empty(np.zeros(0, np.int64))]
-        for k, line in self._existing:
+        for k, line in self._lines.items():
             found = self._found.get(k)
             if found is not None and found.batch is not None:
                 pixels.append(numbers[line.place].ravel()[found.continued_pixels])
@@ -306,11 +300,8 @@ def _continues(earlier: EscapeMap | None) -> bool:
     return earlier is None or not earlier.started.all() or bool(earlier.continued_pixels.size)
 
 
-def _compute_line(
-    line: Line | None, t_max: float, earlier: EscapeMap | None, execution: Execution = SERIAL_EXECUTION
-) -> EscapeMap:
+def _compute_line(line: Line, t_max: float, earlier: EscapeMap | None, execution: Execution = SERIAL_EXECUTION) -> EscapeMap:
     """A line integrated up to a time; with its integration state."""
-    assert line is not None
     spec = replace(line.spec, t_max=t_max)
     run = MapRun(spec.in_well_units(), None if earlier is None else earlier.in_well_units(), coarse_first=False)
     try:

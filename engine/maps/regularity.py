@@ -12,7 +12,7 @@ import numpy as np
 from engine.evidence.birkhoff_averages import REGULAR_DIGITS, TORUS_DIGITS, WINDOWS, count_agreeing_digits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
-from engine.maps.parameter_map import Place, analyse_map
+from engine.maps.parameter_map import analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
 from engine.maps.stages import OnChange, Stage
@@ -101,11 +101,7 @@ def compute_regularity(
     escape_map = as_map("escape_map", escape_map)
     escape_map.check_complete("escape_map")
     escape_map.spec.potential.check_without_centres("regular and chaotic orbits of a map")
-    return analyse_map(escape_map, _begin_classification, RegularityMap, on_frame, execution)
-
-
-def _begin_classification(escape_map: EscapeMap, _place: Place) -> _RegularityClassification:
-    return _RegularityClassification(escape_map)
+    return analyse_map(escape_map, lambda pixels, _place: _RegularityClassification(pixels), RegularityMap, on_frame, execution)
 
 
 class _RegularityClassification:

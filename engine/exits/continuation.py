@@ -1,0 +1,50 @@
+"""Following a solution along a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+
+class Steps(NamedTuple):
+    """The first and the smallest step of a parameter, and the largest number of steps."""
+
+    first: float
+    smallest: float
+    most: int
+
+
+def follow[Solution](
+    advance: Callable[[Solution, float], Solution | None], solution: Solution, begin: float, end: float, steps: Steps
+) -> Solution | None:
+    """Follow a solution from one value of a parameter up to another with an adaptive step.
+
+    Parameters
+    ----------
+    advance
+        Returns the solution at a value, from the one reached; None if it finds none close to that one. Then the step is halved,
+        otherwise doubled.
+    solution
+        What is known at `begin`.
+    begin, end
+        The first and the last value.
+    steps
+        Limits of the steps.
+
+    Returns
+    -------
+    The solution at `end`; None if it is not reached.
+    """
+    reached, step = begin, steps.first
+    for _ in range(steps.most):
+        target = min(reached + step, end)
+        following = advance(solution, target)
+        if following is not None:
+            solution, reached, step = following, target, 2.0 * step
+            if reached == end:
+                return solution
+        elif step > steps.smallest:
+            step *= 0.5
+        else:
+            return None
+    return None

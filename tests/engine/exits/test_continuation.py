@@ -1,0 +1,37 @@
+"""Solutions followed with an adaptive step; here the solution is the list of the values reached."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from engine.exits.continuation import Steps, follow
+
+STEPS = Steps(first=0.5, smallest=2.0**-5, most=50)
+
+
+def reached_with(longest: Callable[[float], float]) -> list[float] | None:
+    """The values reached from 0 up to 1, where a step from a value can be as long as `longest` of it."""
+
+    def advance(values: list[float], target: float) -> list[float] | None:
+        return [*values, target] if target - values[-1] <= longest(values[-1]) else None
+
+    return follow(advance, [0.0], 0.0, 1.0, STEPS)
+
+
+def test_steps_double_after_success_and_end_at_the_last_value() -> None:
+    assert reached_with(lambda _value: 1.0) == [0.0, 0.5, 1.0]
+
+
+def test_steps_are_halved_where_the_solution_is_not_found() -> None:
+    values = reached_with(lambda value: 0.1 if value < 0.2 else 1.0)
+    assert values == pytest.approx([0.0, 0.0625, 0.125, 0.1875, 0.25, 0.375, 0.625, 1.0])
+
+
+def test_a_solution_that_ends_on_the_way_is_not_reached() -> None:
+    assert reached_with(lambda value: 0.7 - value) is None
+
+
+def test_the_number_of_steps_is_limited() -> None:
+    assert follow(lambda value, _target: value, 0.0, 0.0, 1.0, Steps(1e-9, 1e-9, 3)) is None
