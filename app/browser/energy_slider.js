@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The slider of the energy. It reports to the server when it is released; on the way it tells the page.
+ * The slider of the energy. It sends the energy to the server when it is released, and to the page while it moves.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

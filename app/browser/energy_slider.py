@@ -12,7 +12,7 @@ from panel.custom import JSComponent
 from app.browser.callbacks import module_path
 
 SHOWN = "energyshown"
-"""Event of the page, with the energy that the pictures show, which the server does not know of yet."""
+"""Event of the page with the energy of the pictures while the server has not received it yet."""
 
 
 class EnergySlider(JSComponent):

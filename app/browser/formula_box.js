@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * A box for a formula, as high as its text. Each change is sent; Enter, or leaving the box, says that the text is done.
+ * A box for a formula, as high as its text. Each change is sent; Enter, or leaving the box, finishes the text.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

@@ -41,7 +41,7 @@ class FormulaBox(JSComponent):
 
     @property
     def text(self) -> str:
-        """The text in the browser, as far as the server knows."""
+        """The last text that the server has sent or received."""
         return str(self.shown["text"])
 
     def show(self, text: str) -> None:

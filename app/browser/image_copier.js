@@ -20,7 +20,7 @@ export function render({model, el}) {
     }
     const image = new Promise(resolve => (deliver = resolve))
     model.send_msg({wanted: true})
-    // The server says itself why it has no image.
+    // The server itself shows why it has no image.
     const copied = await navigator.clipboard.write([new ClipboardItem({"image/png": image.then(asPng)})]).then(
       () => true,
       () => false,

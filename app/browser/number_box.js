@@ -31,7 +31,7 @@ export function render({model, el}) {
   input.addEventListener("blur", commit)
   // Enter after the number that was there before is no change.
   input.addEventListener("keydown", event => event.key === "Enter" && commit())
-  // The page shows another number, which the server does not know of yet.
+  // The page shows another number, which the server has not received yet.
   const show = (/** @type {any} */ event) => {
     if (!typing) input.value = String(Number(event.detail.toPrecision(10)))
   }

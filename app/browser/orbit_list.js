@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The orbits as rows, of which one is chosen: radio buttons, each with the colour of its orbit.
+ * The orbits as rows, one of which is chosen: radio buttons, each with the colour of its orbit.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

@@ -29,7 +29,9 @@ class ParameterSlider(JSComponent):
     lowest = param.Number(doc="smallest number of the box")
     highest = param.Number(doc="largest number of the box")
     step = param.Number(default=0.01)
-    shown = param.Dict(default={"number": 1.0, "chosen": 0}, doc="number, and how many chosen ones the server knows of")
+    shown = param.Dict(
+        default={"number": 1.0, "chosen": 0}, doc="the number, and how many chosen numbers the server has received"
+    )
 
     _esm = module_path("parameter_slider.js")
 

@@ -76,7 +76,7 @@ class IndicatorsRequests:
             self._update()
 
     def _update(self) -> None:
-        """Show what is known."""
+        """Show the results so far."""
         orbits, chosen = [self._with_digits(one) for one in self._orbits], self._state.chosen
         one = orbits[chosen] if chosen < len(orbits) else None
         self._show(orbits, evaluate_indicators(one.orbit, one.digits) if one is not None and one.orbit is not None else ())

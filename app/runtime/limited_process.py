@@ -119,7 +119,7 @@ def _begin(memory: int, server: int) -> None:
 
 
 def _end_with(server: int) -> None:
-    """End the process when the server has ended, also where it was killed and could not say so."""
+    """End the process when the server has ended, even if the server was killed."""
     while os.getppid() == server:
         time.sleep(_WATCH_SECONDS)
     os._exit(0)

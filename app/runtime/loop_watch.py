@@ -70,7 +70,7 @@ class LoopWatch:
         if late > _REPORTED:
             cause = Counter(samples).most_common(1)[0][0] if samples else WAITING
             self._delays.labels(cause).observe(late)
-            # Other threads and processes delay the loop, too: beside its delay stands the processor time that it took itself.
+            # Other threads and processes also delay the loop, so the message gives the loop's own processor time as well.
             log.info("event loop %.0f ms late, %.0f ms of its own; cause: %s", 1000.0 * late, 1000.0 * busy, cause)
 
     def watch(self, stopping: threading.Event) -> None:

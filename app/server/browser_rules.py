@@ -188,7 +188,7 @@ def _quote(value: Any) -> str:
 
 
 def _is_between(value: Any, low: Any, high: Any) -> bool:
-    """Whether a value is a number within limits, of which each may be missing."""
+    """Whether a value is a number within limits, each of which may be missing."""
     return _is_real(value) and not isinstance(value, bool) and (low is None or low <= value) and (high is None or value <= high)
 
 

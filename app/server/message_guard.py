@@ -70,7 +70,7 @@ class MessageGuard:
         RefusedMessageError
             When the message must be ignored.
         UnacceptableConnectionError
-            When the connection must be closed: parts that are no message of a browser, too many messages or refusals.
+            When the connection must be closed because of invalid parts, too many messages or refusals.
         """
         is_payload = len(self._parts) > _PARTS and (len(self._parts) - _PARTS) % _PARTS_OF_BUFFER
         if isinstance(part, str) == bool(is_payload):

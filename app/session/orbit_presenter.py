@@ -44,7 +44,7 @@ class OrbitPresenter:
     on_start
         Called with x and ordinate of a start that is typed.
     on_verdicts
-        Called with the orbits when what is known of them changes.
+        Called with the orbits when their results change.
     on_copy
         Called with a table as tab-separated text.
     locked, latest
@@ -181,7 +181,7 @@ class OrbitPresenter:
         self.plots.set_time(t)
 
     def _show_verdicts(self, orbits: Sequence[ChosenOrbit], verdicts: Sequence[IndicatorVerdict]) -> None:
-        """Show what is known of the orbits in words."""
+        """Show the results of the orbits in words."""
         with pn.io.hold():
             self.controls.show(orbits, self._state.chosen)
             self.controls.show_indicators(verdicts)

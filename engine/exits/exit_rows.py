@@ -52,7 +52,7 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
 
 
 def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
-    """The `exit_curves` for one orbit, which can be followed without exits, too, and why these are not known; "" if they are.
+    """The `exit_curves` for one orbit and why they are not known ("" if they are); it can also be followed without exits.
 
     Where they are not defined at the energy no orbit crosses one and no start lies beyond one; discs and the escape circle stay.
     """

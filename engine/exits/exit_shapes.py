@@ -85,7 +85,7 @@ def line_across(potential: Potential, energy: float, channel: int, edge: float) 
 
 
 def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray | None:
-    """(columns,) the path (2, n) as a graph u = f(s), s ∈ [−1, 1], without its reach; None if it is none or not smooth enough."""
+    """(columns,) the path (2, n) as a graph u = f(s), s ∈ [−1, 1], without its reach; None if it is not a smooth graph."""
     u, q = axes.coordinates(path)
     middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
     s = (q - middle) / half_width

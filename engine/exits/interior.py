@@ -67,7 +67,7 @@ def find_outside_starts(
     return outside
 
 
-def hole_at_origin(potential: Potential) -> float:
+def find_inner_radius(potential: Potential) -> float:
     """Radius of the disc around a centre at the origin; 0.0 for a well there."""
     return max((centre.radius for centre in potential.centres if centre.x == centre.y == 0.0), default=0.0)
 
@@ -80,8 +80,8 @@ def _finder(form: Any, potential: Potential) -> Callable[..., np.ndarray]:
 
 @_finder.register
 def _finder_of_expression(_form: ExpressionForm, potential: Potential) -> Callable[..., np.ndarray]:
-    hole = hole_at_origin(potential)
-    return lambda *arguments: kernels_of(potential).find_outside(*arguments, hole)
+    inner_radius = find_inner_radius(potential)
+    return lambda *arguments: kernels_of(potential).find_outside(*arguments, inner_radius)
 
 
 @_finder.register

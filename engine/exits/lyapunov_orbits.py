@@ -202,7 +202,7 @@ def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit
 
 @checks_types(potential=Potential, orbit=LyapunovOrbit)
 def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
-    """Deprecated: `LyapunovOrbit.find_multipliers`, for the orbit knows its potential.
+    """Deprecated: use `LyapunovOrbit.find_multipliers`; an orbit has its potential.
 
     Raises
     ------
@@ -370,7 +370,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
 
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
-    """An orbit between two points at rest with its exit (columns,), the reach of which is set."""
+    """An orbit between two points at rest, with its exit (columns,) whose reach is set here."""
     curve[events.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])

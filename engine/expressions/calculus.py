@@ -78,7 +78,7 @@ def _outer_derivative(name: str, argument: Expression) -> Expression:
 def _of_inverse_hyperbolic_sine(argument: Expression, axis: int) -> Expression | None:
     """(p'/c) b^(−½), the derivative of log(p + c b^½) if c² b' = 2 p' p with a number p' ≠ 0; None for other arguments.
 
-    As p + c b^½ loses digits where p < 0, u'/u would lose them, too.
+    Where p < 0, p + c b^½ loses digits, and so would u'/u.
     """
     terms = argument.terms if isinstance(argument, Sum) else ()
     roots = [(part, c) for part, c in terms if isinstance(part, Product) and [n for _, n in part.factors] == [0.5]]

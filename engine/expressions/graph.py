@@ -26,7 +26,7 @@ class Node(NamedTuple):
         ``cos``.
     operands
         Indices of nodes. The second one of a sine is the cosine of the same argument, and that of a cosine is the sine: the
-        derivative of each is the other one. The second one of a power u^a is u^(a + 1), if that is a node, too.
+        derivative of each is the other one. The second one of a power u^a is u^(a + 1), if that is also a node.
     numbers
         Places of the coefficients of a sum, one for each operand, and of its constant if that is not 0; of the number of a shift.
     exponent

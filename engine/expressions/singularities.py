@@ -7,7 +7,7 @@ from engine.expressions.polynomials import Powers, degree
 
 
 def singular_bases(expression: Expression) -> tuple[Expression, ...]:
-    """What is divided by, and of which a root or a logarithm is taken, each once."""
+    """Divisors and arguments of roots and logarithms, each once."""
     return tuple(dict.fromkeys(_bases(expression)))
 
 
@@ -37,7 +37,7 @@ def _with_square(base: Expression) -> tuple[dict[Powers, float] | None, float]:
 
 
 def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:
-    """(a, b) of each linear a x + b y + c, with a and b not 0, of which there is a power or a function; each once."""
+    """(a, b) of each linear a x + b y + c, with a and b not 0, that is a base or the argument of a function; each once."""
     found = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
     gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in found if terms and degree(terms) == 1)
     return tuple(dict.fromkeys((a, b) for a, b in gradients if a and b))

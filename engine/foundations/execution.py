@@ -55,7 +55,7 @@ def _lower_priority() -> None:
 
 
 def count_workers(executor: Executor) -> int:
-    """How many calls an executor runs at once; 2 if it does not tell."""
+    """Number of calls that an executor runs at once; 2 if it is unknown."""
     # Dask's executor: ask its client each time, as the number of workers may change.
     threads = getattr(getattr(executor, "_client", None), "nthreads", None)
     if threads is not None:
@@ -149,7 +149,7 @@ class Execution:
         Raises
         ------
         concurrent.futures.BrokenExecutor
-            When the executor has dropped the call although nobody cancelled it, as a cluster does that loses its scheduler.
+            When the executor has dropped a call that was not cancelled, as a cluster does that loses its scheduler.
         """
         try:
             return future.result()
@@ -187,7 +187,7 @@ def run_parts(
 
 
 def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorator for functions with a parameter ``execution``: a bar where nobody else follows its progress, or its frames.
+    """Decorator for functions with a parameter ``execution``: they show a bar unless the caller follows the progress.
 
     Calls of the main thread in a terminal or a notebook show it after a second. The environment variable ``TQDM_DISABLE=1`` turns
     all bars off.

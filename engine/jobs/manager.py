@@ -193,9 +193,9 @@ class Jobs:
     def take_first_frame_wait(self) -> float:
         """Longest time in seconds that the first frame of a map has waited since the last call of this method.
 
-        It counts from the request, apart from the processor time of the map itself: a visitor with costly maps makes nobody wait,
-        but whoever keeps the threads, the interpreter or the processors busy does, also another program. Maps none of whose calls
-        has begun count, too; large maps do not, as they wait until others release their memory.
+        It counts from the request, apart from the processor time of the map itself: a visitor with costly maps delays nobody,
+        but a load on the threads, the interpreter or the processors does, even one of another program. Maps none of whose calls
+        has begun also count; large maps do not, as they wait until others release their memory.
         """
         with self._lock:
             waiting = [run.waiting() for run in self._in_flight.values()]

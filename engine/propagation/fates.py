@@ -37,7 +37,7 @@ class Regularity(IntEnum):
     """Character of a bounded orbit.
 
     ``NOT_APPLICABLE``: it escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to the
-    threshold. ``NO_SIGN_OF_CHAOS``: neither until t_max, as a sticky orbit, too. ``NOT_JUDGED``: not computed yet.
+    threshold. ``NO_SIGN_OF_CHAOS``: neither until t_max; it may be a sticky orbit. ``NOT_JUDGED``: not computed yet.
     """
 
     NOT_APPLICABLE = 0

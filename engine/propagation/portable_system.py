@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from engine.exits.exit_tables import ExitTable, tabulate_exits
-from engine.exits.interior import hole_at_origin
+from engine.exits.interior import find_inner_radius
 from engine.integrator.jit.webassembly import constant_inputs, webassembly_module
 from engine.integrator.source.recurrence import LANES, TOLERANCE, generate_code
 from engine.integrator.source.series import ORDER, ROTATION
@@ -108,7 +108,7 @@ def _graph(form: ExpressionForm, well: Potential) -> dict[str, object]:
     """The operations of V, V_x and V_y, with their numbers in place."""
     graph, numbers = form.slopes_graph
     nodes = [node._asdict() | {"numbers": [numbers[place] for place in node.numbers]} for node in graph.nodes]
-    return {"graph": {"nodes": nodes, "results": list(graph.results), "hole": hole_at_origin(well)}}
+    return {"graph": {"nodes": nodes, "results": list(graph.results), "innerRadius": find_inner_radius(well)}}
 
 
 def make_portable_system(potential: Potential, highest: float) -> PortableSystem:

@@ -180,7 +180,7 @@ def _is_whole(axis: Axis) -> bool:
 
 
 def _edges(axis: Axis, energy: Energy, low: float, high: float) -> Range:
-    """The edges of a window along an axis of which the interior has this range."""
+    """The edges of a window along an axis on which the interior has this range."""
     if isinstance(axis, ParameterAxis):
         return axis.low, axis.high
     if axis in ANGLES:

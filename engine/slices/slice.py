@@ -29,7 +29,7 @@ class Slice:
     Parameters
     ----------
     abscissa, ordinate
-        The axes: two different coordinates, a `Direction`, or a `ParameterAxis`, of which there is at most one.
+        The axes: two different coordinates, a `Direction`, or a `ParameterAxis`, at most one.
     solved
         What the energy decides: a momentum, or with an angle the speed. None for the speed if an angle is used, px if py is,
         else py.
@@ -72,7 +72,7 @@ class Slice:
         values = {coordinate: checked_number(f"fixed {coordinate.key}", value) for coordinate, value in self.fixed}
         if self.decided is Coordinate.SPEED and not any(angle in used for angle in ANGLES):
             values[Coordinate.THETA] = 0.0
-        # Zeros are left out, so that equal slices compare equal; that of an angle tells which one is held.
+        # Zeros are left out, so that equal slices compare equal; the zero of an angle stays, to tell which angle is held.
         kept = sorted(((c, value) for c, value in values.items() if value or c in ANGLES), key=lambda pair: pair[0].key)
         object.__setattr__(self, "fixed", tuple(kept))
 

@@ -243,7 +243,7 @@ class Potential(Result):
         return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
 
     def check_same_motion(self, other: Potential, what: str) -> None:
-        """Raise ValueError if the equations of motion are not those of another potential, of which a result is."""
+        """Raise ValueError if the equations of motion differ from those of the potential of a result."""
         if (self.form, self.rotation) != (other.form, other.rotation):
             raise ValueError(f"potential={self.name}: must be that of the {what}, {other.name}")
 

@@ -55,7 +55,7 @@ _GROWTH_FIT_SAMPLES = 200
 class Verdict(StrEnum):
     """Conclusion about a bounded orbit; the last one is about an orbit that escapes.
 
-    ``NO_SIGN``: nothing that tells it from a regular orbit until the end of the integration, and no evidence of a torus.
+    ``NO_SIGN``: like a regular orbit until the end of the integration, but without evidence of a torus.
     ``UNDECIDED``: too short to tell, or in between.
     """
 

@@ -13,7 +13,7 @@ from engine.trajectories.trajectory import Orbit
 
 @checks_types(potential=Potential, orbit=Orbit)
 def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
-    """Deprecated: `Orbit.find_section_crossings`, for the orbit knows its potential.
+    """Deprecated: use `Orbit.find_section_crossings`; an orbit has its potential.
 
     Raises
     ------

@@ -73,7 +73,7 @@ class Orbit(OrbitResult):
         The `Potential`; None for an orbit that was not integrated here, which has no picture of its path.
     exits_unknown
         Why the exits over saddles are not known at its energy; empty if they are. Without them no fate is an exit, and
-        `Fate.BOUNDED` says only that the orbit has not ended otherwise by t_max.
+        `Fate.BOUNDED` only means that the orbit has no other outcome by t_max.
     """
 
     t: np.ndarray = field(metadata=TIME)

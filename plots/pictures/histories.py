@@ -83,7 +83,7 @@ def _visible_samples(edges: np.ndarray, end: int) -> np.ndarray:
 
 
 def _envelope(t: np.ndarray, values: np.ndarray, edges: np.ndarray, *, logarithmic: bool) -> tuple[np.ndarray, ...]:
-    """Time, minimum, maximum and mean in each interval; the first time is its begin, the last one its end."""
+    """Time, minimum, maximum and mean in each interval; the first time is the start, the last one the end."""
     if not edges.size:
         return (t[:0],) * 4
     ends = np.append(edges[1:], t.size)

@@ -104,7 +104,7 @@ def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]
     Parameters
     ----------
     columns
-        Columns of `map_columns`, of which the result is another one.
+        Columns of `map_columns`; the result is a further column.
     other
         Those of the other view; its window and the number of its pixels may differ.
     """

@@ -221,7 +221,7 @@ def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) 
     format
         Of the file.
     facts
-        What the metadata of the file say about the figure.
+        Description of the figure in the metadata of the file.
 
     Raises
     ------

@@ -59,7 +59,7 @@ def _at_point(potential: Potential) -> str:
 
 
 def _hamiltonian(potential: Potential) -> dict[str, list[str]]:
-    """H in momenta; in a rotating frame the integral in velocities says it all."""
+    """H in momenta; omitted in a rotating frame, where the Jacobi integral in velocities is enough."""
     if potential.rotation:
         return {}
     return {"Hamiltonian": [var("H") + op("=") + _energy(potential, _momentum_squared("x"), _momentum_squared("y"))]}

@@ -11,7 +11,7 @@
  * @typedef {object} Graph
  * @property {Node[]} nodes
  * @property {[number, number, number]} results  indices of V, V_x and V_y
- * @property {number} hole  radius of the disc around a centre at the origin; 0 for a well there
+ * @property {number} innerRadius  radius of the disc around a centre at the origin; 0 for a well there
  */
 
 /** Parts of a line to the origin, and points at the edge of a disc there. */
@@ -37,23 +37,23 @@ const OPERATIONS = {
 
 export class Expression {
   /** @param {Graph} graph */
-  constructor({nodes, results, hole}) {
+  constructor({nodes, results, innerRadius}) {
     this.#nodes = nodes
     this.#operations = nodes.map(({kind}) => OPERATIONS[kind])
     this.#results = results
     this.#values = new Float64Array(nodes.length)
     this.slopeX = 0
     this.slopeY = 0
-    this.#hole = hole
+    this.#innerRadius = innerRadius
     const edge = Array.from({length: EDGE_POINTS}, (_, k) => (2 * Math.PI * k) / EDGE_POINTS)
-    this.bottom = Math.min(...edge.map(angle => this.value(hole * Math.cos(angle), hole * Math.sin(angle))))
+    this.bottom = Math.min(...edge.map(angle => this.value(innerRadius * Math.cos(angle), innerRadius * Math.sin(angle))))
   }
 
   #nodes
   #operations
   #results
   #values
-  #hole
+  #innerRadius
   #x = 0
   #y = 0
 
@@ -86,7 +86,7 @@ export class Expression {
    * @param {number} level
    */
   staysBelow(level) {
-    const first = this.#hole > 0 ? this.#hole / Math.max(this.#hole, Math.hypot(this.#x, this.#y)) : 0
+    const first = this.#innerRadius > 0 ? this.#innerRadius / Math.max(this.#innerRadius, Math.hypot(this.#x, this.#y)) : 0
     const part = (1 - first) / PIECES
     for (let piece = 0; piece <= PIECES; piece++) {
       const t = first + piece * part

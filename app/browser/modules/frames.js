@@ -2,7 +2,7 @@
 /**
  * Pictures at the rate of the display: as many pixels as fit a frame while the view moves, more of them, and to a later time,
  * when it rests. Only the newest view is kept; the picture that is being computed while the view moves is finished first, so that
- * fast moves show pictures, too.
+ * fast moves show pictures as well.
  *
  * @typedef {import("./pixels.js").View} View
  * @typedef {import("./pixels.js").Pixels} Pixels
@@ -141,7 +141,7 @@ export class Frames {
   }
 }
 
-/** The pixels of a view, of which mirror images are computed once. */
+/** The pixels of a view; of two mirror images only one is computed. */
 export class Picture {
   /**
    * @param {import("./system.js").System} system

@@ -14,12 +14,12 @@ import {LEAST_SIDE} from "./frames.js"
 import {coversEnergy, windowAt} from "./system.js"
 
 /**
- * What the server says of the view.
+ * The view as the server describes it.
  *
  * @typedef {object} ServerView
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
- * @property {import("./system.js").Slice | null} slice  null for one that only the server knows
+ * @property {import("./system.js").Slice | null} slice  null for a slice that only the server can compute
  * @property {number} energy
  * @property {boolean} home  whether the window is the default one
  * @property {string[]} colours  of the outcomes, exits first

@@ -11,7 +11,7 @@ from bokeh.document import Document
 class TextPane(pn.pane.HTML):
     """HTML text; it may change while it is not on the page.
 
-    With each text, Panel states the stylesheets anew, by the document of the model. A model that is off the page has no
+    With each text, Panel sets the stylesheets again, from the document of the model. A model that is off the page has no
     document: it would get a stylesheet of Panel's content delivery network, which the page must not load.
     """
 

@@ -1,4 +1,4 @@
-"""Panel's widgets and rows as this page uses them: with accessible names, and the classes that the stylesheet knows."""
+"""Widgets and rows of Panel with accessible names and with the classes of the stylesheet."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hover text of a pixel, the same on all pictures: what its colours say, in words."""
+"""Hover text of a pixel, the same on all pictures, with the meaning of its colours."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _FATES = list(OUTCOMES.values())
 
 
 def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """A tool that says how the orbit under the mouse ends; the caller adds images of the codes of fates to its renderers.
+    """A tool that shows the outcome of the orbit under the mouse; the caller adds images of the codes of fates to its renderers.
 
     source
         Columns ``fate`` and ``ends`` of `plots.pictures.image_columns.map_columns`.

@@ -89,7 +89,7 @@ def _other_legend(palette: Palette, other: OtherView | None) -> str:
 def _difference_legend(contents: LegendContents) -> str:
     """The classes of pixels, or why they are not compared."""
     if contents.other is not None and contents.other.axes != contents.spec.plane.axis_symbols:
-        return "<span>Other axes: pixels are not compared.</span>"
+        return "<span>Other axes: pixels cannot be compared.</span>"
     return legend_items(contents.palette.difference_entries)
 
 

@@ -128,7 +128,7 @@ class MapsView:
 
     def begin_touch(self) -> None:
         """The page is used by touch: two fingers zoom."""
-        # The wheel's tool would answer to two fingers, too.
+        # The wheel's tool would also respond to two fingers.
         others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
         self._toolbar.update(tools=others, active_scroll=None)
 

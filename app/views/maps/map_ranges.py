@@ -81,7 +81,7 @@ class MapRanges:
         """Set the map of the whole interior, and with it the smallest window, where zooming ends."""
         self._home = home.find_window()
         pixels = zip(finest_pixel(home, self._home), home.resolution, strict=True)
-        # Twice the least distance of pixels: the edges are rounded, too.
+        # Twice the least distance of pixels, because the edges are rounded as well.
         self.x.min_interval, self.ordinate.min_interval = (2.0 * finest * count for finest, count in pixels)
 
     @property

@@ -87,7 +87,7 @@ class Overlays:
                 "width": [stroke.width for _, stroke in strokes],
                 "alpha": [stroke.alpha for _, stroke in strokes],
                 "halo_width": [stroke.halo_width for _, stroke in strokes],
-                # The browser draws lines of no width, too.
+                # The browser also draws lines of width 0.
                 "halo_alpha": [float(stroke.halo_width > 0.0) for _, stroke in strokes],
             }
         elif self.manifolds.data["xs"]:

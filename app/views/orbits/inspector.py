@@ -29,7 +29,7 @@ class Inspector:
         return self._grid
 
     def follow(self, starts: int, orbits: int) -> None:
-        """Show what a number of starts needs, of which some may have no orbit."""
+        """Show the panes for a number of starts, some of which may have no orbit."""
         if starts >= 1 and not self._head:
             self._head, self._details = [self._controls.head(self._playback.layout())], self._controls.details()
         if orbits >= 1 and not self._plotted:

@@ -41,12 +41,12 @@ class OrbitActions:
 
 
 class OrbitControls:
-    """Number boxes for a start, the list of orbits, and what is known of the chosen one."""
+    """Number boxes for a start, the list of orbits, and the results of the chosen one."""
 
     def __init__(self, actions: OrbitActions) -> None:
         self._actions = actions
         self._shown: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
-        # Text boxes, as number boxes do not tell when Enter is pressed.
+        # These are text boxes, because number boxes do not report Enter.
         self.x = pn.widgets.TextInput(label="x", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
         self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
         self.button = button("Integrate", self._submit, kind="primary", align="end")
@@ -109,7 +109,7 @@ class OrbitControls:
         self.note.object = escape(sentence)
 
     def end_message(self, *, has_orbits: bool) -> None:
-        """Remove a message about what is shown no longer."""
+        """Remove a message about an orbit that is no longer shown."""
         self.note.object = "" if has_orbits else HINT
 
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:

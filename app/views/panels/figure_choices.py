@@ -40,7 +40,7 @@ class ShownResults:
 
 
 def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
-    """The figures by title; they show what is shown now, however the page changes afterwards."""
+    """Return the figures by title; they keep the results of this moment, even if the page changes afterwards."""
     choices: dict[str, Make] = {}
     drawings = [one.drawing for one in shown.orbits if one.drawing is not None]
     if shown.frame is not None:

@@ -100,7 +100,7 @@ class FigureForm:
         self._begin(FigureFormat.PNG, lambda name, content: self.copy.send(content))
 
     def _begin(self, format: FigureFormat, send: Send) -> None:
-        """Make the figure of the moment of the click and send it, or say why not."""
+        """Make the figure from the results at the moment of the click, and send it or show an error."""
         try:
             name, make = self.figure()
             style = self.style
@@ -111,7 +111,7 @@ class FigureForm:
             pn.state.execute(partial(self.make, partial(make, format, style), partial(send, self._name(f"{name}.{format}"))))
 
     async def make(self, make: Callable[[], bytes], send: Callable[[bytes | None], None]) -> None:
-        """Make a file in a thread, so that the event loop goes on, and send it, or None and say why not."""
+        """Make a file in a thread, so that the event loop continues; send it, or send None and show an error."""
         self._say(_MAKING)
         try:
             content = await asyncio.to_thread(make)

@@ -47,7 +47,7 @@ def trace_pieces(
     execution: Execution = DEFAULT_EXECUTION,
     tolerance: float = TOLERANCE,
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """As `trace_orbit` from t = 0 to `t_end`, exits ignored."""
+    """`trace_orbit` from t = 0 to `t_end`, without exits."""
     # No step is past these gates.
     gates = np.full((channels, 3), np.inf)
     gates[:, :2] = 0.0

@@ -89,8 +89,8 @@ def _expression_is_below(generated, x, y, level):
 
     The line begins at the origin, or at the edge of the disc around a centre at the origin.
     """
-    _, _, hole = generated
-    first = hole / max(hole, np.sqrt(x * x + y * y)) if hole > 0.0 else 0.0
+    _, _, inner_radius = generated
+    first = inner_radius / max(inner_radius, np.sqrt(x * x + y * y)) if inner_radius > 0.0 else 0.0
     part = (1.0 - first) / _PIECES
     value, slope_x, slope_y = _expression_slopes(generated, first * x, first * y)
     end = value + (slope_x * x + slope_y * y) * part / 3.0
@@ -196,13 +196,13 @@ def find_outside_polynomial(powers, coefficients, bernstein, x, y, energy, curve
 
 
 @kernel
-def find_outside(potential_slopes, coefficients, x, y, energy, curves, curve_row, hole):
-    """`_find_outside` for an expression; hole: radius of the disc around a centre at the origin, 0.0 for a well there."""
-    generated = (potential_slopes, coefficients, hole)
-    # A path that is below all of the edge of the disc does not lead to it any more.
+def find_outside(potential_slopes, coefficients, x, y, energy, curves, curve_row, inner_radius):
+    """`_find_outside` for an expression; inner_radius: radius of the disc around a centre at the origin, 0.0 for a well there."""
+    generated = (potential_slopes, coefficients, inner_radius)
+    # The lowest value of V on the edge of the disc: a path below it cannot lead to the disc.
     bottom = np.inf
     for k in range(_EDGE_POINTS):
         angle = 2.0 * np.pi * k / _EDGE_POINTS
-        value, _, _ = _expression_slopes(generated, hole * np.cos(angle), hole * np.sin(angle))
+        value, _, _ = _expression_slopes(generated, inner_radius * np.cos(angle), inner_radius * np.sin(angle))
         bottom = min(bottom, value)
     return _find_outside(_expression_slopes, _expression_is_below, generated, x, y, energy, curves, curve_row, bottom)

@@ -40,7 +40,7 @@ NO_TRACE = np.empty((0, 5))
 """The argument `trace` of `propagate` for orbits whose steps are not recorded."""
 
 GOES_ON = -1
-"""In the buffer of steps, instead of a channel: the orbit does not end in the step."""
+"""Stands for a channel in the buffer of steps: the orbit does not end in the step."""
 
 
 class Exits(NamedTuple):

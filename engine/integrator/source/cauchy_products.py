@@ -48,7 +48,7 @@ def _by_degree(monomial: Monomial) -> tuple[int, Monomial]:
 
 
 def _cost(product: Product) -> float:
-    """In units of a full product: a square has half the terms and some extra work."""
+    """The cost in units of a full product: a square has half the terms and some extra work."""
     return 0.55 if product.left == product.right else 1.0
 
 

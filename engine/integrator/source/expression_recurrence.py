@@ -57,22 +57,22 @@ class ExpressionStructure(NamedTuple):
 
     @property
     def can_hide(self) -> bool:
-        """No bound on the frequency of y is known."""
+        """Return True: no bound on the frequency of y is known."""
         return True
 
     @property
     def has_many_scales(self) -> bool:
-        """As near singularities."""
+        """Return True: expressions have many scales near singularities."""
         return True
 
     @property
     def largest_norm(self) -> float:
-        """A step of 1e-12, as near centres."""
+        """Return the norm of a step of 1e-12, as is needed near centres."""
         return _LARGEST_NORM
 
     @property
     def carries_remainders(self) -> bool:
-        """Around centres."""
+        """Return whether there are centres, around which rounding errors of x and y matter."""
         return self.setting.discs > 0
 
     def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:

@@ -71,17 +71,17 @@ class PolynomialStructure(NamedTuple):
 
     @property
     def has_many_scales(self) -> bool:
-        """The well sets the scale."""
+        """Return False: the well sets the only scale."""
         return False
 
     @property
     def largest_norm(self) -> float:
-        """A step of 3e-7."""
+        """Return the norm of a step of 3e-7."""
         return _LARGEST_NORM
 
     @property
     def carries_remainders(self) -> bool:
-        """V of a polynomial is smooth everywhere."""
+        """Return False: a polynomial is smooth everywhere."""
         return False
 
     def orbit(self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
@@ -91,7 +91,7 @@ class PolynomialStructure(NamedTuple):
         return series[X], series[Y]
 
     def hessian(self, program: StraightLine) -> Hessian:
-        """Each entry from the products for the variational equations, too."""
+        """Return each entry, from the products for the equations of motion and the variational equations."""
         products = _plan(self.monomials, _GRADIENT_AND_HESSIAN)
         scales = find_scales(products)
         series = _recurrence(program, self.monomials, products, self.tangent_difference, self.setting.rotates)

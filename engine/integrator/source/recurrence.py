@@ -175,9 +175,9 @@ def _horner(series: Series, h: Value) -> tuple[Value, Value]:
 
 
 def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
-    """As `_horner`, and with a remainder, which is added to the first coefficient, the remainder of the value.
+    """Evaluate as `_horner`, with a remainder that is added to the first coefficient; also return the remainder of the value.
 
-    It is what the last sum drops, found without error (Knuth's TwoSum).
+    The latter is the rounding error of the last sum, which is found exactly (Knuth's TwoSum).
     """
     if remainder is None:
         return *_horner(series, h), []

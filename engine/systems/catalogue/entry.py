@@ -1,4 +1,4 @@
-"""What the catalogue says of a potential."""
+"""The entry of a potential in the catalogue."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class Derivatives:
     curvatures
         V_xx, V_xy and V_yy.
     bases
-        What is divided by, or of which a root or a logarithm is taken.
+        Divisors and arguments of roots and logarithms.
     """
 
     slopes: Program
@@ -58,7 +58,7 @@ class Derivatives:
         oblique = [linear_combination([(b, along_x), (-a, along_y)]) for a, b in oblique_gradients(expression)]
         first, second, *others = [along_x, *oblique, along_y]
         if has_central_part(expression):
-            # On circles around a body at the origin the derivative is small, too.
+            # On circles around a body at the origin the derivative is small as well.
             others.append(linear_combination([(1.0, expand(X, along_y)), (-1.0, expand(Y, along_x))]))
         return cls(
             make_graph((expression, first, second, *others)),

@@ -123,7 +123,7 @@ def _find_within(derivatives: Derivatives, near: np.ndarray, nearest: float, fac
 
 
 def _are_near(points: np.ndarray, others: np.ndarray, distance: float | np.ndarray) -> np.ndarray:
-    """(n,) whether points (n, 2) are within a distance of one of others (m, 2)."""
+    """(n,) whether points (n, 2) are within a distance of any of the points (m, 2)."""
     near: np.ndarray = np.hypot(*np.moveaxis(points[:, None] - others, -1, 0)).min(axis=1, initial=np.inf) <= distance
     return near
 

@@ -25,7 +25,7 @@ def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np
     kind
         What is found, for the name of the file.
     form
-        That on which the result depends; its `repr` tells it from others.
+        The object on which the result depends; its `repr` identifies it.
     find
         Finds the array, of numbers or flags. Its errors are raised and not stored.
     """

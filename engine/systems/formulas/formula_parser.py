@@ -144,7 +144,7 @@ def formula_letters(text: str) -> tuple[str, ...]:
 
 
 def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
-    """The value of a number of a clause; FormulaError if it is none."""
+    """The value of a number in a clause; FormulaError if the text is not a number."""
     try:
         number = constant_of(_Parser(part.text, values).parse())
     except FormulaError as error:

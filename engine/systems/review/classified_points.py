@@ -54,7 +54,7 @@ def _channel(potential: Potential, x: float, y: float) -> int:
 
 
 def point_at_origin(points: tuple[CriticalPoint, ...]) -> CriticalPoint | None:
-    """The critical point that is the origin; None if it is none."""
+    """The critical point at the origin; None if there is none."""
     return next((point for point in points if point.x == point.y == 0.0), None)
 
 

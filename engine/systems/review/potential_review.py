@@ -89,7 +89,7 @@ class PotentialReview(Result):
 
 @dataclass(frozen=True, repr=False)
 class SystemReview(PotentialReview):
-    """The review of a system, with its formula as users know it and the energies of the catalogue.
+    """The review of a system, with the formula of its definition and the energies of the catalogue.
 
     Attributes
     ----------

@@ -81,7 +81,7 @@ def test_the_share_of_other_ends_is_that_of_two_maps(session: Session, frame: Es
 def test_a_view_of_other_axes_is_shown_but_not_compared(session: Session, frame: EscapeMap) -> None:
     session.state.compared = ComparedView(System("I"), Plane.X_Y, 0.2)
     session.show(frame)
-    session.wait_for("pixels are not compared")
+    session.wait_for("pixels cannot be compared")
     assert session.maps.compared.source.data["fate"][0].shape == (56, 56)
     assert session.maps.source.data["difference"][0].size == 1
 
