@@ -101,21 +101,9 @@ def test_manifolds_csv_has_full_precision(run: Run, tmp_path: Path) -> None:
 
 
 def test_png_equals_the_download_of_the_page(run: Run, tmp_path: Path) -> None:
-    options = (
-        "--picture",
-        "times",
-        "--picture",
-        "characters",
-        "--width",
-        9,
-        "--dpi",
-        100,
-        "--palette",
-        "safe",
-        "--format",
-        "png",
-    )
-    assert run("map", *BOUNDED, *options, "--output", tmp_path / "map")[0] == 0
+    pictures = ("--picture", "times", "--picture", "characters", "--format", "png")
+    style = ("--width", 9, "--dpi", 100, "--palette", "safe")
+    assert run("map", *BOUNDED, *pictures, *style, "--output", tmp_path / "map")[0] == 0
     frame = compute_map(BOUNDED_SPEC)
     analyses = MapAnalyses(regularity=compute_regularity(frame))
     wanted = map_figure_bytes(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -80,6 +81,16 @@ def test_measures_json_equals_the_engine_result(run: Run) -> None:
     assert laws.exponential is not None
     assert result["escape_laws"]["exponential"]["rate"] == laws.exponential.rate
     assert "uncertainty_exponent" not in result
+
+
+def test_table_of_curves_is_printed_whole(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run("curves", "III", *SWEEP[1:], "--output", tmp_path / "curves.csv")
+    head, _, *rows = out.splitlines()
+    columns = re.split(r" {2,}", head.strip())
+    assert code == 0
+    assert "…" not in out
+    assert {"h", "share bounded", "share channel 4", "mean escape time", "s bb", "decay rate"} <= set(columns)
+    assert [len(re.split(r" {2,}", row.strip())) for row in rows[:3]] == [len(columns)] * 3
 
 
 def test_curves_equal_the_engine_result_as_netcdf_csv_and_json(run: Run, tmp_path: Path) -> None:

@@ -48,18 +48,16 @@ def test_a_store_can_hold_measures_alone(run: Run, tmp_path: Path) -> None:
 
 
 def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    compute_sweep = engine.compute_sweep
-
     def interrupted(spec: SweepSpec, store: Path, *, execution: Execution) -> Sweep:
         def stop_later(share: float) -> None:
             if share >= 1 / 3 and not execution.is_cancelled:
                 signal.raise_signal(signal.SIGINT)
 
-        return compute_sweep(spec, store, execution=replace(execution, on_progress=stop_later))
+        return engine.compute_sweep(spec, store, execution=replace(execution, on_progress=stop_later))
 
     store = tmp_path / "store.zarr"
     with monkeypatch.context() as patch:
-        patch.setattr(engine, "compute_sweep", interrupted)
+        patch.setattr("cli.commands.sweep.compute_sweep", interrupted)
         code, out, err = run(*SWEEP, "--store", store)
     assert (code, out) == (INTERRUPTED, "")
     assert f"are kept in {store}" in err
