@@ -152,7 +152,19 @@ def read_resolution(text: str) -> tuple[int, int]:
 def space_values(
     low: float | None, high: float | None, count: int | None, listed: Sequence[float] | None = None
 ) -> tuple[float, ...]:
-    """Return the values of a sweep, either evenly spaced including both ends or as listed; ValueError otherwise."""
+    """Return the values of a sweep, either evenly spaced including both ends or as listed; ValueError otherwise.
+
+    Parameters
+    ----------
+    low
+        Lowest h, or value of the parameter.
+    high
+        Highest h, or value of the parameter.
+    count
+        Number of evenly spaced values.
+    listed
+        An energy; repeat for several, instead of --low, --high and --count.
+    """
     span = (low, high, count)
     if listed and not any(one is not None for one in span):
         return tuple(listed)

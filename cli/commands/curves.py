@@ -38,9 +38,9 @@ def run(
     case: Case,
     system: System,
     potential: Potential,
-    low: float,
-    high: float,
-    count: int,
+    low: Annotated[float, Of(space_values)],
+    high: Annotated[float, Of(space_values)],
+    count: Annotated[int, Of(space_values)],
     against: str = "h",
     energy: Annotated[float | None, Of(SweepSpec)],
     refine: Annotated[int, Of(SweepSpec)],
@@ -57,12 +57,6 @@ def run(
 
     Parameters
     ----------
-    low
-        Lowest h, or value of the parameter.
-    high
-        Highest h, or value of the parameter.
-    count
-        Number of evenly spaced values.
     against
         h, or a parameter: omega_1, omega_2, epsilon or a letter of the formula.
     exponent

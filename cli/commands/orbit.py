@@ -18,6 +18,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from cli.arguments import choose_energy
 from cli.execution import Place
 from cli.option_marks import Of
 from cli.options import with_options
@@ -50,7 +51,7 @@ def run(
     *,
     potential: Potential,
     plane: Slice,
-    energy: float | None = None,
+    energy: Annotated[float | None, Of(choose_energy)],
     start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
     state: Annotated[State | None, typer.Option(metavar="X Y PX PY")] = None,
     t_max: Annotated[float, Of(integrate_orbit)],
@@ -64,8 +65,6 @@ def run(
 
     Parameters
     ----------
-    energy
-        h, dimensionless.
     start
         Start on the plane, at --energy.
     state

@@ -31,10 +31,10 @@ def run(
     *,
     potential: Potential,
     store: Annotated[Path, typer.Option(metavar="FOLDER")],
-    low: float | None = None,
-    high: float | None = None,
-    count: int | None = None,
-    energy: list[float] | None = None,
+    low: Annotated[float | None, Of(space_values)] = None,
+    high: Annotated[float | None, Of(space_values)] = None,
+    count: Annotated[int | None, Of(space_values)] = None,
+    energy: Annotated[list[float] | None, Of(space_values, "listed")],
     plane: Slice,
     window: Annotated[GivenWindow | None, Of(MapSpec)],
     resolution: Annotated[tuple[int, int], Of(SweepSpec)],
@@ -51,14 +51,6 @@ def run(
     ----------
     store
         Zarr store: a new one, or one of the same sweep to resume.
-    low
-        Lowest h.
-    high
-        Highest h.
-    count
-        Number of evenly spaced energies.
-    energy
-        An energy; repeat for several, instead of --low, --high and --count.
     plan
         Only estimate the cost.
     """

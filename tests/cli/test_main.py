@@ -5,7 +5,6 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -20,8 +19,7 @@ from engine import CASES, EscapeMap
 from engine.maps.compute import run_map
 from engine.maps.spec import DEFAULT_RESOLUTION
 from plots.printed.figure_style import FigureStyle
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 COMMANDS = ("map", "orbit", "ensemble", "lyapunov", "measures", "curves", "sweep", "potential", "reproduce", "serve")
 MAP = ("map", "I", "--energy", 0.19, "--resolution", 9, "--t-max", 100)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 
@@ -31,9 +30,9 @@ from plots.pictures.map_analyses import MapAnalyses
 from plots.pictures.palette import COLOUR_BLIND_SAFE
 from plots.printed.figure_files import map_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
+from tests.cli.conftest import Run
 
 C = Coordinate
-Run = Callable[..., tuple[int, str, str]]
 
 REQUESTS = {
     "window": (

@@ -6,7 +6,6 @@ import csv
 import json
 import math
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -29,8 +28,7 @@ from engine import (
 )
 from engine.measures.labels import exit_labels
 from engine.sweeps.measures import QUICK_CURVES
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 MAP = ("II", "--energy", 0.2, "--resolution", 25, "--t-max", 100)
 SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.2, (25, 25), t_max=100.0)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from cli.main import INVALID_REQUEST
 from cli.output_files import name_files, write_files
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 COMMANDS = {
     "map": ("map", "I", "--energy", 0.13, "--resolution", 9, "--t-max", 100, "--picture", "basins"),

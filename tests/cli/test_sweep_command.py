@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,8 +14,7 @@ import xarray as xr
 import engine
 from cli.main import INTERRUPTED, INVALID_REQUEST
 from engine import CASES, Execution, Plane, Sweep, SweepSpec
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 SWEEP = ("sweep", "I", "--low", 0.13, "--high", 0.2, "--count", 3, "--resolution", "9x7", "--t-max", 50)
 SPEC = SweepSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.13, 0.2, 3).tolist()), (9, 7), t_max=50.0)
