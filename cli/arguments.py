@@ -14,10 +14,10 @@ import numpy as np
 import typer
 
 from cli.option_marks import Of
-from engine import POTENTIALS, Potential, Slice, System, review_potential
+from engine import POTENTIALS, Plane, Potential, Slice, System, review_potential
 from engine.foundations.validation import checked_count
 from engine.slices.energies import Energy
-from engine.slices.slice_text import read_slice
+from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
 from engine.sweeps.spec import MOST_VALUES
 from engine.systems.catalogue.table import CATALOGUE
@@ -26,6 +26,12 @@ from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 from plots.pictures.palette import PALETTES, Palette
 from plots.texts.accepted_potentials import refusal
+
+PLANE_HELP = (
+    f"Slice of starts: {', '.join(plane.key for plane in Plane)}, or two axes such as x,theta: {', '.join(AXIS_NAMES)}, or a "
+    "parameter with its range, x,epsilon=0.5:2; theta is the angle of the velocity, and beta its angle from the radius."
+)
+PALETTE_HELP = f"Colours: {', '.join(f'{key} ({palette.name})' for key, palette in PALETTES.items())}."
 
 
 def find_system(case: Case) -> System:
@@ -83,7 +89,7 @@ def file_name_part(case: str) -> str:
 
 def find_plane(
     system: System,
-    plane: Annotated[str | None, typer.Option("--plane", "--axes", metavar="AXES")] = "x_px",
+    plane: Annotated[str | None, typer.Option("--plane", "--axes", metavar="AXES", help=PLANE_HELP)] = Plane.X_PX.key,
     fix: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE")] = None,
 ) -> Slice | None:
     """Return the slice of some axes, whose parameters are those of a system; None without axes.
@@ -93,8 +99,7 @@ def find_plane(
     system
         The system.
     plane
-        Slice of starts: x_px, x_y, x_h, y_py, tangential, or two axes such as x,theta: x, y, px, py, theta (angle of the
-        velocity), beta (its angle from the radius), h, or a parameter with its range, x,epsilon=0.5:2.
+        Key of a plane, or two axes.
     fix
         Value of another coordinate, 0 by default, or py=- for the momentum that the energy decides, and its sign; repeat for
         several.
@@ -127,14 +132,8 @@ def choose_energy(
     return energy
 
 
-def find_palette(palette: str = "paper") -> Palette:
-    """Return the palette of a name; ValueError if there is none.
-
-    Parameters
-    ----------
-    palette
-        Colours: paper, or safe for the colour-blind.
-    """
+def find_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = next(iter(PALETTES))) -> Palette:
+    """Return the palette of a name; ValueError if there is none."""
     if palette not in PALETTES:
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
     return PALETTES[palette]

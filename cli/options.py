@@ -75,7 +75,7 @@ def _make_option(make: Callable[..., Any], parameter: inspect.Parameter) -> insp
         default = inspect.signature(of.owner).parameters[source].default
     # Typer's own class of options or arguments, with what only the command line has, such as a name for the value.
     info = copy(next((mark for mark in marks if isinstance(mark, ParameterInfo)), typer.Option()))
-    info.help = _describe(of.owner, source)
+    info.help = info.help or _describe(of.owner, source)
     # Typer keeps the first name that is given as the default.
     if isinstance(info, OptionInfo) and info.default is ...:
         info.param_decls = _name(parameter.name, default)

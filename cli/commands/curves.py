@@ -16,6 +16,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
+import typer
+
 from cli.arguments import Case, file_name_part, space_values
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import Of
@@ -24,9 +26,12 @@ from cli.output_files import Content, Stem, name_files, reserve_output, write_fi
 from cli.printing import AsJson, Table, print_result
 from engine import ParameterAxis, Potential, Slice, Sweep, SweepSpec, System, compute_sweep
 from engine.sweeps.measures import CURVES, QUICK_CURVES
+from engine.systems.parameters import WELL_PARAMETERS
 from plots.printed.figure_files import curves_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.texts.exports import curve_columns, curves_csv, dataset_bytes
+
+AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 
 # Columns that are in files and JSON only.
 _ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
@@ -41,7 +46,7 @@ def run(
     low: Annotated[float, Of(space_values)],
     high: Annotated[float, Of(space_values)],
     count: Annotated[int, Of(space_values)],
-    against: str = "h",
+    against: Annotated[str, typer.Option(help=AGAINST_HELP)] = "h",
     energy: Annotated[float | None, Of(SweepSpec)],
     refine: Annotated[int, Of(SweepSpec)],
     plane: Slice,
@@ -57,8 +62,6 @@ def run(
 
     Parameters
     ----------
-    against
-        h, or a parameter: omega_1, omega_2, epsilon or a letter of the formula.
     exponent
         Whether to compute the uncertainty exponent, which takes longest.
     """

@@ -45,6 +45,8 @@ from plots.texts.exports import file_stem, netcdf_bytes
 FIRST_PICTURES = ("basins", "times", "crossings")
 """Pictures drawn by default; those of requested analyses follow."""
 
+PICTURE_HELP = f"Picture to draw: {', '.join(TITLES)}; repeat for several. By default {', '.join(FIRST_PICTURES)}."
+
 
 class Format(StrEnum):
     """Output format, by file ending."""
@@ -79,7 +81,7 @@ def run(
     spec: MapSpec,
     analyses: AnalysisOptions,
     count_outside: bool = False,
-    picture: list[str] | None = None,
+    picture: Annotated[list[str] | None, typer.Option(help=PICTURE_HELP)] = None,
     palette: Palette,
     style: FigureStyle,
     formats: Annotated[list[Format] | None, typer.Option("--format")] = None,
@@ -93,8 +95,6 @@ def run(
     ----------
     count_outside
         Count starts beyond an exit as escaped.
-    picture
-        Picture to draw: curves, basins, times, crossings, characters or origins; repeat for several.
     formats
         Output format, by default that of --output, or else nc and png; repeat for several.
     """
