@@ -1,4 +1,4 @@
 """Command line: everything that the engine computes, for scripts and batch queues.
 
-Each command imports the engine when it runs: the import takes seconds, which ``--help`` does not need.
+A module of `commands` is imported when its command runs: the import of the engine takes a second.
 """

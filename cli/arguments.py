@@ -1,81 +1,128 @@
-"""Conversion of command-line arguments to engine requests."""
+"""Words of the command line as values of requests: the system, the slice, the energy, the start and others.
+
+A function that takes several words is in `READERS`: its parameters are options of each command with a parameter of its type.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import reprlib
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
-from cli.options import Edges
-from cli.potential_argument import find_potential, find_system
-from engine import MapSpec, Slice
-from engine.slices.slice_text import read_slice
+from cli.option_marks import Of
+from engine import POTENTIALS, Plane, Potential, Slice, System, review_potential
+from engine.foundations.validation import checked_count
+from engine.slices.energies import Energy
+from engine.slices.slice_text import AXIS_NAMES, read_slice
+from engine.slices.window import GivenWindow
+from engine.sweeps.spec import MOST_VALUES
+from engine.systems.catalogue.table import CATALOGUE
+from engine.systems.formulas.formula_parser import formula_letters
+from engine.systems.parameters import WELL_PARAMETERS
+from engine.systems.system import TYPED
 from plots.pictures.palette import PALETTES, Palette
+from plots.texts.accepted_potentials import refusal
+
+PLANE_HELP = (
+    f"Slice of starts: {', '.join(plane.key for plane in Plane)}, or two axes such as x,theta: {', '.join(AXIS_NAMES)}, or a "
+    "parameter with its range, x,epsilon=0.5:2; theta is the angle of the velocity, and beta its angle from the radius."
+)
+PALETTE_HELP = f"Colours: {', '.join(f'{key} ({palette.name})' for key, palette in PALETTES.items())}."
 
 
-def find_palette(name: str) -> Palette:
-    """Return the palette of this name; ValueError if there is none."""
-    if name not in PALETTES:
-        raise ValueError(f"palette={name!r}: must be one of {', '.join(PALETTES)}")
-    return PALETTES[name]
+def find_system(case: Case) -> System:
+    """Return the system of a case, which is not reviewed; ValueError if there is none.
+
+    Parameters
+    ----------
+    case
+        Potential: I, II or III as in Zotos (2014), another name that `potential` lists, or a formula in x and y; optionally with
+        parameters, as in III@omega_1=1.1,epsilon=0.5; letters of a formula are parameters, too: 0.5(x^2+y^2)-a x y^2@a=1.5.
+    """
+    name, _, parameters = case.partition("@")
+    chosen = _read_parameters(case, name, parameters) if parameters else {}
+    if name in POTENTIALS:
+        return System(name, "", chosen)
+    system = System(TYPED, name, chosen)
+    try:
+        _ = system.potential
+    except ValueError as error:
+        raise ValueError(
+            f"case={reprlib.repr(case)}: must be one of {', '.join(POTENTIALS)}, or a formula in x and y ({error})"
+        ) from None
+    return system
 
 
-def find_plane(axes: str, fix: Sequence[str] | None, case: str) -> Slice:
-    """Return the slice of these axes, whose parameters are those of a case."""
-    return read_slice(axes, ",".join(fix or ()), find_system(case))
+Case = Annotated[str, typer.Argument(metavar="CASE"), Of(find_system)]
+"""Type of the argument of commands for one system."""
 
 
-def read_resolution(text: str) -> tuple[int, int]:
-    """Return (columns, rows) from ``N`` or ``NxM``; ValueError for anything else."""
-    match = re.fullmatch(r"(\d{1,9})(?:[x×](\d{1,9}))?", text)
-    if match is None:
-        raise ValueError(f"resolution={text!r}: must be N or NxM, whole numbers of columns and rows")
-    columns, rows = match.groups()
-    return int(columns), int(rows or columns)
+def find_potential(case: Case) -> Potential:
+    """Return the potential of ``NAME`` or of a formula in x and y, with optional parameters ``@omega_1=1.2,a=0.8``.
+
+    Parameters
+    ----------
+    case
+        Name or formula, as in `find_system`.
+
+    Raises
+    ------
+    ValueError
+        If it is neither a name nor a formula, a parameter is invalid, or the potential is not supported.
+    """
+    potential = find_system(case).potential
+    problem = refusal(review_potential(potential))
+    if problem is not None:
+        raise ValueError(f"case={reprlib.repr(case)}: {problem}")
+    return potential
 
 
-def space_energies(
-    low: float | None, high: float | None, count: int | None, listed: Sequence[float] | None = None
-) -> tuple[float, ...]:
-    """Return the energies of a sweep, either evenly spaced including both ends or as listed; ValueError otherwise."""
-    span = (low, high, count)
-    if listed and not any(one is not None for one in span):
-        return tuple(listed)
-    if listed or low is None or high is None or count is None:
-        raise ValueError("energies: give --low, --high and --count, or repeat --energy")
-    if not (low < high or (low == high and count == 1)):
-        raise ValueError(f"low={low}, high={high}: the lower energy must be below the higher one")
-    return tuple(np.linspace(low, high, count).tolist())
+def file_name_part(case: str) -> str:
+    """Return the part of file names that identifies a potential."""
+    name, _, parameters = case.partition("@")
+    return re.sub(r"[^A-Za-z0-9_.+-]", "_", "-".join([name if name in POTENTIALS else TYPED, *filter(None, [parameters])]))
 
 
-def build_map_spec(
-    case: str,
-    axes: str,
-    fix: Sequence[str] | None,
-    energy: float | None,
-    energies: tuple[float, float] | None,
-    window: Edges | None,
-    resolution: str,
-    t_max: float,
-    use_evidence: bool,
-    backward: bool = False,
-) -> MapSpec:
-    """Return the request for a map; ValueError names a missing, superfluous or invalid option."""
-    potential, plane = find_potential(case), find_plane(axes, fix, case)
-    return MapSpec(
-        potential,
-        plane,
-        _choose_energy(plane, energy, energies),
-        read_resolution(resolution),
-        window,
-        t_max,
-        use_evidence,
-        backward,
-    )
+def find_plane(
+    system: System,
+    plane: Annotated[str | None, typer.Option("--plane", "--axes", metavar="AXES", help=PLANE_HELP)] = Plane.X_PX.key,
+    fix: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE")] = None,
+) -> Slice | None:
+    """Return the slice of some axes, whose parameters are those of a system; None without axes.
+
+    Parameters
+    ----------
+    system
+        The system.
+    plane
+        Key of a plane, or two axes.
+    fix
+        Value of another coordinate, 0 by default, or py=- for the momentum that the energy decides, and its sign; repeat for
+        several.
+    """
+    return None if plane is None else read_slice(plane, ",".join(fix or ()), system)
 
 
-def _choose_energy(plane: Slice, energy: float | None, energies: tuple[float, float] | None) -> float | tuple[float, float]:
+def choose_energy(
+    plane: Slice,
+    energy: float | None = None,
+    energies: Annotated[tuple[float, float] | None, typer.Option(metavar="LOW HIGH")] = None,
+) -> Energy:
+    """Return the energy of a map, or the range of an axis h; ValueError if the option for the slice is missing.
+
+    Parameters
+    ----------
+    plane
+        The slice.
+    energy
+        h, dimensionless.
+    energies
+        Range of h, for slices with an axis h.
+    """
     if plane.energy_axis is not None:
         if energies is None or energy is not None:
             raise ValueError(f"energies: the plane {plane.key} needs --energies LOW HIGH, not --energy")
@@ -85,31 +132,83 @@ def _choose_energy(plane: Slice, energy: float | None, energies: tuple[float, fl
     return energy
 
 
-def find_start(
-    case: str,
-    axes: str,
-    fix: Sequence[str] | None,
-    energy: float | None,
-    start: tuple[float, float] | None,
-    state: tuple[float, float, float, float] | None,
-) -> tuple[float, float, float, float]:
-    """Return x, y, px, py of a start, given as a state or as a point of a plane; ValueError if it is forbidden."""
-    if (start is None) == (state is None):
-        raise ValueError("start: give either --start X ORDINATE on a plane, or --state X Y PX PY")
-    if state is not None:
-        if energy is not None:
-            raise ValueError("energy: --state already determines it; leave --energy out")
-        return state
-    assert start is not None
-    chosen = find_plane(axes, fix, case)
-    chosen.check_one_potential("start")
-    if chosen.energy_axis is not None and energy is not None:
-        raise ValueError(f"energy: on the plane {chosen.key} it is a coordinate, so leave --energy out")
-    if chosen.energy_axis is None and energy is None:
-        raise ValueError(f"energy: a start on the plane {chosen.key} needs --energy H")
-    x, ordinate = np.array(start)[:, None]
-    found = chosen.states(find_potential(case), energy, x, ordinate)[0]
-    if np.isnan(found).any():
-        raise ValueError(f"start={start}: forbidden, an orbit there would have negative kinetic energy")
-    first, second, third, fourth = found.tolist()
-    return first, second, third, fourth
+def find_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = next(iter(PALETTES))) -> Palette:
+    """Return the palette of a name; ValueError if there is none."""
+    if palette not in PALETTES:
+        raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
+    return PALETTES[palette]
+
+
+def read_resolution(text: str) -> tuple[int, int]:
+    """Return (columns, rows) from ``N`` or ``NxM``."""
+    match = re.fullmatch(r"(\d{1,9})(?:[x×](\d{1,9}))?", text)
+    if match is None:
+        raise typer.BadParameter(f"{text!r} must be N or NxM, whole numbers of columns and rows")
+    columns, rows = match.groups()
+    return int(columns), int(rows or columns)
+
+
+def space_values(
+    low: float | None, high: float | None, count: int | None, listed: Sequence[float] | None = None
+) -> tuple[float, ...]:
+    """Return the values of a sweep, either evenly spaced including both ends or as listed; ValueError otherwise.
+
+    Parameters
+    ----------
+    low
+        Lowest h, or value of the parameter.
+    high
+        Highest h, or value of the parameter.
+    count
+        Number of evenly spaced values.
+    listed
+        An energy; repeat for several, instead of --low, --high and --count.
+    """
+    span = (low, high, count)
+    if listed and not any(one is not None for one in span):
+        return tuple(listed)
+    if listed or low is None or high is None or count is None:
+        raise ValueError("energies: give --low, --high and --count, or repeat --energy")
+    if not (low < high or (low == high and count == 1)):
+        raise ValueError(f"low={low}, high={high}: the lower energy must be below the higher one")
+    return tuple(np.linspace(low, high, checked_count("count", count, 1, MOST_VALUES)).tolist())
+
+
+READERS: Mapping[Any, Callable[..., Any]] = {
+    System: find_system,
+    Potential: find_potential,
+    Slice: find_plane,
+    Slice | None: find_plane,
+    Energy: choose_energy,
+    Palette: find_palette,
+}
+"""Functions that make a value of a type of words; a parameter of theirs that has one of these types is made first."""
+
+OPTION_TYPES: Mapping[Any, Any] = {
+    GivenWindow | None: Annotated[tuple[float, float, float, float] | None, typer.Option(metavar="X0 X1 Y0 Y1")],
+    tuple[int, int]: Annotated[str, typer.Option(metavar="N or NxM", parser=read_resolution)],
+}
+"""Types of options for those of parameters that are given by one option."""
+
+
+def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
+    legal = CATALOGUE[formula].adjustable if formula in CATALOGUE else (*WELL_PARAMETERS, *_letters(formula))
+    chosen: dict[str, float] = {}
+    for part in text.split(","):
+        name, _, value = part.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = None
+        if name.strip() not in legal or number is None:
+            raise ValueError(f"case={reprlib.repr(case)}: parameters are {', '.join(legal)}, as in III@omega_1=1.1,epsilon=0.5")
+        chosen[name.strip()] = number
+    return chosen
+
+
+def _letters(formula: str) -> tuple[str, ...]:
+    """Return the letters of a formula; none for text that is no formula, which is refused later."""
+    try:
+        return formula_letters(formula)
+    except ValueError:
+        return ()

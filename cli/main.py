@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 import sys
+from collections import deque
 from collections.abc import Sequence
 from concurrent.futures import CancelledError
-from importlib import metadata
-from typing import Annotated
+from importlib import import_module, metadata
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
-from cli import (
-    curves_command,
-    ensemble_command,
-    lyapunov_command,
-    map_command,
-    measures_command,
-    orbit_command,
-    potential_command,
-    reproduce_command,
-    serve_command,
-    sweep_command,
-)
 from cli.system_errors import describe_system_error
 
 NAME = "escape-explorer"
@@ -29,17 +22,58 @@ NAME = "escape-explorer"
 INVALID_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
 """Exit codes: invalid arguments; failure while running; Ctrl-C, as in shells (128 + SIGINT)."""
 
-program = typer.Typer(name=NAME, no_args_is_help=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
-program.command("map", epilog=map_command.EXAMPLES)(map_command.draw_map)
-program.command("orbit", epilog=orbit_command.EXAMPLES)(orbit_command.follow_orbit)
-program.command("lyapunov", epilog=lyapunov_command.EXAMPLES)(lyapunov_command.list_lyapunov_orbits)
-program.command("measures", epilog=measures_command.EXAMPLES)(measures_command.measure_basins)
-program.command("curves", epilog=curves_command.EXAMPLES)(curves_command.draw_curves)
-program.command("ensemble", epilog=ensemble_command.EXAMPLES)(ensemble_command.follow_ensemble)
-program.command("sweep", epilog=sweep_command.EXAMPLES)(sweep_command.sweep_energies)
-program.command("reproduce", epilog=reproduce_command.EXAMPLES)(reproduce_command.reproduce_paper)
-program.command("potential", epilog=potential_command.EXAMPLES)(potential_command.describe_potential)
-program.command("serve", epilog=serve_command.EXAMPLES)(serve_command.serve_page)
+COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
+"""Names of the modules in `commands`, which are imported when they are needed."""
+
+
+class _Command(TyperCommand):
+    """A command whose arguments may begin with a minus, as formulas do: all options begin with two."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the words with the arguments at the end, after two minuses."""
+        values = {name: self._count_values(option) for option in self.params for name in option.opts}
+        words, rest, arguments = deque(args), list[str](), list[str]()
+        while words and words[0] != "--":
+            word = words.popleft()
+            if re.match("-[^-]", word):
+                arguments.append(word)
+                continue
+            rest.append(word)
+            rest.extend(words.popleft() for _ in range(min(values.get(word, 0), len(words))))
+        return super().parse_args(ctx, [*rest, "--", *arguments, *list(words)[1:]])
+
+    @staticmethod
+    def _count_values(option: Any) -> int:
+        return 0 if getattr(option, "is_flag", False) else int(option.nargs)
+
+
+class _Commands(TyperGroup):
+    """Commands that are known by name and summary, until one of them runs."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the name, the imported command and its words."""
+        name, known, words = super().resolve_command(ctx, args)
+        return name, known and _import_command(str(known.name)), words
+
+
+def _import_command(name: str) -> Any:
+    """Return the command of a module."""
+    module = import_module(f"{__package__}.commands.{name}")
+    text, _, examples = inspect.cleandoc(module.__doc__ or "").partition("Examples:")
+    alone = typer.Typer(add_completion=False, rich_markup_mode="rich")
+    alone.command(name, cls=_Command, help=text, epilog=f"Examples:{examples}")(module.run)
+    return typer.main.get_command(alone)
+
+
+def _read_summary(name: str) -> str:
+    """Return the first line of a module's docstring, without importing the module."""
+    with Path(__file__).with_name("commands").joinpath(f"{name}.py").open(encoding="utf-8") as source:
+        return source.readline().strip().strip('"')
+
+
+program = typer.Typer(name=NAME, cls=_Commands, no_args_is_help=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
+for _name in COMMANDS:
+    program.command(_name, help=_read_summary(_name))(lambda: None)
 
 
 def _print_version(requested: bool) -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from math import isnan
-from typing import Any
+from typing import Annotated, Any
 
-from cli.run_context import RunContext
+import typer
+
+from cli.execution import RunContext
 from engine import EscapeMap, MapSpec, compute_regularity, compute_trust, find_stable_manifolds
 from engine.maps.compute import run_map
 from engine.maps.origin_fates import join_origin_fates
@@ -17,12 +20,28 @@ from plots.pictures.map_analyses import MapAnalyses
 
 @dataclass(frozen=True)
 class AnalysisOptions:
-    """Requested analyses: regularity of bounded orbits, origin channels, trust, and number of manifold images."""
+    """Requested analyses.
 
-    judge: bool
-    origins: bool
-    trust: bool
-    images: int
+    Attributes
+    ----------
+    trust
+        Find and mark doubtful pixels, whose fate depends on rounding.
+    judge
+        Classify bounded orbits as regular or chaotic.
+    origins
+        Find the exit that each orbit entered by.
+    manifolds
+        Number of images of the stable manifolds, on x_px; 0 for none.
+    """
+
+    trust: bool = False
+    judge: bool = False
+    origins: bool = False
+    manifolds: Annotated[int, typer.Option(metavar="IMAGES", min=0, max=MOST_IMAGES)] = 0
+
+    def with_pictures(self, pictures: Collection[str]) -> AnalysisOptions:
+        """Return them with those that some pictures need."""
+        return replace(self, judge=self.judge or "characters" in pictures, origins=self.origins or "origins" in pictures)
 
     @property
     def pictures(self) -> list[str]:
@@ -31,10 +50,8 @@ class AnalysisOptions:
 
     def check(self, spec: MapSpec) -> None:
         """Raise ValueError if an analysis is not defined for the map."""
-        if not 0 <= self.images <= MOST_IMAGES:
-            raise ValueError(f"manifolds={self.images}: must be from 0 to {MOST_IMAGES} images")
-        if self.images and (spec.plane != SECTION.plane or spec.backward):
-            raise ValueError(f"manifolds={self.images}: stable manifolds need --plane {SECTION.plane.key}, and no --backward")
+        if self.manifolds and (spec.plane != SECTION.plane or spec.backward):
+            raise ValueError(f"manifolds={self.manifolds}: stable manifolds need --plane {SECTION.plane.key}, and no --backward")
         if self.origins and spec.backward:
             raise ValueError("origins: cannot be combined with --backward")
 
@@ -49,12 +66,12 @@ def compute_map_with_analyses(spec: MapSpec, wanted: AnalysisOptions, run: RunCo
         found["origins"] = join_origin_fates(frame, compute_whole_map(replace(spec, backward=True), run, "origins"))
     if wanted.trust:
         found["trust"] = compute_trust(frame, execution=run.start_stage("doubtful pixels"))
-    if wanted.images:
+    if wanted.manifolds:
         assert spec.common_energy is not None
         found["manifolds"] = find_stable_manifolds(
             spec.potential,
             spec.common_energy,
-            images=wanted.images,
+            images=wanted.manifolds,
             window=spec.find_window(),
             execution=run.start_stage("stable manifolds"),
         )

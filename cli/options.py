@@ -1,86 +1,119 @@
-"""Options shared by several commands."""
+"""Options from requests: names, types and defaults of the parameters of a function or dataclass, with help from its docstring."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
+import inspect
+import re
+from collections.abc import Callable, Collection, Mapping
+from copy import copy
+from dataclasses import is_dataclass
+from typing import Annotated, Any, get_args, get_origin
 
 import typer
+from typer.models import OptionInfo, ParameterInfo
 
-from plots.printed.figure_style import FigureStyle
+from cli.arguments import OPTION_TYPES, READERS
+from cli.option_marks import But, Of
 
-DEFAULT_PLANE = "x_px"
+MISSING = inspect.Parameter.empty
 
-Edges = tuple[float, float, float, float]
-"""x_low, x_high, ordinate_low, ordinate_high."""
+NAMES = {"use_evidence": ("--evidence/--no-evidence", "--certify/--no-certify")}
+"""Names of the options of parameters that are not named after them; the last ones are former names."""
 
-Case = Annotated[
-    str,
-    typer.Argument(
-        metavar="CASE",
-        help="Potential: I, II or III as in Zotos (2014), another name that `potential` lists, or a formula in x and y; "
-        "optionally with parameters, as in III@omega_1=1.1,epsilon=0.5; "
-        "letters of a formula are parameters, too: 0.5(x^2+y^2)-a x y^2@a=1.5.",
-    ),
-]
-Energy = Annotated[float | None, typer.Option("--energy", help="h, dimensionless.")]
-Energies = Annotated[
-    tuple[float, float] | None, typer.Option("--energies", metavar="LOW HIGH", help="Range of h, for slices with an axis h.")
-]
-Plane = Annotated[
-    str,
-    typer.Option(
-        "--plane",
-        "--axes",
-        metavar="AXES",
-        help="Slice of starts: x_px, x_y, x_h, y_py, tangential, or two axes such as x,theta: x, y, px, py, theta (angle of the "
-        "velocity), beta (its angle from the radius), h, or a parameter with its range, x,epsilon=0.5:2.",
-    ),
-]
-Fix = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--fix",
-        metavar="NAME=VALUE",
-        help="Value of another coordinate, 0 by default; py=- for the momentum that the energy decides, and its sign. Repeat for "
-        "several.",
-    ),
-]
-Window = Annotated[
-    Edges | None,
-    typer.Option("--window", metavar="X0 X1 Y0 Y1", help="Window of the plane; by default the whole interior."),
-]
-Resolution = Annotated[str, typer.Option("--resolution", metavar="N or NxM", help="Columns x rows, each 1 to 4096.")]
-TMax = Annotated[float, typer.Option("--t-max", help="Integration time, up to 1e8.")]
-OrbitTMax = Annotated[float, typer.Option("--t-max", help="Integration time, up to 1e7.")]
-UseEvidence = Annotated[
-    bool,
-    typer.Option(
-        "--evidence/--no-evidence",
-        "--certify/--no-certify",
-        help="Whether evidence may end the integration of a bounded orbit before t_max.",
-    ),
-]
-Backward = Annotated[bool, typer.Option("--backward", help="Integrate backward in time.")]
-Threads = Annotated[int | None, typer.Option("--threads", min=1, metavar="N", help="Number of threads; by default one per core.")]
-Scheduler = Annotated[
-    str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
-]
-LocalCluster = Annotated[
-    int | None, typer.Option("--local-cluster", min=1, metavar="N", help="Start a Dask cluster of N workers on this machine.")
-]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables and sentences; missing numbers are null.")]
-Output = Annotated[
-    Path | None,
-    typer.Option(
-        "--output",
-        metavar="STEM",
-        help="File names without ending, or the name of one file, whose ending is its format; existing files are replaced.",
-    ),
-]
-DEFAULT_STYLE = FigureStyle()
-Width = Annotated[float, typer.Option("--width", metavar="CM", help="Width of the figure in cm, 4 to 100.")]
-Dpi = Annotated[float, typer.Option("--dpi", help="Pixels per inch of a PNG file, 50 to 1200.")]
-FontSize = Annotated[float, typer.Option("--font-size", metavar="POINTS", help="Font size of the figure in points, 4 to 30.")]
-Titles = Annotated[bool, typer.Option("--titles/--no-titles", help="Whether the figure has titles and its provenance.")]
-PaletteName = Annotated[str, typer.Option("--palette", help="Colours: paper, or safe for the colour-blind.")]
+
+def with_options(function: Callable[..., None]) -> Callable[..., None]:
+    """Return the function that Typer turns into a command: its parameters are options, of which the requests are built."""
+
+    def run(**values: Any) -> None:
+        _build(function, values)
+
+    options = _list_options(function)
+    run.__annotations__ = {name: option.annotation for name, option in options.items()}
+    run.__signature__ = inspect.Signature(list(options.values()))  # type: ignore[attr-defined]
+    return run
+
+
+def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
+    """Return the options, by name, that a function or a request is called with."""
+    options: dict[str, inspect.Parameter] = {}
+    for parameter in _parameters(make):
+        kind, marks = _split(parameter.annotation)
+        reader = _find_reader(kind)
+        if reader is None:
+            options[parameter.name] = _make_option(make, parameter)
+            continue
+        but = next((mark for mark in marks if isinstance(mark, But)), But())
+        for name, option in _list_options(reader).items():
+            if name not in but.without:
+                options[name] = option.replace(default=but.defaults.get(name, option.default))
+    return options
+
+
+def _build(make: Callable[..., Any], values: Mapping[str, Any]) -> Any:
+    """Call a function, or make a request, with the values of its options."""
+    arguments = {}
+    for parameter in _parameters(make):
+        reader = _find_reader(_split(parameter.annotation)[0])
+        if reader is not None:
+            arguments[parameter.name] = _build(reader, values)
+        elif parameter.name in values:
+            arguments[parameter.name] = values[parameter.name]
+    return make(**arguments)
+
+
+def _find_reader(kind: Any) -> Callable[..., Any] | None:
+    """Return what makes a value of several options, or None for a type of one option."""
+    if kind in READERS:
+        return READERS[kind]
+    return kind if isinstance(kind, type) and is_dataclass(kind) else None
+
+
+def _make_option(make: Callable[..., Any], parameter: inspect.Parameter) -> inspect.Parameter:
+    """Return a keyword parameter as Typer reads it: with names, help and default."""
+    kind, marks = _split(parameter.annotation)
+    of = next((mark for mark in marks if isinstance(mark, Of)), Of(make))
+    source = of.name or parameter.name
+    default = parameter.default
+    if default is MISSING and of.owner is not make:
+        default = inspect.signature(of.owner).parameters[source].default
+    # Typer's own class of options or arguments, with what only the command line has, such as a name for the value.
+    info = copy(next((mark for mark in marks if isinstance(mark, ParameterInfo)), typer.Option()))
+    info.help = info.help or _describe(of.owner, source)
+    # Typer keeps the first name that is given as the default.
+    if isinstance(info, OptionInfo) and info.default is ...:
+        info.param_decls = _name(parameter.name, default)
+    if isinstance(default, tuple):
+        # The resolution, which is given as one word.
+        default = "x".join(map(str, default))
+    return inspect.Parameter(parameter.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, info])
+
+
+def _name(parameter: str, default: Any) -> tuple[str, ...]:
+    """Return the names of an option; a flag that is set by default can be unset."""
+    if parameter in NAMES:
+        return NAMES[parameter]
+    name = parameter.replace("_", "-")
+    return (f"--{name}/--no-{name}",) if default is True else (f"--{name}",)
+
+
+def _describe(owner: Callable[..., Any], name: str) -> str:
+    """Return the first sentence about a parameter in the docstring of its owner."""
+    entry = re.search(rf"^{name}\n((?: +.+\n?)+)", inspect.getdoc(owner) or "", re.MULTILINE)
+    if entry is None:
+        return ""
+    text = re.sub(r"\s+", " ", entry[1]).strip().replace("`", "")
+    return re.split(r"(?<=\.) (?=[A-Z])", text)[0]
+
+
+def _parameters(make: Callable[..., Any]) -> Collection[inspect.Parameter]:
+    """Return the parameters of a function or a request, with the types of their annotations."""
+    return inspect.signature(make, eval_str=True).parameters.values()
+
+
+def _split(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
+    """Return the type of an option and the marks of its annotation."""
+    kind, *marks = get_args(annotation) if get_origin(annotation) is Annotated else (annotation,)
+    if kind in OPTION_TYPES:
+        kind, *own = get_args(OPTION_TYPES[kind])
+        marks += own
+    return kind, tuple(marks)

@@ -51,11 +51,11 @@ class MapSpec:
     energy
         h, finite, dimensionless; on a slice with an axis h a pair (low, high). At or below the escape energy no orbit escapes.
     resolution
-        (columns, rows), each 1 to 4096.
+        Columns and rows, each 1 to 4096.
     window
-        `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for the whole interior, also after
-        ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows the default window is moved by half a
-        pixel where its middle line would be one of symmetry, on which orbits stay for ever.
+        Part of the slice, by default the whole interior. A `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for
+        the default window, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows the
+        default window is moved by half a pixel where its middle line would be one of symmetry, on which orbits stay for ever.
     t_max
         Integration time, 0 < t_max ≤ 1e8, dimensionless; where the unit 1/ω of time of the well is above 1, in this unit.
     use_evidence

@@ -51,7 +51,7 @@ def sample_starts(
     plane
         The slice, such as a `Plane`, of one energy and one potential; None for the energy surface.
     window
-        Part of the slice, or of (x, y) on the energy surface, given as in `MapSpec`; None for the whole interior.
+        Part of the slice, or of (x, y) on the energy surface, by default the whole interior. Given as in `MapSpec`.
     seed
         0 to 2⁶³ − 1; equal seeds give equal starts.
 

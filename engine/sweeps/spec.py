@@ -48,7 +48,7 @@ class SweepSpec:
     values
         Energies h, or values of the parameter; finite, dimensionless, 1 to 10 000 of them; sorted and made unique.
     resolution
-        (columns, rows) of the map at each value, each 1 to 4096.
+        Columns and rows of the map at each value, each 1 to 4096.
     window
         As in `MapSpec`, for all values. None for the default window of each map, which contains the whole interior; for the
         measure "maps", whose arrays have common axes, that of the highest energy. In the three cases the interior grows with h on

@@ -32,7 +32,7 @@ class FigureStyle:
     dpi
         Pixels per inch of PNG files, 50 to 1200.
     font_size
-        Of the names of axes, in points, 4 to 30; all other letters are in proportion.
+        Font size of the names of axes in points, 4 to 30; all other letters are in proportion.
     titles
         Whether panels have titles, and the figure its title and provenance.
 

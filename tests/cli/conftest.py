@@ -9,6 +9,9 @@ import pytest
 
 from cli.main import main
 
+Run = Callable[..., tuple[int, str, str]]
+"""Runs a command; its exit code, stdout and stderr."""
+
 
 @pytest.fixture(autouse=True)
 def default_sigint() -> Iterator[None]:
@@ -19,7 +22,7 @@ def default_sigint() -> Iterator[None]:
 
 
 @pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
     """Function that runs a command and returns its exit code, stdout and stderr."""
 
     def run_command(*arguments: object) -> tuple[int, str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 MAP = ("map", "I", "--energy", 0.13, "--resolution", 12, "--t-max", 1000, "--format", "nc")
 ANALYSES = ("--judge", "--trust", "--origins")

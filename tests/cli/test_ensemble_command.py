@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +9,8 @@ import xarray as xr
 from PIL import Image
 
 from engine import CASES, classify_orbits, compute_flux, sample_entrances, sample_starts
+from tests.cli.conftest import Run
 
-Run = Callable[..., tuple[int, str, str]]
 ENSEMBLE = ("ensemble", "III", "--energy", 0.45, "--count", 200, "--t-max", 20)
 
 

@@ -5,19 +5,21 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 import pytest
+from typer import Context
+from typer.main import get_command
 
 from cli import map_analyses
-from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST
+from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST, program
 from engine import CASES, EscapeMap
 from engine.maps.compute import run_map
-
-Run = Callable[..., tuple[int, str, str]]
+from engine.maps.spec import DEFAULT_RESOLUTION
+from plots.printed.figure_style import FigureStyle
+from tests.cli.conftest import Run
 
 COMMANDS = ("map", "orbit", "ensemble", "lyapunov", "measures", "curves", "sweep", "potential", "reproduce", "serve")
 MAP = ("map", "I", "--energy", 0.19, "--resolution", 9, "--t-max", 100)
@@ -42,6 +44,7 @@ INVALID = {
     "letters too large": ("orbit", "I", "--state", 0, 0, 0, 0.1, "--font-size", 99),
     "manifolds on (x, y)": ("map", "I", "--energy", 0.2, "--plane", "x_y", "--manifolds", 1),
     "too many manifold images": ("map", "I", "--energy", 0.2, "--manifolds", 7),
+    "unknown option with one minus": ("lyapunov", "-e", "I", "--energy", 0.2),
     "origins of a backward map": ("map", "I", "--energy", 0.2, "--backward", "--origins"),
     "missing output folder": ("map", "I", "--energy", 0.2, "--output", "/no/such/folder/name"),
     "output is a folder": ("lyapunov", "I", "--energy", 0.2, "--output", "/"),
@@ -146,9 +149,33 @@ def test_second_ctrl_c_interrupts_at_once(run: Run, tmp_path: Path, monkeypatch:
     assert not any(tmp_path.iterdir())
 
 
-def test_program_starts_without_importing_the_engine() -> None:
-    script = "import sys, cli.main; sys.exit('engine' in sys.modules or 'numba' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[2], check=False).returncode == 0
+@pytest.mark.parametrize(("word", "code"), [("mpa", INVALID_REQUEST), ("--help", 0), ("serve --help", 0)])
+def test_wrong_word_and_help_do_not_import_the_engine(word: str, code: int) -> None:
+    script = "import sys; from cli.main import main; print(main(sys.argv[1:]), 'engine' in sys.modules, 'numba' in sys.modules)"
+    command = [sys.executable, "-c", script, *word.split()]
+    process = subprocess.run(command, cwd=Path(__file__).parents[2], capture_output=True, text=True, check=True)
+    assert process.stdout.endswith(f"{code} False False\n")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_has_a_help_text(name: str) -> None:
+    program_with_all = get_command(program)
+    _, command, _ = program_with_all.resolve_command(Context(program_with_all), [name])
+    assert [option.name for option in command.params if not option.help] == []
+
+
+def test_options_have_the_defaults_of_the_request(run: Run) -> None:
+    _, out, _ = run("map", "--help")
+    columns, rows = DEFAULT_RESOLUTION
+    assert f"[default: {columns}x{rows}]" in out
+    assert f"[default: {FigureStyle().dpi}]" in out
+
+
+@pytest.mark.parametrize("before", [(), ("--json",), ("--json", "--")])
+def test_formula_may_begin_with_a_minus(before: tuple[str, ...], run: Run) -> None:
+    code, out, err = run("potential", *before, "-x^3/3+0.5(x^2+y^2)")
+    assert (code, err) == (0, "")
+    assert "x²/2 + y²/2 − x³/3" in out
 
 
 def test_module_runs_as_a_program() -> None:

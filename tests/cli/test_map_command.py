@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 
@@ -31,9 +30,9 @@ from plots.pictures.map_analyses import MapAnalyses
 from plots.pictures.palette import COLOUR_BLIND_SAFE
 from plots.printed.figure_files import map_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
+from tests.cli.conftest import Run
 
 C = Coordinate
-Run = Callable[..., tuple[int, str, str]]
 
 REQUESTS = {
     "window": (
@@ -101,21 +100,9 @@ def test_manifolds_csv_has_full_precision(run: Run, tmp_path: Path) -> None:
 
 
 def test_png_equals_the_download_of_the_page(run: Run, tmp_path: Path) -> None:
-    options = (
-        "--picture",
-        "times",
-        "--picture",
-        "characters",
-        "--width",
-        9,
-        "--dpi",
-        100,
-        "--palette",
-        "safe",
-        "--format",
-        "png",
-    )
-    assert run("map", *BOUNDED, *options, "--output", tmp_path / "map")[0] == 0
+    pictures = ("--picture", "times", "--picture", "characters", "--format", "png")
+    style = ("--width", 9, "--dpi", 100, "--palette", "safe")
+    assert run("map", *BOUNDED, *pictures, *style, "--output", tmp_path / "map")[0] == 0
     frame = compute_map(BOUNDED_SPEC)
     analyses = MapAnalyses(regularity=compute_regularity(frame))
     wanted = map_figure_bytes(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Callable
+import re
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +28,7 @@ from engine import (
 )
 from engine.measures.labels import exit_labels
 from engine.sweeps.measures import QUICK_CURVES
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 MAP = ("II", "--energy", 0.2, "--resolution", 25, "--t-max", 100)
 SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.2, (25, 25), t_max=100.0)
@@ -80,6 +79,16 @@ def test_measures_json_equals_the_engine_result(run: Run) -> None:
     assert laws.exponential is not None
     assert result["escape_laws"]["exponential"]["rate"] == laws.exponential.rate
     assert "uncertainty_exponent" not in result
+
+
+def test_table_of_curves_is_printed_whole(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run("curves", "III", *SWEEP[1:], "--output", tmp_path / "curves.csv")
+    head, _, *rows = out.splitlines()
+    columns = re.split(r" {2,}", head.strip())
+    assert code == 0
+    assert "…" not in out
+    assert {"h", "share bounded", "share channel 4", "mean escape time", "s bb", "decay rate"} <= set(columns)
+    assert [len(re.split(r" {2,}", row.strip())) for row in rows[:3]] == [len(columns)] * 3
 
 
 def test_curves_equal_the_engine_result_as_netcdf_csv_and_json(run: Run, tmp_path: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -21,8 +20,7 @@ from engine import (
 )
 from plots.pictures.palette import COLOUR_BLIND_SAFE
 from plots.texts.exports import orbits_csv
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 STATE = (0.1, 0.0, 0.05, 0.6)
 

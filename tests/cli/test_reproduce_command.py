@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,8 +14,7 @@ from reproduction import members, quality
 from reproduction.figures.all_figures import FIGURES
 from reproduction.map_cache import MapCache
 from reproduction.quality import Quality
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 TINY = Quality(
     "tiny", resolution=9, t_max=100.0, curve_points=7, search_resolution=9,

@@ -5,16 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import app
-from cli.serve_command import serve_arguments, server_environment
-
-Run = Callable[..., tuple[int, str, str]]
+from cli.commands.serve import serve_arguments, server_environment
+from tests.cli.conftest import Run
 
 
 def test_default_address_is_local_only() -> None:
@@ -28,18 +26,8 @@ def test_options_are_passed_to_the_server(run: Run, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(os, "name", "posix")
     monkeypatch.setattr(os, "execve", lambda *call: calls.append(call))
     monkeypatch.setattr(subprocess, "call", lambda *call, **more: 0)
-    run(
-        "serve",
-        "--port",
-        8080,
-        "--address",
-        "0.0.0.0",
-        "--allow-websocket-origin",
-        "a",
-        "--allow-websocket-origin",
-        "b:1",
-        "--show",
-    )
+    origins = ("--allow-websocket-origin", "a", "--allow-websocket-origin", "b:1")
+    run("serve", "--port", 8080, "--address", "0.0.0.0", *origins, "--show")
     program, command, environment = calls[0]
     assert program == command[0] == sys.executable
     assert command[1:] == [

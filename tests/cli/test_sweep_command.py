@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,8 +14,7 @@ import xarray as xr
 import engine
 from cli.main import INTERRUPTED, INVALID_REQUEST
 from engine import CASES, Execution, Plane, Sweep, SweepSpec
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 SWEEP = ("sweep", "I", "--low", 0.13, "--high", 0.2, "--count", 3, "--resolution", "9x7", "--t-max", 50)
 SPEC = SweepSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.13, 0.2, 3).tolist()), (9, 7), t_max=50.0)
@@ -48,18 +46,16 @@ def test_a_store_can_hold_measures_alone(run: Run, tmp_path: Path) -> None:
 
 
 def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    compute_sweep = engine.compute_sweep
-
     def interrupted(spec: SweepSpec, store: Path, *, execution: Execution) -> Sweep:
         def stop_later(share: float) -> None:
             if share >= 1 / 3 and not execution.is_cancelled:
                 signal.raise_signal(signal.SIGINT)
 
-        return compute_sweep(spec, store, execution=replace(execution, on_progress=stop_later))
+        return engine.compute_sweep(spec, store, execution=replace(execution, on_progress=stop_later))
 
     store = tmp_path / "store.zarr"
     with monkeypatch.context() as patch:
-        patch.setattr(engine, "compute_sweep", interrupted)
+        patch.setattr("cli.commands.sweep.compute_sweep", interrupted)
         code, out, err = run(*SWEEP, "--store", store)
     assert (code, out) == (INTERRUPTED, "")
     assert f"are kept in {store}" in err

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -10,8 +9,7 @@ import pytest
 from cli.main import FAILED
 from cli.system_errors import describe_system_error
 from engine.foundations.output_lock import hold_lock
-
-Run = Callable[..., tuple[int, str, str]]
+from tests.cli.conftest import Run
 
 SWEEP = ("sweep", "I", "--energy", 0.19, "--resolution", 4, "--t-max", 5, "--store")
 

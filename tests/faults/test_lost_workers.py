@@ -15,8 +15,8 @@ import distributed
 import numpy as np
 import pytest
 
-import engine
-from cli.clusters import _describing_losses
+from cli.commands import sweep
+from cli.execution import describe_losses
 from cli.main import FAILED, main
 from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.foundations.execution import Execution
@@ -70,7 +70,7 @@ def test_dropped_call_is_no_missing_result() -> None:
     ids=["workers", "scheduler restarted", "connection lost", "no connection"],
 )
 def test_losses_are_described(error: Exception, expected: str) -> None:
-    with pytest.raises(ConnectionError, match=expected), _describing_losses():
+    with pytest.raises(ConnectionError, match=expected), describe_losses():
         raise error
 
 
@@ -78,14 +78,14 @@ def sweep_and_lose(folder: Path, lose: Callable[[Any], None] | None) -> None:
     """Run the command on a cluster of two processes, with a loss after the first map."""
     os.chdir(folder)
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
-        run_whole, lost = engine.compute_sweep, []
+        lost: list[float] = []
 
         def on_progress(share: float) -> None:
             if share > 0.0 and lose is not None and not lost:
                 lost.append(share)
                 lose(cluster)
 
-        engine.compute_sweep = lambda spec, store, *, execution: run_whole(
+        sweep.compute_sweep = lambda spec, store, *, execution: compute_sweep(
             spec, store, execution=replace(execution, on_progress=on_progress)
         )
         sys.exit(main((*SWEEP, "--scheduler", cluster.scheduler_address)))

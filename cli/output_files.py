@@ -1,12 +1,17 @@
-"""Output files: reserved before the computation, written atomically."""
+"""Output files: named and reserved before the computation, written atomically."""
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from cli.option_marks import Of
 from engine.foundations.output_lock import hold_lock
 
 Content = str | bytes
@@ -18,7 +23,14 @@ def add_ending(stem: Path, ending: str) -> Path:
 
 
 def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -> tuple[Path, Sequence[str]]:
-    """Return stem and ending of a file name with one of some endings; of another name, the name and the default endings.
+    """Return stem and ending of a file name with one of some endings; of a name without an ending, the name and the defaults.
+
+    An ending begins with a letter, so that ``map-0.19`` has none.
+
+    Raises
+    ------
+    ValueError
+        If the ending is another one.
 
     Examples
     --------
@@ -28,12 +40,30 @@ def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -
     (PosixPath('map-0.19'), ['nc'])
     """
     ending = path.suffix.removeprefix(".")
-    return (path.with_suffix(""), [ending]) if ending in endings else (path, default)
+    if ending in endings:
+        return path.with_suffix(""), [ending]
+    if re.fullmatch(r"[A-Za-z]\w*", ending):
+        raise ValueError(f"output='{path}': the ending must be one of {', '.join(endings)}, or left out")
+    return path, default
+
+
+def name_files(
+    output: Path | None, endings: Collection[str], default: Sequence[str], stem: Path | None = None
+) -> dict[str, Path]:
+    """Return the output files by ending, as `split_ending`; without an output those of a stem, or none."""
+    if output is not None:
+        stem, default = split_ending(output, endings, default)
+    return {} if stem is None else {ending: add_ending(stem, ending) for ending in default}
 
 
 @contextmanager
-def reserve_output(path: Path | None) -> Iterator[None]:
-    """Reserve an output file, or a stem of several, from before the computation until it is written; None for no output.
+def reserve_output(output: Path | None) -> Iterator[None]:
+    """Reserve output files from before the computation until they are written.
+
+    Parameters
+    ----------
+    output
+        File names without ending, or the name of one file, whose ending is its format; existing files are replaced.
 
     Raises
     ------
@@ -42,13 +72,17 @@ def reserve_output(path: Path | None) -> Iterator[None]:
     BlockingIOError
         If another process writes it; one sentence that names the process.
     """
-    if path is None:
+    if output is None:
         yield
         return
-    if not path.name or not path.parent.is_dir():
-        raise ValueError(f"output='{path}': there is no folder '{path.parent}' to write to")
-    with hold_lock(path):
+    if not output.name or not output.parent.is_dir():
+        raise ValueError(f"output='{output}': there is no folder '{output.parent}' to write to")
+    with hold_lock(output):
         yield
+
+
+Stem = Annotated[Path | None, typer.Option(metavar="STEM"), Of(reserve_output)]
+"""Type of an option for the names of output files."""
 
 
 def write_files(contents: Mapping[Path, Content]) -> list[str]:

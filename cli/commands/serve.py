@@ -1,4 +1,11 @@
-"""Command ``serve``: start the program that serves the installed page."""
+"""Serve the page until Ctrl-C or SIGTERM; environment variables ESCAPE_EXPLORER_… set its limits (docs/operation.md).
+
+Examples:
+
+escape-explorer serve --show
+
+escape-explorer serve --port 8080 --address 0.0.0.0 --allow-websocket-origin maps.example.org
+"""
 
 from __future__ import annotations
 
@@ -11,34 +18,25 @@ from typing import Annotated
 
 import typer
 
-EXAMPLES = """Examples:
 
-escape-explorer serve --show
-
-escape-explorer serve --port 8080 --address 0.0.0.0 --allow-websocket-origin maps.example.org
-"""
-
-
-def serve_page(
-    port: Annotated[int, typer.Option("--port", min=1, max=65535, help="Port to listen on.")] = 5006,
+def run(
+    *,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 5006,
     address: Annotated[
-        str, typer.Option("--address", help="Address of the network interface to listen on; by default this machine only.")
+        str, typer.Option(help="Address of the network interface to listen on; by default this machine only.")
     ] = "127.0.0.1",
-    origin: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--allow-websocket-origin", metavar="HOST", help="Host whose pages may open a WebSocket; repeat for several."
-        ),
+    allow_websocket_origin: Annotated[
+        list[str] | None, typer.Option(metavar="HOST", help="Host whose pages may open a WebSocket; repeat for several.")
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Open the page in a browser.")] = False,
 ) -> None:
-    """Serve the page until Ctrl-C or SIGTERM; environment variables ESCAPE_EXPLORER_… set its limits (docs/operation.md)."""
+    """Start the program that serves the installed page."""
     if importlib.util.find_spec("panel") is None:
         # The engine is slow to import.
         from engine.foundations.extras import require_package
 
         require_package("panel", "page")
-    command = serve_arguments(port, address, origin or [], show)
+    command = serve_arguments(port, address, allow_websocket_origin or [], show)
     environment = server_environment()
     if os.name == "posix":
         # Replace this process, so that signals reach the server.

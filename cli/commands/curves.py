@@ -1,0 +1,103 @@
+"""Compute measures of the basins at many energies, or values of a parameter, written to STEM.nc and STEM.csv.
+
+With --output FILE.png, FILE.svg or FILE.pdf they are drawn instead.
+
+Examples:
+
+escape-explorer curves I --low 0.13 --high 0.5 --count 38 --output curves-I
+
+escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --refine 12 --no-exponent --resolution 224
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cli.arguments import Case, file_name_part, space_values
+from cli.execution import THREADS_ONLY, Place
+from cli.option_marks import Of
+from cli.options import with_options
+from cli.output_files import Content, Stem, name_files, reserve_output, write_files
+from cli.printing import AsJson, Table, print_result
+from engine import ParameterAxis, Potential, Slice, Sweep, SweepSpec, System, compute_sweep
+from engine.sweeps.measures import CURVES, QUICK_CURVES
+from engine.systems.parameters import WELL_PARAMETERS
+from plots.printed.figure_files import curves_figure_bytes
+from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.texts.exports import curve_columns, curves_csv, dataset_bytes
+
+AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
+
+# Columns that are in files and JSON only.
+_ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
+
+
+@with_options
+def run(
+    *,
+    case: Case,
+    system: System,
+    potential: Potential,
+    low: Annotated[float, Of(space_values)],
+    high: Annotated[float, Of(space_values)],
+    count: Annotated[int, Of(space_values)],
+    against: Annotated[str, typer.Option(help=AGAINST_HELP)] = "h",
+    energy: Annotated[float | None, Of(SweepSpec)],
+    refine: Annotated[int, Of(SweepSpec)],
+    plane: Slice,
+    resolution: Annotated[tuple[int, int], Of(SweepSpec)] = (112, 112),
+    t_max: Annotated[float, Of(SweepSpec)],
+    exponent: bool = True,
+    style: FigureStyle,
+    output: Stem = None,
+    place: Annotated[Place, THREADS_ONLY],
+    as_json: AsJson = False,
+) -> None:
+    """Compute, write and print the measures.
+
+    Parameters
+    ----------
+    exponent
+        Whether to compute the uncertainty exponent, which takes longest.
+    """
+    spec = SweepSpec(
+        potential,
+        plane,
+        space_values(low, high, count),
+        resolution,
+        t_max=t_max,
+        measures=CURVES if exponent else QUICK_CURVES,
+        along=None if against == "h" else ParameterAxis(against, low, high, system),
+        energy=energy,
+        refine=refine,
+    )
+    stem = Path(f"curves-{file_name_part(case)}-{spec.plane.key}")
+    paths = name_files(output, ["nc", "csv", *FigureFormat], ["nc", "csv"], stem)
+    with reserve_output(output or stem):
+        with place.run() as context:
+            curves = compute_sweep(spec, execution=context.start_stage("curves"))
+        files = write_files({path: _content(curves, ending, style) for ending, path in paths.items()})
+    _print(curves, files, as_json)
+
+
+def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
+    """Return the content of the output file with this ending."""
+    if ending == "nc":
+        return dataset_bytes(curves.dataset)
+    if ending == "csv":
+        return curves_csv(curves)
+    return curves_figure_bytes(curves, FigureFormat(ending), style)
+
+
+def _print(curves: Sweep, files: Sequence[str], as_json: bool) -> None:
+    columns = {name: column.tolist() for name, column in curve_columns(curves).items()}
+    points = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    shown = [name for name in columns if not _ERROR_BAR.search(name)]
+    rows = [[f"{point[name]:.4g}".replace("nan", "–") for name in shown] for point in points]
+    table = Table([name.replace("_", " ") for name in shown], rows)
+    print_result(as_json, {"points": points}, table, files=files)

@@ -1,0 +1,144 @@
+"""Follow random orbits, uniform on the energy surface, on a slice, or entering through the exits.
+
+Prints the shares of the exits, and the decay rate beside flux over volume. With --output, FILE.webp, FILE.gif or FILE.mp4 is
+a movie, FILE.nc has the paths, and FILE.csv the starts and outcomes; of a STEM, the movie as WebP and the table.
+
+Examples:
+
+escape-explorer ensemble III --energy 0.45 --count 100000 --t-max 1e4
+
+escape-explorer ensemble III --energy 0.45 --count 3000 --t-max 25 --output draining.mp4
+
+escape-explorer ensemble I --energy 0.19 --plane x_px --window 0 0.1 0 0.1 --output box.nc
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from cli.execution import THREADS_ONLY, Place
+from cli.option_marks import But, Of
+from cli.options import with_options
+from cli.output_files import Content, Stem, name_files, reserve_output, write_files
+from cli.printing import AsJson, Table, print_result
+from engine import (
+    DecayLaws,
+    EscapeFlux,
+    EscapeStatistics,
+    Fate,
+    Outcomes,
+    Potential,
+    Slice,
+    classify_orbits,
+    compute_flux,
+    compute_statistics,
+    fit_decay_laws,
+    sample_entrances,
+    sample_orbits,
+    sample_starts,
+)
+from engine.propagation.fates import name_fate
+from engine.slices.window import GivenWindow
+from plots.pictures.palette import Palette
+from plots.printed.ensemble_movie import MovieFormat, ensemble_movie_bytes
+from plots.printed.figure_style import FigureStyle
+from plots.texts.exports import dataset_bytes
+
+MOST_PATHS = 20_000
+"""Most orbits of a movie, or of a file of paths."""
+
+
+@with_options
+def run(
+    *,
+    potential: Potential,
+    energy: Annotated[float, Of(sample_starts)],
+    count: Annotated[int, Of(sample_starts)] = 3000,
+    seed: Annotated[int, Of(sample_starts)],
+    plane: Annotated[Slice | None, But(defaults={"plane": None})],
+    window: Annotated[GivenWindow | None, Of(sample_starts)],
+    entering: bool = False,
+    t_max: Annotated[float, Of(classify_orbits)] = 25.0,
+    frames: Annotated[int, typer.Option(min=2, max=5000)] = 126,
+    palette: Palette,
+    style: Annotated[FigureStyle, But(defaults={"dpi": 120.0})],
+    place: Annotated[Place, THREADS_ONLY],
+    output: Stem = None,
+    as_json: AsJson = False,
+) -> None:
+    """Follow and count the orbits, and write or draw them.
+
+    Parameters
+    ----------
+    entering
+        Start on the exits and go inward, distributed as the flux: gap times.
+    frames
+        Times of the movie or of the NetCDF file, evenly spaced.
+    """
+    paths = name_files(output, ["csv", "nc", *MovieFormat], ["csv", MovieFormat.WEBP])
+    with_paths = paths.keys() - {"csv"}
+    if with_paths and count > MOST_PATHS:
+        raise ValueError(f"count={count}: movies and files of paths have at most {MOST_PATHS} orbits")
+    starts = _draw_starts(potential, energy, count, seed, plane, window, entering)
+
+    def content(ending: str) -> Content:
+        if ending == "csv":
+            return _table(starts, outcomes)
+        if ending == "nc":
+            return dataset_bytes(orbits.to_xarray())
+        return ensemble_movie_bytes(potential, orbits, palette, MovieFormat(ending), style)
+
+    with reserve_output(output):
+        with place.run() as context:
+            outcomes = classify_orbits(potential, energy, starts, t_max, execution=context.start_stage("orbits"))
+            context.execution.raise_if_cancelled()
+            laws = fit_decay_laws(outcomes)
+            if with_paths:
+                times = np.linspace(0.0, outcomes.t_max, frames)
+                orbits = sample_orbits(potential, starts, times, execution=context.start_stage("paths"))
+            contents = {path: content(ending) for ending, path in paths.items()}
+        files = write_files(contents)
+    _print(compute_statistics(outcomes), laws, compute_flux(potential, energy), files, as_json)
+
+
+def _draw_starts(
+    potential: Potential,
+    energy: float,
+    count: int,
+    seed: int,
+    plane: Slice | None,
+    window: GivenWindow | None,
+    entering: bool,
+) -> np.ndarray:
+    """Return the (count, 4) states; ValueError for options that exclude each other."""
+    if not entering:
+        return sample_starts(potential, energy, count, plane=plane, window=window, seed=seed)
+    if plane is not None or window is not None:
+        raise ValueError("entering: orbits start on the exits; leave --plane and --window out")
+    return sample_entrances(potential, energy, count, seed=seed)
+
+
+def _table(starts: np.ndarray, outcomes: Outcomes) -> str:
+    """Return a line for each orbit: its start at full precision, fate, escape time and crossings."""
+    ends = (column.tolist() for column in (outcomes.fate, outcomes.escape_time, outcomes.crossings))
+    rows = (",".join(map(repr, (*start, *end))) for start, *end in zip(starts.tolist(), *ends, strict=True))
+    return "\n".join(["x,y,px,py,fate,escape_time,crossings", *rows]) + "\n"
+
+
+def _print(statistics: EscapeStatistics, laws: DecayLaws, flux: EscapeFlux, files: Sequence[str], as_json: bool) -> None:
+    shares, intervals = statistics.shares, statistics.share_intervals
+    shown = {code: name_fate(code, statistics.outcomes) for code in shares if code >= Fate.BOUNDED or shares[code]}
+    answer: dict[str, Any] = {
+        "outcomes": [{"outcome": name, "share": shares[code], "interval": intervals[code]} for code, name in shown.items()],
+        "mean_escape_time": statistics.mean_escape_time,
+        "flux": flux.numbers(),
+        "escape_laws": laws.describe(),
+    }
+    rows = [(name, f"{shares[code]:.4f}", "{:.4f} … {:.4f}".format(*intervals[code])) for code, name in shown.items()]
+    table = Table(("outcome", "share", "95 % interval"), rows)
+    mean = f"Mean time of the escapes: {statistics.mean_escape_time:.4g}."
+    print_result(as_json, answer, table, mean, laws.describe(), flux.describe(), files=files)

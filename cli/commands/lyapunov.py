@@ -1,0 +1,87 @@
+"""List the Lyapunov orbit of each open exit: its period, its turning points, and the flux through the exit.
+
+Examples:
+
+escape-explorer lyapunov II --energy 0.2
+
+escape-explorer lyapunov III --energy 0.3 --json --output exits.csv
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from cli.option_marks import Of
+from cli.options import with_options
+from cli.output_files import reserve_output, split_ending, write_files
+from cli.printing import AsJson, Table, print_result
+from engine import EscapeFlux, LyapunovOrbit, Potential, compute_flux, find_lyapunov_orbits
+
+
+@with_options
+def run(
+    *,
+    potential: Potential,
+    energy: Annotated[float, Of(find_lyapunov_orbits)],
+    output: Annotated[Path | None, typer.Option(metavar="FILE.csv")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Find, write and list the orbits.
+
+    Parameters
+    ----------
+    output
+        CSV file for their paths over one period; an existing file is replaced.
+    """
+    if output is not None:
+        split_ending(output, ["csv"], [])
+    with reserve_output(output):
+        orbits = find_lyapunov_orbits(potential, energy)
+        files = write_files({output: _paths_csv(orbits)}) if output is not None else []
+    flux = compute_flux(potential, energy) if orbits else None
+    _print(energy, potential.escape_energy, orbits, flux, files, as_json)
+
+
+def _paths_csv(orbits: Sequence[LyapunovOrbit]) -> str:
+    lines = ["channel,t,x,y"]
+    for orbit in orbits:
+        last = orbit.x.size - 1
+        times = [orbit.period * k / last for k in range(last + 1)]
+        points = zip(times, orbit.x.tolist(), orbit.y.tolist(), strict=True)
+        lines += [f"{orbit.channel},{t!r},{x!r},{y!r}" for t, x, y in points]
+    return "\n".join(lines) + "\n"
+
+
+def _print(
+    energy: float,
+    escape_energy: float,
+    orbits: Sequence[LyapunovOrbit],
+    flux: EscapeFlux | None,
+    files: Sequence[str],
+    as_json: bool,
+) -> None:
+    answer: dict[str, Any] = {"energy": energy, "escape_energy": escape_energy}
+    if flux is None:
+        sentence = f"No Lyapunov orbits: h = {energy:g} is not above the escape energy {escape_energy:.12g}."
+        print_result(as_json, answer | {"orbits": []}, sentence, files=files)
+        return
+    found = [
+        {"channel": orbit.channel, "name": orbit.name, "period": orbit.period, "flux": through, "ends": _ends(orbit)}
+        for orbit, through in zip(orbits, flux.flux.tolist(), strict=True)
+    ]
+    rows = [
+        (orbit.name, f"{orbit.period:.12g}", f"{through:.9g}", *(f"({x:.12f}, {y:.12f})" for x, y in _ends(orbit)))
+        for orbit, through in zip(orbits, flux.flux.tolist(), strict=True)
+    ]
+    table = Table(("channel", "period", "flux", "turning point (x, y)", "turning point (x, y)"), rows)
+    print_result(as_json, answer | {"orbits": found} | flux.numbers(), table, flux.describe(), files=files)
+
+
+def _ends(orbit: LyapunovOrbit) -> list[list[float]]:
+    """Return x, y of both turning points."""
+    ends: list[list[float]] = orbit.half_path[[0, -1]].tolist()
+    return ends

@@ -1,0 +1,133 @@
+"""Integrate one orbit: verdict, SALI, Lyapunov exponent and Birkhoff digits.
+
+With --output, STEM.csv contains the path, SALI, exponent and R² against time, and STEM.png shows them; or FILE.csv, FILE.png,
+FILE.svg or FILE.pdf alone.
+
+Examples:
+
+escape-explorer orbit I --energy 0.19 --start 0.1 -0.2
+
+escape-explorer orbit III --state 0.1 0 0 0.7 --t-max 1e4 --output orbit --json
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from cli.arguments import choose_energy
+from cli.execution import Place
+from cli.option_marks import Of
+from cli.options import with_options
+from cli.output_files import Content, Stem, name_files, reserve_output, write_files
+from cli.printing import AsJson, print_result
+from engine import (
+    Fate,
+    IndicatorVerdict,
+    Orbit,
+    OrbitVerdict,
+    Potential,
+    Slice,
+    compute_birkhoff_digits,
+    evaluate_indicators,
+    integrate_orbit,
+    judge_orbit,
+)
+from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.pictures.palette import Palette
+from plots.printed.figure_files import orbits_figure_bytes
+from plots.printed.figure_style import FigureFormat, FigureStyle
+from plots.texts.exports import orbits_csv
+
+State = tuple[float, float, float, float]
+"""x, y, px, py."""
+
+
+@with_options
+def run(
+    *,
+    potential: Potential,
+    plane: Slice,
+    energy: Annotated[float | None, Of(choose_energy)],
+    start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
+    state: Annotated[State | None, typer.Option(metavar="X Y PX PY")] = None,
+    t_max: Annotated[float, Of(integrate_orbit)],
+    most_rows: Annotated[int, Of(orbits_csv)],
+    palette: Palette,
+    style: FigureStyle,
+    output: Stem = None,
+    as_json: AsJson = False,
+) -> None:
+    """Follow, judge and write an orbit.
+
+    Parameters
+    ----------
+    start
+        Start on the plane, at --energy.
+    state
+        Full initial state instead, which determines the energy.
+    """
+    whole = _find_start(potential, plane, energy, start, state)
+    paths = name_files(output, ["csv", *FigureFormat], ["csv", FigureFormat.PNG])
+
+    def content(ending: str) -> Content:
+        if ending == "csv":
+            return orbits_csv([orbit], most_rows, [verdict])
+        curves, format = [compute_orbit_curves(potential, orbit)], FigureFormat(ending)
+        return orbits_figure_bytes(potential, curves, palette, [verdict.describe()], format, style)
+
+    with reserve_output(output):
+        with Place().run() as context:
+            context.start_stage("orbit")
+            orbit = integrate_orbit(potential, whole, t_max, execution=context.execution)
+            bounded = orbit.fate == Fate.BOUNDED
+            digits = compute_birkhoff_digits(potential, whole, t_max, execution=context.execution) if bounded else None
+        verdict = judge_orbit(orbit, digits)
+        files = write_files({path: content(ending) for ending, path in paths.items()})
+    _print(orbit, verdict, evaluate_indicators(orbit, digits), files, as_json)
+
+
+def _find_start(
+    potential: Potential, plane: Slice, energy: float | None, start: tuple[float, float] | None, state: State | None
+) -> State:
+    """Return x, y, px, py of a start, given as a state or as a point of a plane; ValueError if it is forbidden."""
+    if (start is None) == (state is None):
+        raise ValueError("start: give either --start X ORDINATE on a plane, or --state X Y PX PY")
+    if state is not None:
+        if energy is not None:
+            raise ValueError("energy: --state already determines it; leave --energy out")
+        return state
+    assert start is not None
+    plane.check_one_potential("start")
+    if plane.energy_axis is not None and energy is not None:
+        raise ValueError(f"energy: on the plane {plane.key} it is a coordinate, so leave --energy out")
+    if plane.energy_axis is None and energy is None:
+        raise ValueError(f"energy: a start on the plane {plane.key} needs --energy H")
+    x, ordinate = np.array(start)[:, None]
+    found = plane.states(potential, energy, x, ordinate)[0]
+    if np.isnan(found).any():
+        raise ValueError(f"start={start}: forbidden, an orbit there would have negative kinetic energy")
+    first, second, third, fourth = found.tolist()
+    return first, second, third, fourth
+
+
+def _print(
+    orbit: Orbit, verdict: OrbitVerdict, indicators: Sequence[IndicatorVerdict], files: Sequence[str], as_json: bool
+) -> None:
+    answer: dict[str, Any] = {
+        "verdict": verdict.describe(),
+        "outcome": verdict.outcome,
+        "fate": orbit.fate,
+        "character": verdict.character,
+        "bounded_for_ever": verdict.is_bounded_for_ever,
+        **{name: getattr(orbit, name) for name in ("energy", "escape_time", "crossings", "energy_error", "exits_unknown")},
+        "start": [float(getattr(orbit, name)[0]) for name in ("x", "y", "px", "py")],
+        "indicators": [
+            {"name": one.name, "value": one.value, "conclusion": one.conclusion, "sentence": one.sentence} for one in indicators
+        ],
+    }
+    lines = [f"{one.name} {one.value:.3g}: {one.sentence}" for one in indicators]
+    print_result(as_json, answer, verdict.describe(), *lines, files=files)

@@ -1,0 +1,88 @@
+"""Reproduce the figures of Zotos (2014) as NAME.png and NAME.pdf, and its numbers beside ours as `tables`.
+
+Each file is written as soon as it is ready, and is kept after an interruption.
+
+Examples:
+
+escape-explorer reproduce --quick --output figures
+
+escape-explorer reproduce I-basins-xpx III-super-sticky
+
+escape-explorer reproduce --list
+"""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import CancelledError
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from cli.execution import THREADS_ONLY, Place
+from cli.options import with_options
+from cli.output_files import reserve_output, write_files
+from cli.printing import AsJson, Table, print_result
+from reproduction import members, quality
+from reproduction.map_cache import MapCache
+
+
+@with_options
+def run(
+    *,
+    names: Annotated[list[str] | None, typer.Argument(metavar="[NAME]...")] = None,
+    quick: bool = False,
+    only_list: Annotated[bool, typer.Option("--list")] = False,
+    output: Annotated[Path, typer.Option(metavar="FOLDER")] = Path("zotos-2014"),
+    place: Annotated[Place, THREADS_ONLY],
+    as_json: AsJson = False,
+) -> None:
+    """Make and write the figures, or list them.
+
+    Parameters
+    ----------
+    names
+        Figures to draw, as listed by --list; by default all.
+    quick
+        A ninth of the starts: a few minutes instead of half an hour.
+    only_list
+        Only list the figures.
+    output
+        Output folder, created if missing; existing files are replaced.
+    """
+    chosen = members.choose_members(names or ())
+    if only_list:
+        captions = {name: members.CAPTIONS[name] for name in chosen}
+        print_result(as_json, {"figures": captions}, Table(("name", "shows"), list(captions.items())))
+        return
+    wanted = quality.QUICK if quick else quality.FULL
+    _make_folder(output)
+    began, made = time.perf_counter(), list[dict[str, Any]]()
+    try:
+        with reserve_output(output), place.run() as context:
+            cache = MapCache(wanted, context.execution)
+            for name in chosen:
+                context.start_stage(name)
+                made.append(_make(name, cache, output))
+    except CancelledError:
+        raise CancelledError(f"stopped; {len(made)} of {len(chosen)} are made and stay in {output}") from None
+    seconds, side = time.perf_counter() - began, wanted.resolution
+    rows = [(one["name"], f"{one['seconds']:.1f} s", ", ".join(Path(file).name for file in one["files"])) for one in made]
+    sentence = f"Written to {output} in {seconds:.0f} s, {wanted.name} quality: {side} x {side} starts a map."
+    answer = {"quality": wanted.name, "seconds": seconds, "figures": made}
+    print_result(as_json, answer, Table(("made", "in", "files"), rows), sentence)
+
+
+def _make_folder(folder: Path) -> None:
+    """Create the output folder; ValueError if that is impossible."""
+    if not folder.absolute().parent.is_dir() or (folder.exists() and not folder.is_dir()):
+        raise ValueError(f"output='{folder}': must be a folder, or a new folder inside an existing one")
+    folder.mkdir(exist_ok=True)
+
+
+def _make(name: str, cache: MapCache, folder: Path) -> dict[str, Any]:
+    """Make and write one figure; its name, files and seconds."""
+    began = time.perf_counter()
+    files = write_files({folder / file: content for file, content in members.make_files(name, cache).items()})
+    return {"name": name, "files": files, "seconds": time.perf_counter() - began}

@@ -1,0 +1,71 @@
+"""Compute maps at many energies into one labelled Zarr store; an interrupted run is resumed by the same command.
+
+Without --window all maps use the window of the highest energy. With xarray: open_zarr(FOLDER).
+
+Examples:
+
+escape-explorer sweep I --low 0.13 --high 0.5 --count 38 --store sweep-I.zarr
+
+escape-explorer sweep III --plane x_y --energy 0.26 --energy 0.3 --resolution 1024 --store III.zarr --scheduler tcp://node1:8786
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import CancelledError
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cli.arguments import space_values
+from cli.execution import Place
+from cli.option_marks import Of
+from cli.options import with_options
+from cli.printing import AsJson, print_result
+from engine import MapSpec, Potential, Slice, SweepSpec, compute_sweep, plan_sweep
+from engine.slices.window import GivenWindow
+
+
+@with_options
+def run(
+    *,
+    potential: Potential,
+    store: Annotated[Path, typer.Option(metavar="FOLDER")],
+    low: Annotated[float | None, Of(space_values)] = None,
+    high: Annotated[float | None, Of(space_values)] = None,
+    count: Annotated[int | None, Of(space_values)] = None,
+    energy: Annotated[list[float] | None, Of(space_values, "listed")],
+    plane: Slice,
+    window: Annotated[GivenWindow | None, Of(MapSpec)],
+    resolution: Annotated[tuple[int, int], Of(SweepSpec)],
+    t_max: Annotated[float, Of(SweepSpec)],
+    use_evidence: Annotated[bool, Of(MapSpec)],
+    measure: Annotated[list[str] | None, Of(SweepSpec, "measures")] = None,
+    plan: bool = False,
+    place: Place,
+    as_json: AsJson = False,
+) -> None:
+    """Compute the maps, or estimate their cost.
+
+    Parameters
+    ----------
+    store
+        Zarr store: a new one, or one of the same sweep to resume.
+    plan
+        Only estimate the cost.
+    """
+    energies = space_values(low, high, count, energy)
+    spec = SweepSpec(potential, plane, energies, resolution, window, t_max, use_evidence, measure or ("maps",))
+    try:
+        with place.run() as context:
+            if plan:
+                print_result(False, {}, f"{plan_sweep(spec, execution=context.execution).describe()}.")
+                return
+            dataset = compute_sweep(spec, store, execution=context.start_stage("energies")).dataset
+    except CancelledError:
+        raise CancelledError(
+            f"interrupted; completed energies are kept in {store}, and the same command resumes from there"
+        ) from None
+    sizes = {str(name): size for name, size in dataset.sizes.items()}
+    sentence = f"Written: {store}, {' x '.join(f'{size} {name}' for name, size in sizes.items())}"
+    print_result(as_json, {"request": dataset.attrs, "dimensions": sizes, "files": [str(store)]}, sentence)

@@ -1,0 +1,191 @@
+"""Where and how a command computes: threads or a cluster, cancellation by Ctrl-C and progress bars."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass, fields, replace
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from cli.option_marks import But
+from engine import Execution
+from engine.foundations.extras import require_package
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+
+@dataclass(frozen=True)
+class RunContext:
+    """How the computations of one run are executed, with its progress bars.
+
+    Attributes
+    ----------
+    execution
+        Cancelled by Ctrl-C.
+    progress
+        Progress bars, disabled unless stderr is a terminal.
+    """
+
+    execution: Execution
+    progress: Progress
+
+    def start_stage(self, stage: str) -> Execution:
+        """Show the bar of a new stage, unless bars are disabled, and return the execution that reports to it.
+
+        Raises
+        ------
+        concurrent.futures.CancelledError
+            If the run is already cancelled.
+        """
+        self.execution.raise_if_cancelled()
+        if self.progress.disable:
+            return self.execution
+        for task in self.progress.tasks:
+            self.progress.update(task.id, total=1.0, completed=1.0)
+        task_id = self.progress.add_task(stage, total=None)
+        return replace(self.execution, on_progress=lambda share: self.progress.update(task_id, total=1.0, completed=share))
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a command computes.
+
+    Attributes
+    ----------
+    threads
+        Number of threads; by default one per core.
+    scheduler
+        Compute on the Dask cluster of this scheduler.
+    local_cluster
+        Start a Dask cluster of N workers on this machine.
+    """
+
+    threads: Annotated[int | None, typer.Option(min=1, metavar="N")] = None
+    scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS")] = None
+    local_cluster: Annotated[int | None, typer.Option(min=1, metavar="N")] = None
+
+    @contextmanager
+    def run(self) -> Iterator[RunContext]:
+        """Run a long computation that Ctrl-C cancels.
+
+        Raises
+        ------
+        concurrent.futures.CancelledError
+            On exit, if Ctrl-C was pressed: results may be incomplete and must not be written.
+        """
+        cancel = threading.Event()
+        console = Console(stderr=True)
+        columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        bars = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
+        with self._executor() as executor, _cancel_on_ctrl_c(cancel), bars:
+            context = RunContext(Execution(executor, cancel), bars)
+            yield context
+            context.execution.raise_if_cancelled()
+
+    def _executor(self) -> AbstractContextManager[Executor | None]:
+        """Return the executor; None for the default pool of threads."""
+        given = [field.name for field in fields(self) if getattr(self, field.name)]
+        if len(given) > 1:
+            raise ValueError(f"{' and '.join(given)}: choose one place to compute")
+        if self.scheduler is not None or self.local_cluster is not None:
+            return _cluster_executor(self.scheduler, self.local_cluster)
+        return nullcontext() if self.threads is None else ThreadPoolExecutor(self.threads)
+
+
+THREADS_ONLY = But(without=("scheduler", "local_cluster"))
+"""Marks the place of a command that computes in this process."""
+
+
+@contextmanager
+def _cancel_on_ctrl_c(cancel: threading.Event) -> Iterator[None]:
+    """Set `cancel` at the first Ctrl-C; a second one raises KeyboardInterrupt at once."""
+    in_thread = threading.current_thread() is not threading.main_thread()
+    if in_thread or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        # Signal handlers belong to the main thread, and a shell starts background jobs with SIGINT ignored.
+        yield
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        if cancel.is_set():
+            signal.default_int_handler(number, frame)
+        cancel.set()
+
+    before = signal.signal(signal.SIGINT, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _cluster_executor(scheduler: str | None, local_workers: int | None) -> Iterator[Executor]:
+    """Yield the executor of a cluster.
+
+    Parameters
+    ----------
+    scheduler
+        Address of a running scheduler, ``tcp://host:port``.
+    local_workers
+        Without a scheduler, number of worker processes to start on this machine, with one thread each.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If Dask is not installed.
+    OSError
+        If the scheduler does not answer; ConnectionError if the scheduler or the workers are lost during the computation.
+    """
+    with _connect(scheduler, local_workers) as client, describe_losses():
+        yield client.get_executor()
+
+
+def _connect(scheduler: str | None, local_workers: int | None) -> Client:
+    require_package("distributed", "cluster")
+    import distributed
+
+    if scheduler is not None:
+        return distributed.Client(scheduler)  # type: ignore[no-untyped-call]
+    with _ignore_ctrl_c():
+        # The dashboard takes a free port on the loopback interface.
+        return distributed.Client(n_workers=local_workers, threads_per_worker=1, dashboard_address="127.0.0.1:0")  # type: ignore[no-untyped-call]
+
+
+@contextmanager
+def describe_losses() -> Iterator[None]:
+    """Replace Dask's errors of a lost scheduler or lost workers by sentences."""
+    from distributed import KilledWorker
+    from distributed.comm.core import CommClosedError
+
+    try:
+        yield
+    except KilledWorker as error:
+        raise ConnectionError(
+            "several workers died in turn of the same part of the computation; check their memory, then run the command again"
+        ) from error
+    except (BrokenExecutor, OSError) as error:
+        # Errors of the operating system have a number, and a plain OSError without one is a scheduler that does not answer.
+        if isinstance(error, BrokenExecutor | CommClosedError) or (type(error) is OSError and error.errno is None):
+            raise ConnectionError("the scheduler of the cluster is lost; start it, then run the same command again") from error
+        raise
+
+
+@contextmanager
+def _ignore_ctrl_c() -> Iterator[None]:
+    """Make child processes ignore Ctrl-C, which a terminal sends to the whole process group; this process stops them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,80 @@
+"""Results on stdout: tables and sentences, or JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table as RichTable
+
+from cli.option_marks import Of
+
+# Wider than any table, of which nothing is cut; a terminal wraps its lines.
+_WIDTH = 10_000
+
+
+@dataclass(frozen=True)
+class Table:
+    """Names of columns, and cells by row; all columns but the first are right-aligned."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
+def print_result(as_json: bool, answer: Mapping[str, Any], *parts: Table | str, files: Sequence[str] | None = None) -> None:
+    """Print the answer as one JSON object, in which NaN and infinity become null, or else the tables and sentences.
+
+    Parameters
+    ----------
+    as_json
+        Print JSON instead of tables and sentences; missing numbers are null.
+    answer
+        Contents of the object.
+    parts
+        Tables and sentences.
+    files
+        Written files; None for commands that write none.
+    """
+    console = Console(width=_WIDTH)
+    if as_json:
+        content = _to_json({**answer, **({} if files is None else {"files": files})})
+        console.out(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False), highlight=False)
+        return
+    for part in (*parts, *([f"Written: {', '.join(files)}"] if files else [])):
+        if isinstance(part, str):
+            console.out(part, highlight=False)
+        else:
+            console.print(_lay_out(part), highlight=False, markup=False)
+
+
+AsJson = Annotated[bool, typer.Option("--json"), Of(print_result)]
+"""Type of an option that chooses JSON."""
+
+
+def _lay_out(table: Table) -> RichTable:
+    shown = RichTable(box=box.SIMPLE_HEAD, show_edge=False)
+    for number, name in enumerate(table.head):
+        shown.add_column(name, justify="right" if number else "left", no_wrap=True)
+    for row in table.rows:
+        shown.add_row(*row)
+    return shown
+
+
+def _to_json(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(name): _to_json(one) for name, one in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return _to_json(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_to_json(one) for one in value]
+    if isinstance(value, Enum):
+        return _to_json(value.value)
+    return None if isinstance(value, float) and not math.isfinite(value) else value
