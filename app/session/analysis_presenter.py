@@ -13,7 +13,8 @@ from app.job_clients.error_messages import WINDOW_UNKNOWN
 from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.glossary import with_terms
-from app.state.view_state import IMAGES, SYSTEM, Analysis, ViewState
+from app.state.view import Analysis
+from app.state.view_state import IMAGES, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
@@ -135,8 +136,8 @@ class AnalysisPresenter:
         watch(lambda event: self._draw_manifolds(), "images")
         watch(lambda *events: self._explain_manifolds(), ["manifolds", "plane"])
         watch(lambda event: self.curves.follow_energy(event.new), "energy")
-        watch(lambda *events: self._stop_sweep(), [*SYSTEM, "plane", "t_max"])
-        watch(lambda *events: self._follow_system(), list(SYSTEM))
+        watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
+        watch(lambda *events: self._follow_system(), "system")
         self._show_pictures()
         self.curves.follow_energy(state.energy)
         self.curves.follow_system(state.system)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from app.job_clients.latest_request import LatestRequest, Locked
-from app.state.compared_view import ComparedView
 from app.state.system_review import review_job
+from app.state.view import View
 from app.state.view_state import ViewState
 from app.views.components.numbers import grouped, percent
 from app.views.maps.map_plots import MapsView
@@ -94,9 +95,11 @@ class ComparisonPresenter:
         else:
             self._request_map(view, self._reviewed, self._frame)
 
-    def _request_map(self, view: ComparedView, reviewed: SystemReview, frame: EscapeMap) -> None:
+    def _request_map(self, view: View, reviewed: SystemReview, frame: EscapeMap) -> None:
         try:
-            job = map_job(view.map_spec(reviewed.potential, frame.spec))
+            spec = view.map_spec(reviewed)
+            like = frame.spec
+            job = map_job(replace(spec, resolution=like.resolution, window=like.find_window(), t_max=like.t_max))
         except ValueError as error:
             self._fail(str(error))
         else:

@@ -30,7 +30,7 @@ from app.session.watch_presenter import WatchPresenter
 from app.state.glossary import glossary_list
 from app.state.navigation import DIVE_FACTOR, window_moves, zoom
 from app.state.presets import Preset
-from app.state.view_state import SYSTEM, Analysis, Start
+from app.state.view import Analysis, Start
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.analysis_choice import AnalysisTabs
 from app.views.components.collapsible_section import Drawers, Fold, Stack
@@ -189,9 +189,9 @@ class Explorer:
         watch(lambda event: self._set_palette(), "palette")
         watch(lambda event: self.maps.lock_times(event.new), "lock_times")
         watch(lambda event: self.toolbar.follow(zoomed=event.new is not None), "window")
-        watch(self._go_to_window, [*SYSTEM, "plane", "window"])
+        watch(self._go_to_window, ["system", "plane", "window"])
         watch(lambda event: self.gallery.invite(on=not event.new), "starts")
-        watch(self._remove_box, [*SYSTEM, "plane", "window", "box"])
+        watch(self._remove_box, ["system", "plane", "window", "box"])
         watch(lambda event: self._show_box(event.new), "box")
         watch(lambda event: self._show_analysis(), "analysis")
         watch(lambda event: self.maps.grid.enlarge(event.new), "focus")
@@ -331,15 +331,15 @@ class Explorer:
             state.compared = None
             return
         window = self._window() if is_ready_for_maps(state.potential) else state.window
-        state.param.update(compared=state.present_view(), window=window)
+        state.param.update(compared=state.view, window=window)
 
     def _swap_views(self) -> None:
         """Exchange the view of the controls and the one that it is compared with."""
         state, other = self.state, self.state.compared
         if other is None:
             return
-        energy = {} if isinstance(other.energy, tuple) else {"energy": other.energy}
-        self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.present_view()})
+        energy = {} if other.energy is None else {"energy": other.energy}
+        self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.view})
 
     def _show_slice(self, plane: Slice) -> None:
         self.state.show_slice(checked_slice(plane))
@@ -353,7 +353,7 @@ class Explorer:
         # On a narrow screen the drawer covers the maps.
         if self._by_touch:
             self.drawers.show(None)
-        self._open_view(System(preset.case), {"chosen": 0, **preset.values()})
+        self._open_view(preset.view.system, preset.view.values())
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")

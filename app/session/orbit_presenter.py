@@ -14,7 +14,7 @@ from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.latest_request import Locked
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
-from app.state.view_state import SYSTEM, ViewState
+from app.state.view_state import ViewState
 from app.views.maps.markers import NO_POINTS, Markers
 from app.views.maps.well import WellView
 from app.views.orbits.inspector import Inspector
@@ -91,7 +91,7 @@ class OrbitPresenter:
         self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         self._indicators = IndicatorsRequests(state, jobs, self._show_verdicts, self.controls.say, locked)
-        state.param.watch(lambda *events: self._end_message(), ["starts", "chosen", *SYSTEM, "plane", "energy", "t_max"])
+        state.param.watch(lambda *events: self._end_message(), ["starts", "chosen", "system", "plane", "energy", "t_max"])
         state.param.watch(lambda event: self.controls.follow_plane(event.new), "plane")
         state.param.watch(lambda event: self._show(self._shown), "chosen")
         self.controls.follow_plane(state.plane)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.history import History
 from app.state.system_review import is_known, review_catalogue_entry, review_job
-from app.state.view_state import SYSTEM, ViewState
+from app.state.view_state import ViewState
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System
 from engine.jobs.client import JobSubmitter
@@ -54,7 +54,7 @@ class PotentialPresenter:
         self._last: SystemReview | None = None
         self.panel = PotentialPanel(state.reviewed, locked(self._take))
         self._request = LatestRequest(jobs, self._on_review, self._on_failure, locked)
-        state.param.watch(lambda *events: self._follow(), list(SYSTEM))
+        state.param.watch(lambda *events: self._follow(), "system")
         self.panel.show(state.reviewed)
 
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:

@@ -10,7 +10,8 @@ import panel as pn
 from app.browser.ensemble_player import EnsemblePlayer
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.help_texts import title_with_help
-from app.state.view_state import SYSTEM, Analysis, ViewState
+from app.state.view import Analysis
+from app.state.view_state import ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
 from engine import EscapeFlux
@@ -28,8 +29,8 @@ class WatchPresenter:
         self._player: EnsemblePlayer | None = None
         self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
         watch = state.param.watch
-        watch(lambda *events: self._follow(), [*SYSTEM, "watched", "starts", "chosen", "box"])
-        watch(lambda *events: self.request_rate(), [*SYSTEM, "plane", "energy", "analysis"])
+        watch(lambda *events: self._follow(), ["system", "watched", "starts", "chosen", "box"])
+        watch(lambda *events: self.request_rate(), ["system", "plane", "energy", "analysis"])
 
     def build(self) -> list[pn.viewable.Viewable]:
         """The player."""

@@ -34,7 +34,7 @@ class Session:
 
     def __init__(self, plane: Slice) -> None:
         self.changed = threading.Condition()
-        self.state, self.marks = ViewState(case="I", energy=0.19, t_max=1e3, plane=plane), RecordingMarkers()
+        self.state, self.marks = ViewState(system=System("I"), energy=0.19, t_max=1e3, plane=plane), RecordingMarkers()
         self.well = WellView()
         self.opened: list[tuple[System, dict[str, Any]]] = []
         self.presenter = OrbitPresenter(

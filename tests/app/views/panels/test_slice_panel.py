@@ -21,7 +21,7 @@ class Drawer:
     """The panel with its state, which takes every slice."""
 
     def __init__(self) -> None:
-        self.state = ViewState(case="I", energy=0.19)
+        self.state = ViewState(system=System("I"), energy=0.19)
         self.panel = SlicePanel(self.state, self.state.show_slice)
 
     @property
