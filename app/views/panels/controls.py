@@ -84,7 +84,7 @@ class Controls:
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half"], margin=(8, 10, 8, 4))
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.energy = EnergySlider(
-            self._take_energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
+            self._take_energy, state.energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
         )
         self.play = button(PLAY, actions.play, width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
         self.exact_energy = NumberBox(
@@ -206,9 +206,10 @@ class Controls:
         on_h = state.plane.energy_axis is not None
         beyond = not state.energies.low <= state.energy <= state.energies.high
         note = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else ""
-        self.energy.param.update(energy=state.energy, disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
+        self.energy.param.update(disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
         self.exact_energy.disabled = on_h
-        self.exact_energy.show(state.energy)
+        for shown in (self.energy, self.exact_energy):
+            shown.show(state.energy)
         self.play.disabled = on_h
 
 

@@ -41,10 +41,10 @@ class Session:
         self.panel = self.presenter.panel
 
     def type(self, text: str, *, enter: bool = True) -> None:
-        send(self.panel.formula, {"text": text, "typed": 1, "done": enter})
+        send(self.panel.formula, {"value": text, "count": 1, "done": enter})
 
     def slide(self, name: str, number: float, *, done: bool = True) -> None:
-        send(self.panel.sliders[name], {"number": number, "chosen": 1, "done": done})
+        send(self.panel.sliders[name], {"value": number, "count": 1, "done": done})
 
     def wait_for(self, condition: Callable[[], bool]) -> None:
         with self.changed:
@@ -63,13 +63,13 @@ def session() -> Iterator[Session]:
 
 
 def test_a_text_is_used_while_it_is_typed_unless_it_needs_another_integrator(session: Session) -> None:
-    newer = {"text": WEAKER, "typed": 2, "done": False}
+    newer = {"value": WEAKER, "count": 2, "done": False}
     watcher = session.state.param.watch(lambda event: send(session.panel.formula, newer), "system")
     session.type(WEAKER, enter=False)
     session.wait_for(lambda: session.state.system.formula == WEAKER)
     assert "2 channels above the escape energy h = 0.5" in session.panel.message.object
     # The text that was typed meanwhile stays.
-    assert session.panel.formula.shown == {"text": WEAKER, "typed": 2}
+    assert session.panel.formula.shown == {"value": WEAKER, "count": 2}
     session.state.param.unwatch(watcher)
     session.type(NEW, enter=False)
     session.wait_for_message("Press Enter")
@@ -130,7 +130,7 @@ def test_a_refused_text_stays_with_its_reason_and_its_points(session: Session, t
     assert "The maps still show Case I: V = ½(x² + y²) − xy²" in session.panel.message.object
     assert points in session.panel.facts.object or points in session.panel.message.object
     assert not text or text not in session.panel.message.object or text == escape(text)
-    assert session.panel.formula.text == text
+    assert session.panel.formula.value == text
     assert session.panel.move.visible == (text == WELL_ELSEWHERE)
     assert (session.panel.known.value, session.state.system.case) == (TYPED, "I")
 
@@ -141,14 +141,14 @@ def test_a_well_elsewhere_can_be_used(session: Session) -> None:
     session.wait_for(lambda: session.panel.move.visible)
     session.panel.move.clicks += 1
     session.wait_for(lambda: session.state.system.case == TYPED and not session.panel.move.visible)
-    assert session.panel.formula.text == f"{WELL_ELSEWHERE}; well (1, 0)"
+    assert session.panel.formula.value == f"{WELL_ELSEWHERE}; well (1, 0)"
     assert sorted(session.state.potential.terms) == sorted(CASES["I"].terms)
     assert "alert" not in session.panel.message.object
     assert "x and y count from the well at (1, 0)" in session.panel.facts.object
 
 
 def test_what_stands_beside_a_refused_text_goes_with_it(session: Session) -> None:
-    text = session.panel.formula.text
+    text = session.panel.formula.value
     leave: list[Callable[[], None]] = [
         lambda: session.type(text, enter=False),
         lambda: session.panel.known.param.update(value="I"),
@@ -175,18 +175,18 @@ def test_a_known_potential_can_be_selected(session: Session) -> None:
 
 
 def test_a_slider_keeps_the_ratio_to_the_escape_energy_and_its_last_number(session: Session) -> None:
-    later = {"number": 0.7, "chosen": 2, "done": True}
+    later = {"value": 0.7, "count": 2, "done": True}
     session.state.param.watch(lambda event: send(session.panel.sliders["epsilon"], later), "system")
     session.slide("epsilon", 0.5, done=False)
     session.wait_for(lambda: session.state.system.parameters.get("epsilon") == 0.7)
-    assert session.panel.sliders["epsilon"].shown == {"number": 0.7, "chosen": 2}
+    assert session.panel.sliders["epsilon"].shown == {"value": 0.7, "count": 2}
     ratio = session.state.energy / session.state.potential.escape_energy
     assert ratio == pytest.approx(0.25 / CASES["I"].escape_energy, rel=1e-2)
 
 
 def test_a_typed_formula_keeps_the_parameters_which_can_be_reset(session: Session) -> None:
     session.state.show_system(review_system(System("III", parameters={"omega_1": 1.13, "epsilon": 0.5})))
-    assert session.panel.sliders["epsilon"].shown["number"] == 0.5
+    assert session.panel.sliders["epsilon"].value == 0.5
     session.panel.reset.clicks += 1
     session.wait_for(lambda: not session.state.system.parameters)
     assert session.state.system.case == "III"

@@ -41,9 +41,9 @@ def page() -> Page:
 
 
 def test_energies_are_released_at_the_slider_or_typed_beyond_it(page: Page) -> None:
-    send(page.controls.energy, {"energy": 0.25})
+    send(page.controls.energy, {"value": 0.25, "count": 1, "done": True})
     assert page.state.energy == 0.25
-    send(page.controls.exact_energy, {"number": 0.7, "typed": 1})
+    send(page.controls.exact_energy, {"value": 0.7, "count": 1, "done": True})
     assert page.state.energy == 0.7
     assert "beyond the end of the slider" in page.controls.energy.note
 
@@ -58,7 +58,7 @@ def test_the_controls_follow_a_preset(page: Page) -> None:
     page.state.param.update(system=System("II"), plane=Plane.X_Y, energy=0.22, t_max=1e3, palette="safe")
     shown = {name: getattr(page.controls, name).value for name in ("case", "plane")}
     assert shown == {"case": "II", "plane": Plane.X_Y}
-    assert page.controls.energy.energy == 0.22
+    assert page.controls.energy.value == 0.22
 
 
 def open_quality(page: Page) -> dict[str, Widget]:
