@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -123,6 +124,15 @@ class ViewState(param.Parameterized):
         self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
         self._reviewed = review_catalogue_entry(self.system.case)
         self.param.update(**values)
+
+    def follow(self, show: Callable[..., object], *names: str) -> None:
+        """Call a function with the values of these fields, now and whenever one of them changes."""
+
+        def update(*events: object) -> None:
+            show(*(getattr(self, name) for name in names))
+
+        self.param.watch(update, list(names))
+        update()
 
     @property
     def view(self) -> View:

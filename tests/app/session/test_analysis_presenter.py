@@ -20,7 +20,7 @@ from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, comp
 from engine.jobs.manager import Jobs
 from plots.pictures.map_analyses import MapAnalyses
 from tests.app.map_actions import make_maps
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of, locked_by
 
 
 class Session:
@@ -33,14 +33,7 @@ class Session:
         self.state, self.jobs = ViewState(system=System("II"), energy=0.25, resolution=112, t_max=1e3, **chosen), jobs
         self.maps = make_maps()
         self.presenter = AnalysisPresenter(
-            self.state,
-            self.jobs,
-            self.maps,
-            self.set_analyses,
-            lambda curves: None,
-            lambda text: None,
-            self.open_view,
-            locked_by(self.changed),
+            context_of(self.state, self.jobs, self.changed, self.open_view), self.maps, self.set_analyses, lambda curves: None
         )
         self.follow_ups = FollowUpRequests(
             self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, locked_by(self.changed)

@@ -17,7 +17,7 @@ from engine.jobs.manager import Jobs
 from engine.systems.system import TYPED
 from plots.pictures.image_columns import map_columns
 from tests.app.map_actions import make_maps
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of
 
 SPEC = MapSpec(CASES["I"], Plane.X_PX, 0.2, (56, 56), window=(-0.6, 0.6, -0.6, 0.6), t_max=100.0)
 OTHER = View(System("I"), Plane.X_PX, 0.3)
@@ -31,7 +31,7 @@ class Session:
         self.said, self.refused = [""], [""]
         self.state, self.maps = ViewState(system=System("I"), energy=0.2, t_max=100.0), make_maps()
         self.presenter = ComparisonPresenter(
-            self.state, jobs, self.maps, self.said.append, self.refused.append, locked_by(self.changed)
+            context_of(self.state, jobs, self.changed), self.maps, self.said.append, self.refused.append
         )
 
     def show(self, frame: EscapeMap) -> None:

@@ -17,7 +17,7 @@ from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from engine.warmup import prepare_for_maps
 from tests.app.browser_messages import send
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of
 
 # With the integrator of case I.
 WEAKER = "½(x² + y²) − 0.5xy²"
@@ -37,7 +37,7 @@ class Session:
     def __init__(self) -> None:
         self.changed = threading.Condition()
         self.state, self.history = ViewState(system=System("I"), energy=0.25, starts=((0.1, 0.1),)), History()
-        self.presenter = PotentialPresenter(self.state, Jobs(), self.history, locked_by(self.changed))
+        self.presenter = PotentialPresenter(context_of(self.state, Jobs(), self.changed), self.history)
         self.panel = self.presenter.panel
 
     def type(self, text: str, *, enter: bool = True) -> None:

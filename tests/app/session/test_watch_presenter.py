@@ -18,7 +18,7 @@ from engine import CASES, Plane, System, compute_flux
 from engine.jobs.manager import Jobs
 from engine.warmup import prepare_for_maps
 from tests.app.browser_messages import send
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of
 
 
 class Session:
@@ -27,7 +27,7 @@ class Session:
     def __init__(self, jobs: Jobs, **chosen: Any) -> None:
         self.changed = threading.Condition()
         self.state = ViewState(system=System("III"), energy=0.45, analysis=Analysis.WATCH, **chosen)
-        self.presenter = WatchPresenter(self.state, jobs, locked_by(self.changed))
+        self.presenter = WatchPresenter(context_of(self.state, jobs, self.changed))
         _, player = self.presenter.build()
         assert isinstance(player, EnsemblePlayer)
         self.player = player
