@@ -16,7 +16,7 @@ from app.session import explorer as session
 from app.session.page import TITLE, explorer_page
 from app.state.permalink import write_link
 from app.state.view_state import ViewState
-from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, write_formula
+from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, System, write_formula
 from engine.systems.system import TYPED
 
 _STARTS_WITHIN = 60.0
@@ -97,7 +97,7 @@ class Explorer:
 def _view_of(spec: MapSpec) -> ViewState:
     """The view that shows a map; `t_max` and resolution are the nearest of the page's choices."""
     known = next((name for name, potential in POTENTIALS.items() if potential == spec.potential), TYPED)
-    view = ViewState(case=known, formula=write_formula(spec.potential) if known == TYPED else "")
+    view = ViewState(system=System(known, write_formula(spec.potential) if known == TYPED else ""))
     energy = {} if spec.common_energy is None else {"energy": spec.common_energy}
     nearest = {
         "t_max": min(view.param.t_max.objects, key=lambda choice: abs(choice - spec.t_max)),

@@ -124,10 +124,14 @@ class SimulatedSession:
         while "FormulaBox" not in self._models:
             await asyncio.sleep(POLL_SECONDS)
         self._reviewed.clear()
-        self._steps += 1
-        entries = [["text", text], ["typed", self._steps], ["done", True]]
-        self._open_channel.emit("data_event", model={"id": self._models["FormulaBox"]}, data={"type": "map", "entries": entries})
+        self._give("FormulaBox", text)
         await self._wait_for_review(time.perf_counter())
+
+    def _give(self, component: str, value: Any) -> None:
+        """Give an input a value."""
+        self._steps += 1
+        entries = [["value", value], ["count", self._steps], ["done", True]]
+        self._open_channel.emit("data_event", model={"id": self._models[component]}, data={"type": "map", "entries": entries})
 
     async def _wait_for_review(self, begin: float) -> None:
         try:
@@ -217,9 +221,7 @@ class SimulatedSession:
         # The browser computes what is shown during a drag.
         await asyncio.sleep(DRAG_SECONDS)
         self._await_map("slider", h=repr(stop))
-        self._open_channel.emit(
-            "data_event", model={"id": self._models["EnergySlider"]}, data={"type": "map", "entries": [["energy", stop]]}
-        )
+        self._give("EnergySlider", stop)
 
     async def _act_case(self) -> None:
         cases = list(CHEAP_ENERGIES)

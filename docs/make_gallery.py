@@ -15,7 +15,8 @@ from PIL import Image
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from app.state.presets import PRESETS, Preset
-from app.state.view_state import ViewState
+from app.state.system_review import review_catalogue_entry
+from app.state.view import View
 from engine import (
     EscapeMap,
     StableManifolds,
@@ -54,8 +55,8 @@ def main(keys: list[str]) -> None:
 
 def _draw_thumbnail(preset: Preset) -> Image.Image:
     """RGBA; transparent where no orbit can start, for light and dark pages."""
-    frame = compute_map(replace(ViewState(**preset.values()).map_spec(), resolution=(SIDE, SIDE)))
-    analyses = _analyse(frame, preset)
+    frame = compute_map(replace(preset.view.map_spec(review_catalogue_entry(preset.view.system.case)), resolution=(SIDE, SIDE)))
+    analyses = _analyse(frame, preset.view)
     pixels = picture_pixels(frame, preset.picture, PAPER, analyses)
     if preset.picture != "curves":
         return Image.fromarray(pixels)
@@ -66,20 +67,20 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     if analyses.manifolds is not None:
         _draw_manifolds(axes, frame, analyses.manifolds)
     else:
-        _draw_curves(axes, frame, preset)
+        _draw_curves(axes, frame, preset.view)
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
     file = BytesIO()
     figure.savefig(file, format="png")
     return Image.open(file).convert("RGBA")
 
 
-def _analyse(frame: EscapeMap, preset: Preset) -> MapAnalyses:
+def _analyse(frame: EscapeMap, view: View) -> MapAnalyses:
     spec = frame.spec
     return MapAnalyses(
-        regularity=compute_regularity(frame) if preset.judge else None,
-        trust=compute_trust(frame) if preset.trust else None,
-        origins=compute_origin_fates(spec) if preset.origins else None,
-        manifolds=find_stable_manifolds(spec.potential, preset.energy, images=2) if preset.manifolds else None,
+        regularity=compute_regularity(frame) if view.judge else None,
+        trust=compute_trust(frame) if view.trust else None,
+        origins=compute_origin_fates(spec) if view.origins else None,
+        manifolds=find_stable_manifolds(spec.potential, view.energy, images=2) if view.manifolds else None,
     )
 
 
@@ -89,20 +90,20 @@ def _draw_manifolds(axes: Axes, frame: EscapeMap, manifolds: StableManifolds) ->
         draw_curve(axes, points, frame.spec.find_window(), colors=colour, linewidths=0.4 * stroke.width)
 
 
-def _draw_curves(axes: Axes, frame: EscapeMap, preset: Preset) -> None:
+def _draw_curves(axes: Axes, frame: EscapeMap, view: View) -> None:
     """Equipotentials, limiting curve, orbits and exits."""
     spec, escape = frame.spec, frame.spec.potential.escape_energy
-    energies = (preset.energy, escape, *(level * escape for level in _LEVELS))
+    energies = (view.energy, escape, *(level * escape for level in _LEVELS))
     limit, critical, *levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.find_window())
     for pieces in levels:
         draw_curve(axes, pieces, spec.find_window(), colors=LIGHT.equipotential, linewidths=0.6)
     draw_curve(axes, critical, spec.find_window(), colors=LIGHT.critical_equipotential, linewidths=1.0)
     draw_curve(axes, limit, spec.find_window(), colors=PATCH_EDGE, linewidths=1.6)
-    for (x, y), colour in zip(preset.starts, PAPER.orbits, strict=False):
-        start = start_states(spec.potential, spec.plane, preset.energy, np.array([x]), np.array([y]))[0]
+    for (x, y), colour in zip(view.starts, PAPER.orbits, strict=False):
+        start = start_states(spec.potential, spec.plane, view.energy, np.array([x]), np.array([y]))[0]
         orbit = integrate_orbit(spec.potential, start, spec.t_max)
         draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], spec.find_window(), colors=colour, linewidths=1.0)
-    for exit_orbit in find_lyapunov_orbits(spec.potential, preset.energy):
+    for exit_orbit in find_lyapunov_orbits(spec.potential, view.energy):
         colour = PAPER.channels[exit_orbit.channel - 1]
         draw_curve(axes, [exit_orbit.half_path], spec.find_window(), colors=colour, linewidths=2.5)
 

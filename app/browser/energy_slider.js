@@ -1,4 +1,6 @@
 // @ts-check
+import {CountedValue} from "./counted_value.js"
+
 /**
  * The slider of the energy. It sends the energy to the server when it is released, and to the page while it moves.
  *
@@ -14,7 +16,6 @@ export function render({model, el}) {
   label.htmlFor = rail.id = "energy"
   label.append(name, number)
   el.append(label, rail)
-  let moved = false
   const rounded = (/** @type {number} */ energy) => Number(energy.toFixed(Math.max(model.decimals, 0)))
   const clamped = (/** @type {number} */ energy) => Math.min(Math.max(energy, model.low), model.high)
   const write = (/** @type {number} */ energy) => {
@@ -25,31 +26,36 @@ export function render({model, el}) {
     rail.setAttribute("aria-valuetext", number.textContent)
   }
   // An energy beyond the slider stays until the thumb is moved.
+  const value = new CountedValue(
+    model,
+    () => rounded(rail.valueAsNumber),
+    energy => write(clamped(energy)),
+  )
   const follow = () => {
     rail.min = String(model.low)
     rail.max = String(model.high)
     rail.disabled = model.disabled
-    rail.setAttribute("aria-label", model.title)
-    name.textContent = model.note || `${model.title}: `
+    rail.setAttribute("aria-label", model.label)
+    name.textContent = model.note || `${model.label}: `
     number.hidden = model.note !== ""
-    write(clamped(model.energy))
+    value.follow()
   }
   const tell = (/** @type {string} */ event, /** @type {number} */ energy) =>
     document.dispatchEvent(new CustomEvent(event, {detail: energy}))
   const drag = (/** @type {number} */ energy) => {
-    name.textContent = `${model.title}: `
+    name.textContent = `${model.label}: `
     number.hidden = false
     write(energy)
-    moved = true
+    value.begin()
     for (const event of ["energydragged", "energyshown"]) tell(event, energy)
   }
   // Back at the energy where it began, a drag ends without an event of change.
   const release = () => {
-    if (!moved) return
-    moved = false
-    const energy = rounded(rail.valueAsNumber)
+    if (value.done) return
+    const energy = value.read()
     tell("energyreleased", energy)
-    if (energy !== clamped(model.energy)) model.send_msg({energy})
+    if (energy === clamped(model.shown.value)) value.cancel()
+    else value.finish()
   }
   // A step of the keys is that of the numbers shown; without one the browser takes a hundredth of the range.
   const press = (/** @type {KeyboardEvent} */ event) => {
@@ -59,18 +65,18 @@ export function render({model, el}) {
     drag(clamped(rounded(rail.valueAsNumber + direction * 10 ** -model.decimals)))
     release()
   }
-  rail.addEventListener("input", () => drag(rounded(rail.valueAsNumber)))
+  rail.addEventListener("input", () => drag(value.read()))
   for (const event of ["change", "pointerup", "pointercancel"]) rail.addEventListener(event, release)
   rail.addEventListener("keydown", press)
   const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyshown", show)
   // The engine may be loaded while the slider is held.
-  const answer = () => moved && tell("energydragged", rounded(rail.valueAsNumber))
+  const answer = () => value.unsent && tell("energydragged", value.read())
   document.addEventListener("energyasked", answer)
   model.on("lifecycle:remove", () => {
     document.removeEventListener("energyshown", show)
     document.removeEventListener("energyasked", answer)
   })
-  model.on(["low", "high", "decimals", "title", "note", "disabled", "energy"], follow)
+  model.on(["low", "high", "decimals", "label", "note", "disabled", "shown"], follow)
   follow()
 }

@@ -3,46 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import isfinite
 from typing import Any
 
 import param
-from panel.custom import JSComponent
 
-from app.browser.callbacks import module_path
+from app.browser.callbacks import component_code
+from app.browser.counted_input import CountedInput, finite_number
 
 SHOWN = "energyshown"
 """Event of the page with the energy of the pictures while the server has not received it yet."""
 
 
-class EnergySlider(JSComponent):
-    """A slider for the energy.
+class EnergySlider(CountedInput):
+    """A slider for the energy; for one beyond its ends, the thumb is at the end.
 
     Parameters
     ----------
     on_release
         Called with each energy that the visitor chooses, without the session's lock.
+    energy
+        The energy at first.
     **options
         Parameters of the component.
     """
 
-    title = param.String(default="Energy h", doc="name, shown before the number")
     note = param.String(doc="shown in place of name and number")
     low = param.Number(default=0.0, doc="left end")
     high = param.Number(default=1.0, doc="right end")
     decimals = param.Integer(default=3, doc="decimals of the energies that can be chosen")
-    energy = param.Number(default=0.0, doc="energy of the server; beyond the ends, the thumb is at the end")
-    disabled = param.Boolean()
 
-    _esm = module_path("energy_slider.js")
+    _esm = component_code("energy_slider.js")
 
-    def __init__(self, on_release: Callable[[float], None], **options: Any) -> None:
-        super().__init__(**options)
-        self._on_release = on_release
-        self.on_msg(lambda event: self._receive(event.data))
+    def __init__(self, on_release: Callable[[float], None], energy: float, **options: Any) -> None:
+        super().__init__(lambda value, done: on_release(value), energy, label="Energy h", **options)
 
-    def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected.
-        match message:
-            case {"energy": float() | int() as energy} if isfinite(energy) and not self.disabled:
-                self._on_release(float(min(max(energy, self.low), self.high)))
+    def _checked(self, value: Any) -> float | None:
+        number = finite_number(value)
+        return None if number is None or self.disabled else min(max(number, self.low), self.high)

@@ -1,4 +1,6 @@
 // @ts-check
+import {CountedValue} from "./counted_value.js"
+
 /**
  * A box for a formula, as high as its text. Each change is sent; Enter, or leaving the box, finishes the text.
  *
@@ -18,32 +20,21 @@ export function render({model, el}) {
     spellcheck: false,
   })
   el.append(label, box)
-  // Texts typed so far. A text of the server that does not count them all is older than the last one typed.
-  let typed = model.shown.typed
-  let done = true
-  const send = () => model.send_msg({text: box.value, typed: ++typed, done})
-  const follow = () => {
-    if (model.shown.typed >= typed && box.value !== model.shown.text) box.value = model.shown.text
+  const write = (/** @type {string} */ text) => {
+    if (box.value !== text) box.value = text
   }
-  const finish = () => {
-    if (done) return
-    done = true
-    send()
-  }
-  box.addEventListener("input", () => {
-    done = false
-    send()
-  })
-  box.addEventListener("blur", finish)
+  const value = new CountedValue(model, () => box.value, write)
+  box.addEventListener("input", () => value.change())
+  box.addEventListener("blur", () => value.finish())
   box.addEventListener("keydown", event => {
     if (event.key !== "Enter" || event.isComposing) return
     event.preventDefault()
-    finish()
+    value.finish()
   })
   // The box is shown for typing; on a touch screen, its keyboard would cover the page.
   model.on("lifecycle:after_render", () => {
     if (matchMedia("(pointer: fine)").matches) box.focus({preventScroll: true})
   })
-  model.on("shown", follow)
-  follow()
+  model.on("shown", () => value.follow())
+  value.follow()
 }

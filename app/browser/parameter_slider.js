@@ -1,4 +1,6 @@
 // @ts-check
+import {CountedValue} from "./counted_value.js"
+
 /**
  * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent; letting go of the slider,
  * leaving it, or Enter says that the number is done.
@@ -15,46 +17,31 @@ export function render({model, el}) {
   Object.assign(box, {type: "number", min: model.lowest, max: model.highest, step: model.step, className: "bk-input"})
   box.setAttribute("aria-label", `${model.label}, number`)
   el.append(label, rail, box)
-  // Numbers chosen so far. A number of the server that does not count them all is older than the last one.
-  let chosen = model.shown.chosen
-  let done = true
   const write = (/** @type {HTMLInputElement} */ input, /** @type {number} */ number) => {
     if (input.valueAsNumber !== number) input.valueAsNumber = number
     const {low, high} = model
     const share = Math.min(Math.max((number - low) / (high - low), 0), 1)
     rail.style.setProperty("--share", String(share))
   }
-  const follow = () => {
-    if (model.shown.chosen < chosen) return
-    for (const input of [rail, box]) write(input, model.shown.number)
-  }
-  const send = () => model.send_msg({number: box.valueAsNumber, chosen: ++chosen, done})
-  const choose = () => {
-    done = false
-    send()
-  }
-  const finish = () => {
-    if (done) return
-    done = true
-    send()
-  }
+  const writeBoth = (/** @type {number} */ number) => [rail, box].forEach(input => write(input, number))
+  const value = new CountedValue(model, () => box.valueAsNumber, writeBoth)
   // A number that is being typed may not be one yet.
   const is_legal = () => Number.isFinite(box.valueAsNumber) && !box.validity.rangeUnderflow && !box.validity.rangeOverflow
   rail.addEventListener("input", () => {
     write(box, rail.valueAsNumber)
-    choose()
+    value.change()
   })
   box.addEventListener("input", () => {
     if (!is_legal()) return
     write(rail, box.valueAsNumber)
-    choose()
+    value.change()
   })
   box.addEventListener("blur", () => {
-    if (!is_legal()) box.valueAsNumber = model.shown.number
+    if (!is_legal()) box.valueAsNumber = model.shown.value
   })
-  for (const event of ["pointerup", "pointercancel", "blur"]) rail.addEventListener(event, finish)
-  box.addEventListener("blur", finish)
-  box.addEventListener("keydown", event => event.key === "Enter" && finish())
-  model.on("shown", follow)
-  follow()
+  for (const event of ["pointerup", "pointercancel", "blur"]) rail.addEventListener(event, () => value.finish())
+  box.addEventListener("blur", () => value.finish())
+  box.addEventListener("keydown", event => event.key === "Enter" && value.finish())
+  model.on("shown", () => value.follow())
+  value.follow()
 }

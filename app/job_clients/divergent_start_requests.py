@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from app.job_clients.latest_request import LatestRequest, Locked
-from app.state.view_state import SYSTEM, Start, ViewState
+from app.state.view import Start
+from app.state.view_state import ViewState
 from engine import DivergentStart, find_divergent_start
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
@@ -20,7 +21,7 @@ class DivergentStartRequests:
         self._searched: Start | None = None
         self._request = LatestRequest(jobs, self._on_result, notify, locked)
         # A start is only compared with others of the same system, plane, energy and t_max.
-        state.param.watch(lambda *events: self._request.cancel(), [*SYSTEM, "plane", "energy", "t_max"])
+        state.param.watch(lambda *events: self._request.cancel(), ["system", "plane", "energy", "t_max"])
 
     def search(self) -> None:
         """Search around the chosen start."""

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from app.job_clients.error_messages import sentence
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.latest_request import Locked
-from app.state.view_state import SYSTEM, ViewState
+from app.state.view_state import ViewState
 from engine import EscapeMap, MapSpec
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
@@ -81,7 +81,7 @@ class MapRequests:
         self._show_frame = locked(self._on_frame)
         self._show_error = locked(self._on_error)
         self._follow_ups = FollowUpRequests(state, jobs, follow_ups, listener.map_failed, locked)
-        state.param.watch(lambda *events: self.request_map(), [*SYSTEM, "plane", "energy", "t_max", "resolution", "window"])
+        state.param.watch(lambda *events: self.request_map(), ["system", "plane", "energy", "t_max", "resolution", "window"])
 
     def request_map(self) -> None:
         """Request the map of the view state and cancel the session's earlier map."""

@@ -9,7 +9,8 @@ from typing import Any
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.latest_request import Locked
-from app.state.view_state import SYSTEM, Start, ViewState
+from app.state.view import Start
+from app.state.view_state import ViewState
 from engine import BirkhoffDigits, Fate, Orbit, OrbitVerdict, judge_orbit
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
@@ -61,7 +62,7 @@ class OrbitRequests:
         # Results that are not shown yet; threads append to it.
         self._arrived: deque[tuple[Job[Orbit], OrbitCurves | str]] = deque()
         self._show_arrived = latest(self._take_arrived)
-        state.param.watch(lambda *events: self.follow(), ["starts", *SYSTEM, "plane", "energy", "t_max"])
+        state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
 
     def follow(self) -> None:
         """Request the orbits of new starts and cancel those of removed ones."""

@@ -11,9 +11,11 @@ import numpy as np
 
 from app.job_clients.error_messages import WINDOW_UNKNOWN
 from app.job_clients.follow_up_requests import FollowUp
-from app.job_clients.latest_request import LatestRequest, Locked
+from app.job_clients.latest_request import LatestRequest
+from app.session.context import SessionContext
 from app.state.glossary import with_terms
-from app.state.view_state import IMAGES, SYSTEM, Analysis, ViewState
+from app.state.view import Analysis
+from app.state.view_state import IMAGES
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
@@ -27,14 +29,12 @@ from engine import (
     StableManifolds,
     Sweep,
     SweepSpec,
-    System,
     TrustMap,
     UncertaintyExponent,
     Window,
     compute_uncertainty_exponent,
     find_stable_manifolds,
 )
-from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
 from engine.jobs.map_jobs import (
     basin_measures_job,
@@ -66,16 +66,13 @@ class AnalysisPresenter:
 
     def __init__(
         self,
-        state: ViewState,
-        jobs: JobSubmitter,
+        context: SessionContext,
         maps: MapsView,
         on_analyses: Callable[[MapAnalyses], None],
         on_curves: Callable[[Sweep | None], None],
-        on_copy: Callable[[str], None],
-        open_view: Callable[[System, dict[str, Any]], None],
-        locked: Locked,
     ) -> None:
-        self._open_view = open_view
+        state, jobs, locked = context.state, context.jobs, context.locked
+        self._open_view = context.open_view
         self._state, self._maps, self._on_analyses, self._on_curves = state, maps, on_analyses, on_curves
         self._spec: MapSpec | None = None
         self._swept: SweepSpec | None = None
@@ -84,9 +81,8 @@ class AnalysisPresenter:
         self._manifolds: StableManifolds | None = None
         self._notes: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
-        self.measures = BasinMeasuresView(locked(self._measure), on_copy, locked(lambda: state.param.update(box=None)))
-        state.param.watch(lambda event: self.measures.show_box(event.new), "box")
-        self.measures.show_box(state.box)
+        self.measures = BasinMeasuresView(locked(self._measure), context.copy, locked(lambda: state.param.update(box=None)))
+        state.follow(self.measures.show_box, "box")
         self.curves = CurvesView(locked(self._sweep), self._open_value)
         self._exponent = LatestRequest(jobs, self._show_exponent, self.measures.say, locked)
         self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
@@ -134,11 +130,10 @@ class AnalysisPresenter:
         watch(self._remove_switched_off, list(_RESULT_OF))
         watch(lambda event: self._draw_manifolds(), "images")
         watch(lambda *events: self._explain_manifolds(), ["manifolds", "plane"])
-        watch(lambda event: self.curves.follow_energy(event.new), "energy")
-        watch(lambda *events: self._stop_sweep(), [*SYSTEM, "plane", "t_max"])
-        watch(lambda *events: self._follow_system(), list(SYSTEM))
+        self._state.follow(self.curves.follow_energy, "energy")
+        watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
+        watch(lambda *events: self._follow_system(), "system")
         self._show_pictures()
-        self.curves.follow_energy(state.energy)
         self.curves.follow_system(state.system)
 
     def _layer(

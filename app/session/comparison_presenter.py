@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from app.job_clients.latest_request import LatestRequest, Locked
-from app.state.compared_view import ComparedView
+from app.job_clients.latest_request import LatestRequest
+from app.session.context import SessionContext
 from app.state.system_review import review_job
-from app.state.view_state import ViewState
+from app.state.view import View
 from app.views.components.numbers import grouped, percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
-from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_jobs import map_job
 from engine.systems.review.potential_review import SystemReview
@@ -26,36 +26,30 @@ class ComparisonPresenter:
 
     Parameters
     ----------
-    state
-        The view state.
-    jobs
-        Computes the other map.
+    context
+        Of the session.
     maps
-        Show it.
+        Show the other map.
     say
         Called with what is known of the two views.
     refuse
         Called with the reason why the other view, that of a link, cannot be shown; then there is no comparison any more.
-    locked
-        Wraps functions that change the page.
     """
 
     def __init__(
         self,
-        state: ViewState,
-        jobs: JobSubmitter,
+        context: SessionContext,
         maps: MapsView,
         say: Callable[[str], None],
         refuse: Callable[[str], None],
-        locked: Locked,
     ) -> None:
-        self._state, self._maps, self._say, self._refuse = state, maps, say, refuse
+        self._state, self._maps, self._say, self._refuse = context.state, maps, say, refuse
         self._frame: EscapeMap | None = None
         self._other: EscapeMap | None = None
         self._reviewed: SystemReview | None = None
-        self._review = LatestRequest(jobs, self._take_review, self._refuse_system, locked)
-        self._request = LatestRequest(jobs, self._take, self._fail, locked)
-        state.param.watch(lambda event: self._follow(), "compared")
+        self._review = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
+        self._request = LatestRequest(context.jobs, self._take, self._fail, context.locked)
+        self._state.param.watch(lambda event: self._follow(), "compared")
         self._continue()
 
     def follow(self, frame: EscapeMap) -> None:
@@ -94,9 +88,11 @@ class ComparisonPresenter:
         else:
             self._request_map(view, self._reviewed, self._frame)
 
-    def _request_map(self, view: ComparedView, reviewed: SystemReview, frame: EscapeMap) -> None:
+    def _request_map(self, view: View, reviewed: SystemReview, frame: EscapeMap) -> None:
         try:
-            job = map_job(view.map_spec(reviewed.potential, frame.spec))
+            spec = view.map_spec(reviewed)
+            like = frame.spec
+            job = map_job(replace(spec, resolution=like.resolution, window=like.find_window(), t_max=like.t_max))
         except ValueError as error:
             self._fail(str(error))
         else:

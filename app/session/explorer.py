@@ -23,6 +23,7 @@ from app.runtime.session_callbacks import SessionCallbacks
 from app.runtime.visitors import account_of
 from app.session.analysis_presenter import AnalysisPresenter
 from app.session.comparison_presenter import ComparisonPresenter
+from app.session.context import SessionContext
 from app.session.link_presenter import LinkPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
@@ -30,7 +31,7 @@ from app.session.watch_presenter import WatchPresenter
 from app.state.glossary import glossary_list
 from app.state.navigation import DIVE_FACTOR, window_moves, zoom
 from app.state.presets import Preset
-from app.state.view_state import SYSTEM, Analysis, Start
+from app.state.view import Analysis, Start
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.analysis_choice import AnalysisTabs
 from app.views.components.collapsible_section import Drawers, Fold, Stack
@@ -53,7 +54,7 @@ from engine.jobs.job import Job, Queue
 from engine.propagation.fates import describe_fate
 from engine.slices.planes import checked_slice
 from engine.warmup import is_ready_for_maps, seconds_until_ready_for_maps
-from plots.pictures.palette import MOST_ORBITS
+from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 
 class Explorer:
@@ -77,40 +78,16 @@ class Explorer:
         process = process_state()
         jobs = self._client = JobClient(process.jobs, account=account_of(document))
         on_disconnect(document, self._client.close)
-        self.potential = PotentialPresenter(self.state, jobs, self.links.history, self._locked)
-        self.analyses = AnalysisPresenter(
-            self.state,
-            jobs,
-            self.maps,
-            self.downloads.show_analyses,
-            self.downloads.show_curves,
-            self._copy_text,
-            self._open_view,
-            self._locked,
-        )
+        context = SessionContext(self.state, jobs, self._locked, self._latest, self._copy_text, self._open_view)
+        self.potential = PotentialPresenter(context, self.links.history)
+        self.analyses = AnalysisPresenter(context, self.maps, self.downloads.show_analyses, self.downloads.show_curves)
         self.comparison = ComparisonPresenter(
-            self.state,
-            jobs,
-            self.maps,
-            lambda sentence: self.analyses.note(compared=sentence),
-            self.links.refuse_comparison,
-            self._locked,
+            context, self.maps, lambda sentence: self.analyses.note(compared=sentence), self.links.refuse_comparison
         )
         self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_overloaded)
         self._browser_systems = LatestRequest(jobs, self.engine.show_system, lambda sentence: None, self._locked)
-        self.orbits: OrbitPresenter = OrbitPresenter(
-            self.state,
-            jobs,
-            self.maps.marks,
-            self.maps.well,
-            self._add_start,
-            self._show_orbits,
-            self._copy_text,
-            self._open_view,
-            self._locked,
-            self._latest,
-        )
-        self.watch = WatchPresenter(self.state, jobs, self._locked)
+        self.orbits = OrbitPresenter(context, self.maps.marks, self.maps.well, self._add_start, self._show_orbits)
+        self.watch = WatchPresenter(context)
         self.analysis = Stack(
             {
                 Analysis.ORBIT: lambda: [self.orbits.inspector.layout(), self.gallery.invitation()],
@@ -185,24 +162,17 @@ class Explorer:
         )
 
     def _connect(self) -> None:
-        watch, state = self.state.param.watch, self.state
-        watch(lambda event: self._set_palette(), "palette")
-        watch(lambda event: self.maps.lock_times(event.new), "lock_times")
-        watch(lambda event: self.toolbar.follow(zoomed=event.new is not None), "window")
-        watch(self._go_to_window, [*SYSTEM, "plane", "window"])
-        watch(lambda event: self.gallery.invite(on=not event.new), "starts")
-        watch(self._remove_box, [*SYSTEM, "plane", "window", "box"])
-        watch(lambda event: self._show_box(event.new), "box")
-        watch(lambda event: self._show_analysis(), "analysis")
-        watch(lambda event: self.maps.grid.enlarge(event.new), "focus")
+        follow, watch = self.state.follow, self.state.param.watch
+        follow(self._set_palette, "palette")
+        follow(self.maps.lock_times, "lock_times")
+        follow(lambda window: self.toolbar.follow(zoomed=window is not None), "window")
+        watch(self._go_to_window, ["system", "plane", "window"])
+        follow(lambda starts: self.gallery.invite(on=not starts), "starts")
+        watch(self._remove_box, ["system", "plane", "window", "box"])
+        follow(self._show_box, "box")
+        follow(self._show_analysis, "analysis")
+        follow(self.maps.grid.enlarge, "focus")
         self.links.connect(self.potential, self.browser, self.progress, self.notice)
-        self._set_palette()
-        self.maps.lock_times(state.lock_times)
-        self.toolbar.follow(zoomed=state.window is not None)
-        self.gallery.invite(on=state.chosen_start is None)
-        self._show_analysis()
-        self._show_box(state.box)
-        self.maps.grid.enlarge(state.focus)
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
@@ -221,11 +191,10 @@ class Explorer:
         self.map_requests.request_map()
         self.orbits.begin()
 
-    def _set_palette(self) -> None:
-        palette = self.state.colours
+    def _set_palette(self, name: str) -> None:
         with pn.io.hold():
             for view in (self.maps, self.orbits, self.statistics, self.analyses):
-                view.set_palette(palette)
+                view.set_palette(PALETTES[name])
 
     def _add_middle(self) -> None:
         """Add the start in the middle of the window."""
@@ -248,8 +217,7 @@ class Explorer:
             *self.accessible_table.fold.parts(),
         ]
 
-    def _show_analysis(self) -> None:
-        analysis = self.state.analysis
+    def _show_analysis(self, analysis: Analysis) -> None:
         self.analysis.show(analysis)
         self.statistics.activate(analysis is Analysis.STATISTICS)
 
@@ -331,15 +299,15 @@ class Explorer:
             state.compared = None
             return
         window = self._window() if is_ready_for_maps(state.potential) else state.window
-        state.param.update(compared=state.present_view(), window=window)
+        state.param.update(compared=state.view, window=window)
 
     def _swap_views(self) -> None:
         """Exchange the view of the controls and the one that it is compared with."""
         state, other = self.state, self.state.compared
         if other is None:
             return
-        energy = {} if isinstance(other.energy, tuple) else {"energy": other.energy}
-        self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.present_view()})
+        energy = {} if other.energy is None else {"energy": other.energy}
+        self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.view})
 
     def _show_slice(self, plane: Slice) -> None:
         self.state.show_slice(checked_slice(plane))
@@ -353,7 +321,7 @@ class Explorer:
         # On a narrow screen the drawer covers the maps.
         if self._by_touch:
             self.drawers.show(None)
-        self._open_view(System(preset.case), {"chosen": 0, **preset.values()})
+        self._open_view(preset.view.system, preset.view.values())
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")

@@ -12,12 +12,11 @@ from bokeh.document import Document
 
 from app.session.potential_presenter import PotentialPresenter
 from app.state.history import History
-from app.state.link_summary import summary_of
 from app.state.permalink import (
     EMBED,
     LINKED,
     fit_to_system,
-    linked_system,
+    linked_view,
     read_link,
     refused_comparison,
     refused_link,
@@ -53,9 +52,9 @@ class LinkPresenter:
         """Whether the page shows one picture only, in a frame of another page."""
         self.open_link = OpenLink()
         self.history = History()
+        self.view = linked_view(self._link)
+        """The view of the link in the page's address."""
         self.state = self._first_state()
-        self.summary = summary_of(self._link)
-        """What programs show of the link in the page's address."""
 
     def connect(
         self,
@@ -72,7 +71,7 @@ class LinkPresenter:
 
     def begin(self, begin_view: Callable[[], object]) -> None:
         """Show the view of the first link once its system is reviewed; `begin_view` requests what the state describes."""
-        system = linked_system(self._link)
+        system = self.view.system
         if is_known(system):
             begin_view()
             self._show_problems()
@@ -93,16 +92,15 @@ class LinkPresenter:
         self._browser.follow_steps(steps)
         values, self._problems = read_link(dict(parse_qsl(link.removeprefix("?"))))
         self.history.move_to(entry)
-        self.open(linked_system(values), partial(self._return, values))
+        self.open(linked_view(values).system, partial(self._return, values))
 
     def _first_state(self) -> ViewState:
         """The view of the link, with the first system in place of one that must be reviewed."""
-        system = linked_system(self._link)
-        if not is_known(system):
+        if not is_known(self.view.system):
             return ViewState(**without_system(self._link))
-        fitting, problems = fit_to_system(self._link, review_catalogue_entry(system.case))
+        fitting, problems = fit_to_system(self._link, review_catalogue_entry(self.view.system.case))
         self._problems += problems
-        return ViewState(case=system.case, **fitting)
+        return ViewState(**fitting)
 
     def _begin_with(self, reviewed: SystemReview) -> None:
         """Show the view of the first link with the system that it names."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
 
 import panel as pn
 
 from app.job_clients.divergent_start_requests import DivergentStartRequests
 from app.job_clients.indicators_requests import IndicatorsRequests
-from app.job_clients.latest_request import Locked
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
-from app.state.view_state import SYSTEM, ViewState
+from app.session.context import SessionContext
 from app.views.maps.markers import NO_POINTS, Markers
 from app.views.maps.well import WellView
 from app.views.orbits.inspector import Inspector
@@ -22,8 +20,7 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
-from engine import IndicatorVerdict, System
-from engine.jobs.client import JobSubmitter
+from engine import IndicatorVerdict
 from engine.slices.section import SECTION
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 from plots.pictures.palette import Palette
@@ -37,7 +34,7 @@ class OrbitPresenter:
 
     Parameters
     ----------
-    state, jobs
+    context
         Of the session.
     marks, well
         Marks on the maps, and the picture of the paths.
@@ -45,27 +42,19 @@ class OrbitPresenter:
         Called with x and ordinate of a start that is typed.
     on_verdicts
         Called with the orbits when their results change.
-    on_copy
-        Called with a table as tab-separated text.
-    locked, latest
-        Wrap functions that change the document; of the calls of the second kind only the latest runs.
     """
 
     def __init__(
         self,
-        state: ViewState,
-        jobs: JobSubmitter,
+        context: SessionContext,
         marks: Markers,
         well: WellView,
         on_start: Callable[[float, float], None],
         on_verdicts: Callable[[Sequence[ChosenOrbit]], None],
-        on_copy: Callable[[str], None],
-        open_view: Callable[[System, dict[str, Any]], None],
-        locked: Locked,
-        latest: Locked,
     ) -> None:
+        state, jobs, locked, latest = context.state, context.jobs, context.locked, context.latest
         self._state, self._marks, self._well, self._on_verdicts = state, marks, well, on_verdicts
-        self._open_view = open_view
+        self._open_view = context.open_view
         self._shown: tuple[ChosenOrbit, ...] = ()
         # The interval of time in view, and the curves restricted to it; None is the whole duration.
         self._interval: Interval | None = None
@@ -79,7 +68,7 @@ class OrbitPresenter:
             find_divergent_start=locked(lambda: self._divergent_start.search()),
             open_plane=locked(self._open_plane),
             show_all_times=locked(lambda: self._brush(None)),
-            copy=on_copy,
+            copy=context.copy,
         )
         self.controls: OrbitControls = OrbitControls(actions)
         self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
@@ -91,10 +80,9 @@ class OrbitPresenter:
         self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         self._indicators = IndicatorsRequests(state, jobs, self._show_verdicts, self.controls.say, locked)
-        state.param.watch(lambda *events: self._end_message(), ["starts", "chosen", *SYSTEM, "plane", "energy", "t_max"])
-        state.param.watch(lambda event: self.controls.follow_plane(event.new), "plane")
+        state.param.watch(lambda *events: self._end_message(), ["starts", "chosen", "system", "plane", "energy", "t_max"])
+        state.follow(self.controls.follow_plane, "plane")
         state.param.watch(lambda event: self._show(self._shown), "chosen")
-        self.controls.follow_plane(state.plane)
 
     def begin(self) -> None:
         """Request the orbits of the state."""

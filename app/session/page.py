@@ -12,7 +12,8 @@ from jinja2 import Template
 from panel.io.resources import parse_template
 
 from app.session.explorer import Explorer
-from app.state.link_summary import LinkSummary
+from app.state.link_summary import link_sentence, link_title
+from app.state.view import View
 from app.views.components.notice import watch_connection
 from app.views.components.theme import THEME_KEY, ExplorerDesign, theme_css
 from app.views.components.widgets import FULL_HEIGHT
@@ -37,9 +38,10 @@ class RootColumn(pn.Column):
 class ExplorerTemplate(pn.Template):
     """The page of one session: a header, the controls, and the stage with the maps."""
 
-    def __init__(self, summary: LinkSummary, **roots: pn.viewable.Viewable) -> None:
+    def __init__(self, view: View, **roots: pn.viewable.Viewable) -> None:
         super().__init__(_frame(), items=roots, design=ExplorerDesign, location=False)
-        self.add_variable("summary", summary)
+        self.add_variable("link_title", link_title(view))
+        self.add_variable("link_sentence", link_sentence(view))
         self.add_variable("is_embedded", "picture_alone" in roots)
         self.add_variable("theme_css", theme_css())
         self.add_variable("theme_key", THEME_KEY)
@@ -54,9 +56,9 @@ class ExplorerTemplate(pn.Template):
 def explorer_page(explorer: Explorer) -> ExplorerTemplate:
     """The page of one explorer, or in a frame of another page that of one picture."""
     if explorer.links.embedded:
-        return ExplorerTemplate(explorer.links.summary, picture_alone=_picture_alone(explorer))
+        return ExplorerTemplate(explorer.links.view, picture_alone=_picture_alone(explorer))
     return ExplorerTemplate(
-        explorer.links.summary,
+        explorer.links.view,
         header=explorer.drawers.buttons,
         controls=_column(*explorer.controls.layout(), css_class="controls"),
         stage=_stage(explorer),

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.job_clients.latest_request import LatestRequest, Locked
+from app.job_clients.latest_request import LatestRequest
+from app.session.context import SessionContext
 from app.state.history import History
 from app.state.system_review import is_known, review_catalogue_entry, review_job
-from app.state.view_state import SYSTEM, ViewState
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System
-from engine.jobs.client import JobSubmitter
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
 from engine.warmup import is_ready_for_maps
@@ -46,15 +45,16 @@ class PotentialPresenter:
     All that is typed or dragged until it is done makes one entry of the history.
     """
 
-    def __init__(self, state: ViewState, jobs: JobSubmitter, history: History, locked: Locked) -> None:
-        self._state, self._history = state, history
+    def __init__(self, context: SessionContext, history: History) -> None:
+        state = self._state = context.state
+        self._history = history
         self._proposal: _Proposal | None = None
         # The latest one that was taken during a review.
         self._next: _Proposal | None = None
         self._last: SystemReview | None = None
-        self.panel = PotentialPanel(state.reviewed, locked(self._take))
-        self._request = LatestRequest(jobs, self._on_review, self._on_failure, locked)
-        state.param.watch(lambda *events: self._follow(), list(SYSTEM))
+        self.panel = PotentialPanel(state.reviewed, context.locked(self._take))
+        self._request = LatestRequest(context.jobs, self._on_review, self._on_failure, context.locked)
+        state.param.watch(lambda *events: self._follow(), "system")
         self.panel.show(state.reviewed)
 
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:

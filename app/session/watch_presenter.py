@@ -8,13 +8,13 @@ from typing import Any
 import panel as pn
 
 from app.browser.ensemble_player import EnsemblePlayer
-from app.job_clients.latest_request import LatestRequest, Locked
+from app.job_clients.latest_request import LatestRequest
+from app.session.context import SessionContext
 from app.state.help_texts import title_with_help
-from app.state.view_state import SYSTEM, Analysis, ViewState
+from app.state.view import Analysis
 from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
 from engine import EscapeFlux
-from engine.jobs.client import JobSubmitter
 from engine.jobs.map_jobs import flux_job
 from engine.warmup import is_ready_for_maps
 
@@ -22,14 +22,14 @@ from engine.warmup import is_ready_for_maps
 class WatchPresenter:
     """Makes the player when it is first asked for, and requests the decay rate of mixed motion for it."""
 
-    def __init__(self, state: ViewState, jobs: JobSubmitter, locked: Locked) -> None:
-        self._state = state
-        self._take = locked(self._choose)
+    def __init__(self, context: SessionContext) -> None:
+        self._state = context.state
+        self._take = context.locked(self._choose)
         self._player: EnsemblePlayer | None = None
-        self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
-        watch = state.param.watch
-        watch(lambda *events: self._follow(), [*SYSTEM, "watched", "starts", "chosen", "box"])
-        watch(lambda *events: self.request_rate(), [*SYSTEM, "plane", "energy", "analysis"])
+        self._flux = LatestRequest(context.jobs, self._show_flux, lambda sentence: None, context.locked)
+        watch = self._state.param.watch
+        watch(lambda *events: self._follow(), ["system", "watched", "starts", "chosen", "box"])
+        watch(lambda *events: self.request_rate(), ["system", "plane", "energy", "analysis"])
 
     def build(self) -> list[pn.viewable.Viewable]:
         """The player."""

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
-
-from app.state.permalink import linked_system
-from app.state.view_state import ViewState
-from engine import Slice, System
+from app.state.view import View
+from engine import System
 from engine.foundations.wording import format_number
 from engine.systems.formulas.formula_parser import formula_letters
 from engine.systems.system import TYPED
@@ -17,43 +12,19 @@ LONGEST_FORMULA = 80
 """Largest number of characters of a formula in a title."""
 
 
-@dataclass(frozen=True)
-class LinkSummary:
-    """The part of a link that its title and its sentence name.
-
-    Attributes
-    ----------
-    system
-        The system, not reviewed yet.
-    plane
-        The slice of starts.
-    energy
-        h, dimensionless; None for the first energy of the system.
-    """
-
-    system: System
-    plane: Slice
-    energy: float | None
-
-    @property
-    def title(self) -> str:
-        """Name of the system, with the formula of a typed one."""
-        formula = _shown_formula(self.system)
-        return f"{self.system.title}, V = {formula}" if formula else self.system.title
-
-    def describe(self) -> str:
-        """What the view shows, in one sentence."""
-        has_energy = self.energy is not None and self.plane.energy_axis is None
-        energy = f" at h = {format_number(self.energy or 0.0, 6)}" if has_energy else ""
-        return (
-            f"{self.title} on the plane {self.plane.title}{energy}: "
-            "each start of an orbit has the colour of the exit through which the orbit leaves the well."
-        )
+def link_title(view: View) -> str:
+    """Name of the system, with the formula of a typed one."""
+    formula = _shown_formula(view.system)
+    return f"{view.system.title}, V = {formula}" if formula else view.system.title
 
 
-def summary_of(values: Mapping[str, Any]) -> LinkSummary:
-    """The summary of a link, from the values of `app.state.permalink.read_link`."""
-    return LinkSummary(linked_system(values), values.get("plane", ViewState.param["plane"].default), values.get("energy"))
+def link_sentence(view: View) -> str:
+    """What the view shows, in one sentence."""
+    energy = "" if view.known_energy is None else f" at h = {format_number(view.known_energy, 6)}"
+    return (
+        f"{link_title(view)} on the plane {view.plane.title}{energy}: "
+        "each start of an orbit has the colour of the exit through which the orbit leaves the well."
+    )
 
 
 def _shown_formula(system: System) -> str:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from engine import CASES, Slice, System
+from engine import CASES, System
 from engine.jobs.job import Job, Queue
-from engine.slices.energies import Energy
 from engine.systems.review.potential_review import SystemReview, review_system
 from engine.systems.system import TYPED
 
@@ -25,9 +24,3 @@ def review_job(system: System) -> Job[SystemReview]:
 def review_catalogue_entry(case: str) -> SystemReview:
     """The review of a catalogue entry; the server reviews the cases of the paper before it serves pages."""
     return review_system(System(case))
-
-
-def map_energy(reviewed: SystemReview, plane: Slice, energy: float) -> Energy:
-    """The energy of a map on a plane: `energy`, or the range of an axis h."""
-    energies = reviewed.energies
-    return energy if plane.energy_axis is None else (max(reviewed.escape_energy, energies.low), energies.high)

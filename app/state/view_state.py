@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import reprlib
-from dataclasses import asdict, fields
-from enum import StrEnum
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import param
 
 from app.runtime.process_state import process_state
-from app.state.compared_view import ComparedView
-from app.state.system_review import map_energy, review_catalogue_entry
-from app.state.watched_starts import DEFAULT_STARTS, WatchedStarts
-from engine import POTENTIALS, MapSpec, Orbit, Plane, Potential, Slice, System, Window, integrate_orbit, start_states
+from app.state.system_review import review_catalogue_entry
+from app.state.view import FIRST_VIEW, Analysis, Start, View
+from app.state.watched_starts import WatchedStarts
+from engine import MapSpec, Orbit, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.jobs.job import Job, Queue
 from engine.systems.catalogue.entry import EnergyRange
@@ -32,18 +31,12 @@ def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> di
     return {name: value for name, value in choices.items() if value <= max(limit, least)}
 
 
-SYSTEM = tuple(field.name for field in fields(System))
-"""Attributes of a view state that define its system."""
-
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
 IMAGES = 3
 """Images of the stable manifolds that are computed: later ones are less than a pixel apart."""
 
 IMAGE_CHOICES = {**{str(image): image for image in range(1, IMAGES + 1)}, "all": 0}
 """Images of the stable manifolds that can be drawn."""
-
-DEFAULT_SIDE = MapSpec.resolution[0]
-"""Columns and rows of the map at the opening."""
 
 RESOLUTION_CHOICES = {"112 × 112": 112, "224 × 224": 224, "450 × 450": 450, "900 × 900": 900}
 
@@ -65,30 +58,16 @@ LAYERS = ("judge", "trust", "manifolds", "origins")
 """Attributes of the view state that turn follow-up analyses of the map on."""
 
 
-class Analysis(StrEnum):
-    """What is shown beside the maps; the values stand in links."""
-
-    ORBIT = "orbit"
-    STATISTICS = "statistics"
-    MEASURES = "measures"
-    ENERGIES = "energies"
-    WATCH = "watch"
-
-
 PICTURES = ("well", *(name for name in TITLES if name != "curves"), *COMPARISON_TITLES)
 """Names of the pictures: the well, the maps of starts, and the comparison with another view."""
 
-Start = tuple[float, float]
-"""x and ordinate of a start in the plane."""
-
 
 def plane_of_system(plane: Slice, system: System) -> Slice:
-    """The same slice for another system; the default one if this has not its parameter."""
+    """The same slice for another system; that of the first view if the system has not its parameter."""
     try:
         return plane.of_system(system)
     except ValueError:
-        default: Slice = ViewState.param.plane.default
-        return default
+        return FIRST_VIEW.plane
 
 
 class _Starts(param.Parameter):
@@ -112,60 +91,61 @@ def longest_first_t_max(potential: Potential) -> float:
 
 
 class ViewState(param.Parameterized):
-    """Map, colours, analyses and starts of orbits that a session shows."""
+    """What a session shows: the fields of `View`, with what is legal, and the choices that belong to the visitor."""
 
-    case = param.Selector(default="I", objects=[*POTENTIALS, TYPED])
-    formula = param.String(default="", doc="V(x, y) as text if the case is TYPED")
-    parameters = param.Dict(default={}, doc="values of ω1, ω2, ε and the letters of the formula that are not 1, by name")
-    plane = param.ClassSelector(class_=Slice, default=Plane.X_PX)
-    energy = param.Number(
-        default=PAPER_ENERGIES["I"].first, bounds=(-LARGEST_NUMBER, LARGEST_NUMBER), doc="h; not used on (x, h)"
-    )
-    t_max = param.Selector(default=1e5, objects=list(T_MAX_CHOICES.values()))
-    resolution = param.Selector(default=DEFAULT_SIDE, objects=list(RESOLUTION_CHOICES.values()))
-    window = param.ClassSelector(
-        class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
-    )
-    box = param.ClassSelector(
-        class_=Window, default=None, allow_None=True, doc="part of the window for the statistics; None for all of it"
-    )
-    judge = param.Boolean(default=False, doc="whether bounded orbits are classified as regular or chaotic")
-    trust = param.Boolean(default=False, doc="whether pixels that depend on rounding are marked")
-    manifolds = param.Boolean(default=False, doc="whether the stable manifolds of the Lyapunov orbits are drawn")
-    images = param.Selector(default=0, objects=list(IMAGE_CHOICES.values()), doc="image of the manifolds drawn; 0 for all")
-    origins = param.Boolean(default=False, doc="whether orbits are integrated backward in time, too")
+    system = param.ClassSelector(class_=System, default=FIRST_VIEW.system)
+    plane = param.ClassSelector(class_=Slice, default=FIRST_VIEW.plane)
+    energy = param.Number(default=PAPER_ENERGIES["I"].first, bounds=(-LARGEST_NUMBER, LARGEST_NUMBER))
+    window = param.ClassSelector(class_=Window, default=FIRST_VIEW.window, allow_None=True)
+    t_max = param.Selector(default=FIRST_VIEW.t_max, objects=list(T_MAX_CHOICES.values()))
+    resolution = param.Selector(default=FIRST_VIEW.resolution, objects=list(RESOLUTION_CHOICES.values()))
+    judge = param.Boolean(default=FIRST_VIEW.judge)
+    trust = param.Boolean(default=FIRST_VIEW.trust)
+    manifolds = param.Boolean(default=FIRST_VIEW.manifolds)
+    images = param.Selector(default=FIRST_VIEW.images, objects=list(IMAGE_CHOICES.values()))
+    origins = param.Boolean(default=FIRST_VIEW.origins)
+    analysis = param.Selector(default=FIRST_VIEW.analysis, objects=list(Analysis))
+    box = param.ClassSelector(class_=Window, default=FIRST_VIEW.box, allow_None=True)
+    watched = param.ClassSelector(class_=WatchedStarts, default=FIRST_VIEW.watched)
+    starts = _Starts(default=FIRST_VIEW.starts)
+    chosen = param.Integer(default=FIRST_VIEW.chosen, bounds=(0, MOST_ORBITS - 1))
     compared = param.ClassSelector(
-        class_=ComparedView, default=None, allow_None=True, doc="view with which this one is compared; None for no comparison"
+        class_=View, default=None, allow_None=True, doc="view of whose starts the ends are compared; None for no comparison"
     )
-    watched = param.ClassSelector(class_=WatchedStarts, default=DEFAULT_STARTS, doc="starts of the orbits that are watched")
-    analysis = param.Selector(default=Analysis.ORBIT, objects=list(Analysis), doc="what is shown beside the maps")
     focus = param.Selector(default="", objects=["", *PICTURES], doc="picture that is shown large; empty for none")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
     lock_times = param.ClassSelector(
         class_=TimeScale, default=None, allow_None=True, doc="scale of the escape times; None fits it to the map in view"
     )
-    starts = _Starts(default=(), doc="starts of up to MOST_ORBITS orbits")
-    chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="index of the chosen start")
 
     def __init__(self, **values: Any) -> None:
         t_max, resolutions = list(allowed_t_max().values()), list(allowed_resolutions().values())
-        super().__init__(t_max=min(1e5, t_max[-1]), resolution=min(DEFAULT_SIDE, resolutions[-1]))
+        super().__init__(t_max=min(FIRST_VIEW.t_max, t_max[-1]), resolution=min(FIRST_VIEW.resolution, resolutions[-1]))
         self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
-        self._reviewed = review_catalogue_entry(self.case)
+        self._reviewed = review_catalogue_entry(self.system.case)
         self.param.update(**values)
 
+    def follow(self, show: Callable[..., object], *names: str) -> None:
+        """Call a function with the values of these fields, now and whenever one of them changes."""
+
+        def update(*events: object) -> None:
+            show(*(getattr(self, name) for name in names))
+
+        self.param.watch(update, list(names))
+        update()
+
     @property
-    def system(self) -> System:
-        """The chosen case with its parameters."""
-        return System(self.case, self.formula, self.parameters)
+    def view(self) -> View:
+        """The view in this state."""
+        return View(**{name: getattr(self, name) for name in FIRST_VIEW.values()})
 
     @property
     def reviewed(self) -> SystemReview:
         """The chosen system with its review; RuntimeError if it is no catalogue entry and `show` did not get its review."""
         if self._reviewed.system != self.system:
-            if self.case == TYPED or self.system.parameters:
+            if self.system.case == TYPED or self.system.parameters:
                 raise RuntimeError(f"{self.system} has not been reviewed")
-            self._reviewed = review_catalogue_entry(self.case)
+            self._reviewed = review_catalogue_entry(self.system.case)
         return self._reviewed
 
     @property
@@ -190,12 +170,7 @@ class ViewState(param.Parameterized):
 
     def map_spec(self) -> MapSpec:
         """Specification of the map; ValueError if a choice is invalid."""
-        energy = map_energy(self.reviewed, self.plane, self.energy)
-        return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
-
-    def present_view(self) -> ComparedView:
-        """System, plane and energy, to compare others with."""
-        return ComparedView(self.system, self.plane, map_energy(self.reviewed, self.plane, self.energy))
+        return self.view.map_spec(self.reviewed)
 
     def start_state(self, start: Start) -> tuple[float, ...]:
         """x, y, px, py of a start; NaN if it is forbidden."""
@@ -221,8 +196,12 @@ class ViewState(param.Parameterized):
     def show(self, reviewed: SystemReview, **values: Any) -> None:
         """Select a reviewed system together with other values."""
         self._reviewed = reviewed
-        plane = plane_of_system(values.get("plane", self.plane), reviewed.system)
-        self.param.update(**{**values, **asdict(reviewed.system), "plane": plane})
+        values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
+        values["system"] = reviewed.system
+        if reviewed.system == self.system:
+            # Param takes it for a change.
+            del values["system"]
+        self.param.update(**values)
 
     def show_slice(self, plane: Slice) -> None:
         """Select a slice, and remove window and starts."""
@@ -231,7 +210,7 @@ class ViewState(param.Parameterized):
     def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
         """Select a reviewed system at an energy, by default its initial energy, and remove window and starts."""
         chosen = reviewed.energies.first if energy is None else energy
-        longest = self.t_max if reviewed.system.case == self.case else longest_first_t_max(reviewed.potential)
+        longest = self.t_max if reviewed.system.case == self.system.case else longest_first_t_max(reviewed.potential)
         self.show(reviewed, energy=chosen, window=None, starts=(), chosen=0, t_max=min(self.t_max, longest))
 
     def remove_start(self, place: int) -> None:

@@ -96,7 +96,3 @@ class WatchedStarts:
             raise ValueError(f"seed={self.seed}: must be from 0 to {LARGEST_SEED}")
         if not SMALLEST_RADIUS <= self.radius <= LARGEST_RADIUS:
             raise ValueError(f"radius={self.radius:g}: must be from {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g}")
-
-
-DEFAULT_STARTS = WatchedStarts()
-"""Starts of a new page."""

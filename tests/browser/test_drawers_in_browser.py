@@ -9,7 +9,7 @@ from app.state.presets import PRESETS, Preset
 from tests.browser.explorer_page import ExplorerPage
 
 HEADINGS = {"Gallery": "Gallery", "Share": "Share and download", "Help": "Help"}
-ZOOMED = next(preset for preset in PRESETS if preset.window is not None and preset.case == "III")
+ZOOMED = next(preset for preset in PRESETS if preset.view.window is not None and preset.view.system.case == "III")
 
 
 def heading(explorer: ExplorerPage, drawer: str) -> Locator:

@@ -14,7 +14,8 @@ from playwright.sync_api import TimeoutError as Late
 from playwright.sync_api import expect
 
 from app.state.presets import PRESETS
-from app.state.view_state import Analysis, ViewState
+from app.state.view import Analysis
+from app.state.view_state import ViewState
 from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS
 from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
@@ -31,7 +32,11 @@ LINKS = (
     "?case=I&plane=x_h&t_max=100&resolution=112&palette=safe&lock_times=50",
 )
 # Only entries of the gallery whose maps take moments.
-QUICK = [preset for preset in PRESETS if preset.t_max <= 1e4 and preset.case in CASES and preset.resolution <= 224]
+QUICK = [
+    preset
+    for preset in PRESETS
+    if preset.view.t_max <= 1e4 and preset.view.system.case in CASES and preset.view.resolution <= 224
+]
 ACTIONS, SEEDS = 80, range(200, 206)
 ROUNDS = 20
 """Most states that follow each other after an action."""
@@ -127,7 +132,7 @@ def expected_page(address: str) -> dict[str, Any]:
     shown = shown_in(state)
     layers = {label: bool(getattr(state, name)) for name, label in LAYER_LABELS.items()}
     analyses = {label: state.analysis is analysis for analysis, label in ANALYSIS_LABELS.items()}
-    cases = {case: state.case == case for case in CASES}
+    cases = {case: state.system.case == case for case in CASES}
     planes = {plane.title: state.plane is plane for plane in PLANES}
     energy = {} if state.plane.energy_axis is not None else {"Exact h": state.energy}
     jobs = [job for start in state.starts if (job := state.orbit_job(start)) is not None]

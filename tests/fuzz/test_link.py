@@ -13,9 +13,9 @@ from urllib.parse import parse_qsl, urlencode
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.link_summary import summary_of
-from app.state.permalink import LINKED, read_link, write_link
-from app.state.view_state import SYSTEM, ViewState
+from app.state.link_summary import link_sentence, link_title
+from app.state.permalink import LINKED, linked_view, read_link, write_link
+from app.state.view_state import ViewState
 from engine import CASES
 from engine.systems.system import TYPED
 from tests.app.state.opened_link import open_link
@@ -55,9 +55,9 @@ def check(parameters: dict[str, str]) -> None:
     assert state.potential.channels
     assert state.energies.low < state.energies.first < state.energies.high
     # Other systems would have to be compiled first.
-    if state.case in CASES and not state.system.parameters:
+    if state.system.case in CASES and not state.system.parameters:
         result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
-    assert len(summary_of(read_link(parameters)[0]).describe()) <= LONGEST_MESSAGE
+    assert len(link_sentence(linked_view(read_link(parameters)[0]))) <= LONGEST_MESSAGE
     for start in state.starts:
         spec = result_or_error(partial(state.orbit_job, start), ["energy", "x", "ordinate", "start", "starts"])
         assert spec is None or len(spec.arguments[1]) == 4
@@ -84,8 +84,8 @@ def test_a_formula_of_any_kind_is_read_at_once(seed: int) -> None:
     link = {"case": TYPED, **random_link(random.Random(seed))}
     begin = time.thread_time()
     values, problems = read_link(link)
-    summary = summary_of(values)
-    assert max(map(len, [summary.describe(), summary.title, *problems])) <= LONGEST_MESSAGE
+    view = linked_view(values)
+    assert max(map(len, [link_sentence(view), link_title(view), *problems])) <= LONGEST_MESSAGE
     assert time.thread_time() - begin < LONGEST_READING
 
 
@@ -95,7 +95,7 @@ def test_link_survives_url_encoding(name: str, value: str) -> None:
     check(dict(parse_qsl(encoded, keep_blank_values=True)))
 
 
-@given(st.sampled_from([name for name in LINKED if name not in SYSTEM]), attribute_values)
+@given(st.sampled_from([name for name in LINKED if name != "system"]), attribute_values)
 def test_view_state_accepts_only_valid_values(name: str, value: Any) -> None:
     state = ViewState()
     try:

@@ -10,7 +10,7 @@ from urllib.parse import parse_qsl
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.permalink import linked_system, read_link, write_link
+from app.state.permalink import linked_view, read_link, write_link
 from app.state.view_state import ViewState
 from cli.arguments import file_name_part, find_potential
 from engine import Potential, PotentialReview, System, parse_formula, review_potential, write_formula
@@ -73,7 +73,7 @@ def test_any_formula(text: str) -> None:
 @given(st.integers(0, 2**32))
 def test_a_link_with_a_formula_of_any_kind_is_reviewed_or_refused(seed: int) -> None:
     values, _ = read_link({"case": TYPED, **random_link(random.Random(seed))})
-    reviewed_system = result_or_error(lambda: review_system(linked_system(values)), ["formula", *WELL_PARAMETERS])
+    reviewed_system = result_or_error(lambda: review_system(linked_view(values).system), ["formula", *WELL_PARAMETERS])
     if reviewed_system is not None and reviewed_system.refusal is None:
         check_display(reviewed_system.system, reviewed_system)
 

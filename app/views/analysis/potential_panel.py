@@ -71,7 +71,7 @@ class PotentialPanel:
             label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width", margin=(5, 0)
         )
         self.formula = FormulaBox(
-            self._take_text, label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", margin=(5, 0)
+            self._take_text, "", label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", margin=(5, 0)
         )
         self.typeset = TextPane("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
@@ -105,14 +105,14 @@ class PotentialPanel:
         label, _, (lowest, highest) = WELL_PARAMETERS[name]
         low, high = _ENDS.get(name, (_LOW, _HIGH))
         return ParameterSlider(
-            partial(self._slide, name), label=label, low=low, high=high, lowest=lowest, highest=highest,
+            partial(self._slide, name), 1.0, label=label, low=low, high=high, lowest=lowest, highest=highest,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 
     def _make_letter_slider(self, name: str, value: float) -> ParameterSlider:
         reach = max(_LETTER_REACH, 2.0 * abs(value))
         return ParameterSlider(
-            partial(self._slide, name), label=name, low=-reach, high=reach, lowest=-LARGEST_VALUE, highest=LARGEST_VALUE,
+            partial(self._slide, name), value, label=name, low=-reach, high=reach, lowest=-LARGEST_VALUE, highest=LARGEST_VALUE,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 

@@ -7,7 +7,8 @@ from html import escape
 
 import panel as pn
 
-from app.state.view_state import IMAGE_CHOICES, LAYERS, Analysis, ViewState
+from app.state.view import Analysis
+from app.state.view_state import IMAGE_CHOICES, LAYERS, ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
 

@@ -12,7 +12,7 @@ import panel as pn
 from app.browser.energy_slider import SHOWN, EnergySlider
 from app.browser.number_box import NumberBox
 from app.state.system_review import review_catalogue_entry
-from app.state.view_state import SYSTEM, ViewState, allowed_resolutions, allowed_t_max
+from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
@@ -84,7 +84,7 @@ class Controls:
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half"], margin=(8, 10, 8, 4))
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.energy = EnergySlider(
-            self._take_energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
+            self._take_energy, state.energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
         )
         self.play = button(PLAY, actions.play, width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
         self.exact_energy = NumberBox(
@@ -147,7 +147,7 @@ class Controls:
         state = self.state
         self.case.param.watch(lambda event: self._take_case(event.new), "value")
         self.plane.param.watch(lambda event: self._take_plane(event.new), "value")
-        state.param.watch(lambda *events: self._follow_system(), list(SYSTEM))
+        state.param.watch(lambda *events: self._follow_system(), "system")
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
         state.param.watch(lambda event: self._follow_plane(), "plane")
 
@@ -157,13 +157,13 @@ class Controls:
 
     def _take_case(self, case: str | None) -> None:
         # None and the case of the state: the widget follows the state.
-        if case is not None and case != self.state.case:
+        if case is not None and case != self.state.system.case:
             with pn.io.hold():
                 self.state.show_system(review_catalogue_entry(case))
 
     def _case(self) -> str | None:
         """The case of the system in view; None for other potentials."""
-        return self.state.case if self.state.case in CASES else None
+        return self.state.system.case if self.state.system.case in CASES else None
 
     def _follow_plane(self) -> None:
         set_value(self.plane, self._plane())
@@ -206,9 +206,10 @@ class Controls:
         on_h = state.plane.energy_axis is not None
         beyond = not state.energies.low <= state.energy <= state.energies.high
         note = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else ""
-        self.energy.param.update(energy=state.energy, disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
+        self.energy.param.update(disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
         self.exact_energy.disabled = on_h
-        self.exact_energy.show(state.energy)
+        for shown in (self.energy, self.exact_energy):
+            shown.show(state.energy)
         self.play.disabled = on_h
 
 

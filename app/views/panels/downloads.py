@@ -110,7 +110,7 @@ class Downloads:
         """The curves against energy as a table."""
         if self._curves is None:
             raise ValueError(_NO_CURVES)
-        return f"escapes-{self._state.case}-curves.csv", partial(_encoded_csv, self._curves)
+        return f"escapes-{self._state.system.case}-curves.csv", partial(_encoded_csv, self._curves)
 
     def python_file(self) -> File:
         """A script that computes the map and the orbits."""
@@ -130,10 +130,10 @@ class Downloads:
         self.figure.show(ShownResults(self._frame, self._analyses, self._orbits, self._curves))
 
     def _figure_name(self, ending: str) -> str:
-        return f"escapes-{self._state.case}{ending}" if self._frame is None else self._named(ending)
+        return f"escapes-{self._state.system.case}{ending}" if self._frame is None else self._named(ending)
 
     def _named(self, ending: str) -> str:
-        return f"{file_stem(self._map().spec, self._state.case)}{ending}"
+        return f"{file_stem(self._map().spec, self._state.system.case)}{ending}"
 
     def _map(self) -> EscapeMap:
         if self._frame is None:

@@ -6,7 +6,7 @@ from html import escape
 
 import panel as pn
 
-from app.state.view_state import SYSTEM, ViewState
+from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from plots.texts.mathml import equations
 
@@ -18,5 +18,5 @@ def equations_pane(state: ViewState) -> pn.viewable.Viewable:
         return f"<h3>Equations: {escape(state.system.title)}</h3>{equations(state.potential)}"
 
     pane = TextPane(html(), margin=(0, 10), sizing_mode="stretch_width")
-    state.param.watch(lambda *events: pane.param.update(object=html()), list(SYSTEM))
+    state.param.watch(lambda *events: pane.param.update(object=html()), "system")
     return pane

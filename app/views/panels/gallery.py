@@ -99,6 +99,6 @@ def _card(preset: Preset) -> dict[str, str]:
         "title": preset.title,
         "caption": preset.caption,
         "line": "",
-        "alt": f"{TITLES[preset.picture]}, case {preset.case}, {preset.plane.title}",
+        "alt": f"{TITLES[preset.picture]}, case {preset.view.system.case}, {preset.view.plane.title}",
         "thumbnail": f"{_THUMBNAILS}/{preset.key}.png",
     }

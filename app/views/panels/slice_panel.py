@@ -11,7 +11,7 @@ from typing import Any
 import panel as pn
 
 from app.browser.number_box import NumberBox
-from app.state.view_state import SYSTEM, ViewState
+from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import flex_row
 from engine import Coordinate, ParameterAxis, Slice
@@ -55,7 +55,7 @@ class SlicePanel:
         for place, axis in enumerate(self.axes):
             axis.param.watch(partial(self._take_axis, place), "value")
         self.mode.param.watch(lambda event: self._take(mode=_MODES[event.new]) if event.new else None, "value")
-        state.param.watch(lambda *events: self.follow(), ["plane", *SYSTEM])
+        state.param.watch(lambda *events: self.follow(), ["plane", "system"])
         self.follow()
 
     def build(self) -> list[pn.viewable.Viewable]:

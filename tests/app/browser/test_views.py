@@ -8,7 +8,7 @@ from engine import Coordinate, ParameterAxis, Plane, Slice, System
 
 
 def test_a_view_follows_the_state() -> None:
-    view = describe_view(ViewState(case="III", energy=0.45, plane=Plane.X_Y, palette="safe"))
+    view = describe_view(ViewState(system=System("III"), energy=0.45, plane=Plane.X_Y, palette="safe"))
     assert (view["energy"], view["plane"], view["home"]) == (0.45, "x_y", True)
     assert view["colours"][0] == "#009e73"
     assert view["labels"] == ["exit 1", "exit 2", "exit 3", "exit 4"]
@@ -16,6 +16,8 @@ def test_a_view_follows_the_state() -> None:
 
 
 def test_the_browser_knows_no_slice_along_a_parameter() -> None:
-    view = describe_view(ViewState(case="I", plane=Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))))
+    view = describe_view(
+        ViewState(system=System("I"), plane=Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))))
+    )
     assert view["slice"] is None
     assert view["plane"] == "x,epsilon=0.5:2.0"

@@ -62,7 +62,7 @@ class Recorder:
 
 @pytest.fixture
 def session() -> Iterator[tuple[ViewState, MapRequests, Recorder, Jobs]]:
-    state, recorder, jobs = ViewState(case="I", energy=0.3, resolution=112, t_max=1e2), Recorder(), Jobs()
+    state, recorder, jobs = ViewState(system=System("I"), energy=0.3, resolution=112, t_max=1e2), Recorder(), Jobs()
     requests = MapRequests(state, jobs, recorder, lambda function: function)
     yield state, requests, recorder, jobs
     requests.close()
@@ -123,7 +123,7 @@ class ManualJobs:
 def manual() -> tuple[MapRequests, Recorder, ManualJobs, LatestCalls]:
     prepare_for_maps(CASES["I"])
     recorder, jobs, session = Recorder(), ManualJobs(), LatestCalls()
-    return MapRequests(ViewState(case="I"), jobs, recorder, session.locked), recorder, jobs, session
+    return MapRequests(ViewState(system=System("I")), jobs, recorder, session.locked), recorder, jobs, session
 
 
 def test_a_late_frame_does_not_replace_the_current_map(manual: tuple[MapRequests, Recorder, ManualJobs, LatestCalls]) -> None:
@@ -142,7 +142,7 @@ def test_a_late_frame_does_not_replace_the_current_map(manual: tuple[MapRequests
 
 def test_cancelling_stops_the_job(session: Session) -> None:
     state, requests, recorder, jobs = session
-    state.param.update(case="III", energy=0.26, t_max=1e5)
+    state.param.update(system=System("III"), energy=0.26, t_max=1e5)
     recorder.wait_for(lambda: recorder.last_frame() is not None)
     requests.stop_map()
     assert jobs.in_flight == 0

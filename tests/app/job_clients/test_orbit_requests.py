@@ -13,7 +13,7 @@ from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
-from engine import IndicatorVerdict, Plane, Separation, Verdict, integrate_orbit
+from engine import IndicatorVerdict, Plane, Separation, System, Verdict, integrate_orbit
 from engine.jobs.manager import Jobs
 from tests.engine.jobs.inbox import wait_until_idle
 
@@ -64,7 +64,7 @@ def unlocked(function: Callable[..., None]) -> Callable[..., None]:
 
 @pytest.fixture
 def session() -> Iterator[Session]:
-    state, recorder, jobs = ViewState(case="I", energy=0.25, t_max=1e3), Recorder(), Jobs()
+    state, recorder, jobs = ViewState(system=System("I"), energy=0.25, t_max=1e3), Recorder(), Jobs()
     requests = OrbitRequests(state, jobs, recorder.show, unlocked)
     yield state, requests, recorder, jobs
     requests.close()
@@ -91,7 +91,7 @@ def test_a_forbidden_start_gets_a_message(session: Session) -> None:
 
 def test_the_requests_of_removed_starts_and_closed_pages_are_cancelled(session: Session) -> None:
     state, requests, recorder, jobs = session
-    state.param.update(case="III", energy=0.25, t_max=1e6)
+    state.param.update(system=System("III"), energy=0.25, t_max=1e6)
     state.add_start((0.0, 0.1))
     state.remove_start(0)
     assert recorder.orbits == ()

@@ -34,4 +34,4 @@ def test_shutdown_ends_the_warmup_before_the_next_step() -> None:
 
 def test_the_map_of_the_opened_page_comes_first() -> None:
     first, *_ = STEPS
-    assert first == f"the kernels of case {ViewState().case} for maps"
+    assert first == f"the kernels of case {ViewState().system.case} for maps"

@@ -1,4 +1,4 @@
-"""A lock in place of that of a session, which tells waiting tests when a callback has run."""
+"""A session without a page: its lock tells waiting tests when a callback has run."""
 
 from __future__ import annotations
 
@@ -7,6 +7,10 @@ from collections.abc import Callable
 from typing import Any
 
 from app.job_clients.latest_request import Locked
+from app.session.context import SessionContext
+from app.state.view_state import ViewState
+from engine import System
+from engine.jobs.client import JobSubmitter
 
 
 def locked_by(changed: threading.Condition) -> Locked:
@@ -21,3 +25,14 @@ def locked_by(changed: threading.Condition) -> Locked:
         return call
 
     return locked
+
+
+def context_of(
+    state: ViewState,
+    jobs: JobSubmitter,
+    changed: threading.Condition,
+    open_view: Callable[[System, dict[str, Any]], None] = lambda system, values: None,
+) -> SessionContext:
+    """What presenters share in a session with this lock, whose page copies nothing."""
+    locked = locked_by(changed)
+    return SessionContext(state, jobs, locked, locked, lambda text: None, open_view)

@@ -13,13 +13,14 @@ import pytest
 
 from app.job_clients.follow_up_requests import FollowUpRequests
 from app.session.analysis_presenter import AnalysisPresenter
-from app.state.view_state import Analysis, ViewState
+from app.state.view import Analysis
+from app.state.view_state import ViewState
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES
 from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map, compute_uncertainty_exponent
 from engine.jobs.manager import Jobs
 from plots.pictures.map_analyses import MapAnalyses
 from tests.app.map_actions import make_maps
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of, locked_by
 
 
 class Session:
@@ -29,17 +30,10 @@ class Session:
         self.changed = threading.Condition()
         self.analyses = MapAnalyses()
         self.problems: list[str] = []
-        self.state, self.jobs = ViewState(case="II", energy=0.25, resolution=112, t_max=1e3, **chosen), jobs
+        self.state, self.jobs = ViewState(system=System("II"), energy=0.25, resolution=112, t_max=1e3, **chosen), jobs
         self.maps = make_maps()
         self.presenter = AnalysisPresenter(
-            self.state,
-            self.jobs,
-            self.maps,
-            self.set_analyses,
-            lambda curves: None,
-            lambda text: None,
-            self.open_view,
-            locked_by(self.changed),
+            context_of(self.state, self.jobs, self.changed, self.open_view), self.maps, self.set_analyses, lambda curves: None
         )
         self.follow_ups = FollowUpRequests(
             self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, locked_by(self.changed)
@@ -197,7 +191,7 @@ def test_curves_arrive_one_by_one_stop_at_a_click_and_end_with_their_case(begin:
     energies = np.sort(curves.points.data["value"])
     curves.open_near(float(energies[1]) + 1e-4)
     assert (session.state.energy, session.state.plane) == (energies[1], Plane.X_PX)
-    session.state.param.update(case="III", energy=0.4)
+    session.state.param.update(system=System("III"), energy=0.4)
     assert len(curves.points.data["value"]) == 0
     curves.open_near(0.3)
     assert session.state.energy == 0.4

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from app.session.comparison_presenter import ComparisonPresenter
-from app.state.compared_view import ComparedView
+from app.state.view import View
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, System, compute_map
 from engine.jobs.manager import Jobs
 from engine.systems.system import TYPED
 from plots.pictures.image_columns import map_columns
 from tests.app.map_actions import make_maps
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of
 
 SPEC = MapSpec(CASES["I"], Plane.X_PX, 0.2, (56, 56), window=(-0.6, 0.6, -0.6, 0.6), t_max=100.0)
-OTHER = ComparedView(System("I"), Plane.X_PX, 0.3)
+OTHER = View(System("I"), Plane.X_PX, 0.3)
 
 
 class Session:
@@ -28,9 +29,9 @@ class Session:
     def __init__(self, jobs: Jobs) -> None:
         self.changed = threading.Condition()
         self.said, self.refused = [""], [""]
-        self.state, self.maps = ViewState(case="I", energy=0.2, t_max=100.0), make_maps()
+        self.state, self.maps = ViewState(system=System("I"), energy=0.2, t_max=100.0), make_maps()
         self.presenter = ComparisonPresenter(
-            self.state, jobs, self.maps, self.said.append, self.refused.append, locked_by(self.changed)
+            context_of(self.state, jobs, self.changed), self.maps, self.said.append, self.refused.append
         )
 
     def show(self, frame: EscapeMap) -> None:
@@ -67,7 +68,7 @@ def test_the_share_of_other_ends_is_that_of_two_maps(session: Session, frame: Es
     session.state.compared = OTHER
     session.show(frame)
     session.wait_for("starts have different outcomes")
-    other = compute_map(OTHER.map_spec(CASES["I"], SPEC))
+    other = compute_map(replace(SPEC, energy=0.3))
     both = (frame.fate >= Fate.BOUNDED) & (other.fate >= Fate.BOUNDED)
     differ = np.count_nonzero(both & (frame.fate != other.fate))
     assert f"h = 0.3: {differ} of" in session.said[-1].replace("\u202f", "").replace(" 1 ", " 1")
@@ -79,7 +80,7 @@ def test_the_share_of_other_ends_is_that_of_two_maps(session: Session, frame: Es
 
 
 def test_a_view_of_other_axes_is_shown_but_not_compared(session: Session, frame: EscapeMap) -> None:
-    session.state.compared = ComparedView(System("I"), Plane.X_Y, 0.2)
+    session.state.compared = View(System("I"), Plane.X_Y, 0.2)
     session.show(frame)
     session.wait_for("pixels cannot be compared")
     assert session.maps.compared.source.data["fate"][0].shape == (56, 56)
@@ -88,12 +89,12 @@ def test_a_view_of_other_axes_is_shown_but_not_compared(session: Session, frame:
 
 def test_a_view_of_a_refused_system_ends_the_comparison(session: Session) -> None:
     # Before there is a map to compare it with.
-    session.state.compared = ComparedView(System(TYPED, "x² + y²"), Plane.X_PX, 0.2)
+    session.state.compared = View(System(TYPED, "x² + y²"), Plane.X_PX, 0.2)
     session.wait_for_refusal("No saddle")
     assert session.state.compared is None
 
 
 def test_a_view_that_has_no_map_is_refused_in_a_sentence(session: Session, frame: EscapeMap) -> None:
-    session.state.compared = ComparedView(System("I"), Plane.X_H, 0.2)
+    session.state.compared = View(System("I"), Plane.X_PX, 50.0)
     session.show(frame)
     session.wait_for("There is no other view to compare with: ")

@@ -72,7 +72,7 @@ def test_a_circular_potential_in_a_link_is_refused_in_another_process(called: li
         assert "Reviewing" in explorer.progress.text.object
         await wait_for(lambda: "Ignored the potential in the link" in said(explorer))
         assert "circular potential" in said(explorer)
-        assert (explorer.state.case, explorer.state.t_max) == ("I", 1e3)
+        assert (explorer.state.system.case, explorer.state.t_max) == ("I", 1e3)
 
     with_page(CIRCULAR | {"t_max": "1e3", "h": "0.7"}, check)
     assert not called
@@ -83,8 +83,8 @@ def test_a_link_is_shown_whole_when_its_potential_has_passed(called: list[str]) 
 
     async def check(explorer: Explorer) -> None:
         state = explorer.state
-        assert (state.case, state.resolution, state.starts) == ("I", 112, ())
-        await wait_for(lambda: state.case == TYPED)
+        assert (state.system.case, state.resolution, state.starts) == ("I", 112, ())
+        await wait_for(lambda: state.system.case == TYPED)
         assert (state.plane, state.energy, state.starts) == (Plane.X_Y, 0.4, ((0.1, 0.2),))
         assert state.window == Window(-1.0, 1.0, -0.5, 0.5)
         assert explorer.links.history.entry == 0
@@ -108,10 +108,10 @@ def test_entries_of_the_browsers_history_are_reviewed_in_another_process(called:
         explorer.links.navigate("?" + urlencode(CIRCULAR | {"h": "0.5", "resolution": "112"}), 0, 0)
         assert "Reviewing" in explorer.progress.text.object
         await wait_for(lambda: "Ignored the potential in the link" in said(explorer))
-        assert (explorer.state.case, explorer.state.energy, explorer.state.resolution) == ("I", 0.19, 224)
+        assert (explorer.state.system.case, explorer.state.energy, explorer.state.resolution) == ("I", 0.19, 224)
         assert "Reviewing" not in explorer.progress.text.object
         explorer.links.navigate("?" + urlencode(LEGAL | {"h": "0.5"}), 0, 0)
-        await wait_for(lambda: explorer.state.case == TYPED)
+        await wait_for(lambda: explorer.state.system.case == TYPED)
         assert explorer.state.energy == 0.5
 
     with_page({}, check)

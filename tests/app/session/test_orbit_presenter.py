@@ -14,7 +14,7 @@ from app.views.maps.markers import Markers
 from app.views.maps.well import WellView
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from engine.jobs.manager import Jobs
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of
 
 
 class RecordingMarkers(Markers):
@@ -34,20 +34,15 @@ class Session:
 
     def __init__(self, plane: Slice) -> None:
         self.changed = threading.Condition()
-        self.state, self.marks = ViewState(case="I", energy=0.19, t_max=1e3, plane=plane), RecordingMarkers()
+        self.state, self.marks = ViewState(system=System("I"), energy=0.19, t_max=1e3, plane=plane), RecordingMarkers()
         self.well = WellView()
         self.opened: list[tuple[System, dict[str, Any]]] = []
         self.presenter = OrbitPresenter(
-            self.state,
-            Jobs(),
+            context_of(self.state, Jobs(), self.changed, lambda system, values: self.opened.append((system, values))),
             self.marks,
             self.well,
             lambda x, ordinate: None,
             lambda orbits: None,
-            lambda text: None,
-            lambda system, values: self.opened.append((system, values)),
-            locked_by(self.changed),
-            locked_by(self.changed),
         )
 
     def has_paths(self) -> bool:

@@ -17,7 +17,7 @@ from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from engine.warmup import prepare_for_maps
 from tests.app.browser_messages import send
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of
 
 # With the integrator of case I.
 WEAKER = "½(x² + y²) − 0.5xy²"
@@ -36,15 +36,15 @@ class Session:
 
     def __init__(self) -> None:
         self.changed = threading.Condition()
-        self.state, self.history = ViewState(case="I", energy=0.25, starts=((0.1, 0.1),)), History()
-        self.presenter = PotentialPresenter(self.state, Jobs(), self.history, locked_by(self.changed))
+        self.state, self.history = ViewState(system=System("I"), energy=0.25, starts=((0.1, 0.1),)), History()
+        self.presenter = PotentialPresenter(context_of(self.state, Jobs(), self.changed), self.history)
         self.panel = self.presenter.panel
 
     def type(self, text: str, *, enter: bool = True) -> None:
-        send(self.panel.formula, {"text": text, "typed": 1, "done": enter})
+        send(self.panel.formula, {"value": text, "count": 1, "done": enter})
 
     def slide(self, name: str, number: float, *, done: bool = True) -> None:
-        send(self.panel.sliders[name], {"number": number, "chosen": 1, "done": done})
+        send(self.panel.sliders[name], {"value": number, "count": 1, "done": done})
 
     def wait_for(self, condition: Callable[[], bool]) -> None:
         with self.changed:
@@ -63,32 +63,32 @@ def session() -> Iterator[Session]:
 
 
 def test_a_text_is_used_while_it_is_typed_unless_it_needs_another_integrator(session: Session) -> None:
-    newer = {"text": WEAKER, "typed": 2, "done": False}
-    watcher = session.state.param.watch(lambda event: send(session.panel.formula, newer), "formula")
+    newer = {"value": WEAKER, "count": 2, "done": False}
+    watcher = session.state.param.watch(lambda event: send(session.panel.formula, newer), "system")
     session.type(WEAKER, enter=False)
-    session.wait_for(lambda: session.state.formula == WEAKER)
+    session.wait_for(lambda: session.state.system.formula == WEAKER)
     assert "2 channels above the escape energy h = 0.5" in session.panel.message.object
     # The text that was typed meanwhile stays.
-    assert session.panel.formula.shown == {"text": WEAKER, "typed": 2}
+    assert session.panel.formula.shown == {"value": WEAKER, "count": 2}
     session.state.param.unwatch(watcher)
     session.type(NEW, enter=False)
     session.wait_for_message("Press Enter")
     assert "The maps still show" in session.panel.message.object
-    assert session.state.formula == WEAKER
+    assert session.state.system.formula == WEAKER
     session.type(NEW)
-    session.wait_for(lambda: session.state.formula == NEW)
+    session.wait_for(lambda: session.state.system.formula == NEW)
 
 
 def test_all_texts_are_used_in_turn_and_are_one_entry_of_the_history_until_enter(session: Session) -> None:
     used, entries = list[str](), list[int]()
-    session.state.param.watch(lambda event: (used.append(event.new), entries.append(session.history.record())), "formula")
+    session.state.param.watch(lambda event: (used.append(event.new.formula), entries.append(session.history.record())), "system")
     session.type(STRONGER, enter=False)
     # During the review.
     session.type(WEAKER, enter=False)
-    session.wait_for(lambda: session.state.formula == WEAKER)
+    session.wait_for(lambda: session.state.system.formula == WEAKER)
     session.type(WEAKER)
     session.type(STRONGER)
-    session.wait_for(lambda: session.state.formula == STRONGER)
+    session.wait_for(lambda: session.state.system.formula == STRONGER)
     assert (used, entries) == ([STRONGER, WEAKER, STRONGER], [1, 1, 2])
 
 
@@ -108,7 +108,7 @@ def test_a_typed_potential_keeps_the_ratio_to_the_escape_energy(
 ) -> None:
     session.state.energy = energy
     session.type(text)
-    session.wait_for(lambda: session.state.case == TYPED)
+    session.wait_for(lambda: session.state.system.case == TYPED)
     assert session.state.energy == (expected or session.state.energies.first)
     assert len(session.state.starts) == starts
     assert session.panel.known.value == TYPED
@@ -130,9 +130,9 @@ def test_a_refused_text_stays_with_its_reason_and_its_points(session: Session, t
     assert "The maps still show Case I: V = ½(x² + y²) − xy²" in session.panel.message.object
     assert points in session.panel.facts.object or points in session.panel.message.object
     assert not text or text not in session.panel.message.object or text == escape(text)
-    assert session.panel.formula.text == text
+    assert session.panel.formula.value == text
     assert session.panel.move.visible == (text == WELL_ELSEWHERE)
-    assert (session.panel.known.value, session.state.case) == (TYPED, "I")
+    assert (session.panel.known.value, session.state.system.case) == (TYPED, "I")
 
 
 def test_a_well_elsewhere_can_be_used(session: Session) -> None:
@@ -140,15 +140,15 @@ def test_a_well_elsewhere_can_be_used(session: Session) -> None:
     session.type(WELL_ELSEWHERE)
     session.wait_for(lambda: session.panel.move.visible)
     session.panel.move.clicks += 1
-    session.wait_for(lambda: session.state.case == TYPED and not session.panel.move.visible)
-    assert session.panel.formula.text == f"{WELL_ELSEWHERE}; well (1, 0)"
+    session.wait_for(lambda: session.state.system.case == TYPED and not session.panel.move.visible)
+    assert session.panel.formula.value == f"{WELL_ELSEWHERE}; well (1, 0)"
     assert sorted(session.state.potential.terms) == sorted(CASES["I"].terms)
     assert "alert" not in session.panel.message.object
     assert "x and y count from the well at (1, 0)" in session.panel.facts.object
 
 
 def test_what_stands_beside_a_refused_text_goes_with_it(session: Session) -> None:
-    text = session.panel.formula.text
+    text = session.panel.formula.value
     leave: list[Callable[[], None]] = [
         lambda: session.type(text, enter=False),
         lambda: session.panel.known.param.update(value="I"),
@@ -163,45 +163,45 @@ def test_what_stands_beside_a_refused_text_goes_with_it(session: Session) -> Non
         act()
         session.wait_for_message(f"{channels} channels")
         assert "<td>saddle</td>" in session.panel.facts.object
-        assert session.panel.known.value == session.state.case
-    assert session.state.case == "III"
+        assert session.panel.known.value == session.state.system.case
+    assert session.state.system.case == "III"
 
 
 def test_a_known_potential_can_be_selected(session: Session) -> None:
     session.panel.known.value = "C5"
-    session.wait_for(lambda: session.state.case == "C5")
+    session.wait_for(lambda: session.state.system.case == "C5")
     assert session.state.potential.channels == 5
     assert session.state.energy == pytest.approx(0.45)
 
 
 def test_a_slider_keeps_the_ratio_to_the_escape_energy_and_its_last_number(session: Session) -> None:
-    later = {"number": 0.7, "chosen": 2, "done": True}
-    session.state.param.watch(lambda event: send(session.panel.sliders["epsilon"], later), "parameters")
+    later = {"value": 0.7, "count": 2, "done": True}
+    session.state.param.watch(lambda event: send(session.panel.sliders["epsilon"], later), "system")
     session.slide("epsilon", 0.5, done=False)
     session.wait_for(lambda: session.state.system.parameters.get("epsilon") == 0.7)
-    assert session.panel.sliders["epsilon"].shown == {"number": 0.7, "chosen": 2}
+    assert session.panel.sliders["epsilon"].shown == {"value": 0.7, "count": 2}
     ratio = session.state.energy / session.state.potential.escape_energy
     assert ratio == pytest.approx(0.25 / CASES["I"].escape_energy, rel=1e-2)
 
 
 def test_a_typed_formula_keeps_the_parameters_which_can_be_reset(session: Session) -> None:
     session.state.show_system(review_system(System("III", parameters={"omega_1": 1.13, "epsilon": 0.5})))
-    assert session.panel.sliders["epsilon"].shown["number"] == 0.5
+    assert session.panel.sliders["epsilon"].value == 0.5
     session.panel.reset.clicks += 1
     session.wait_for(lambda: not session.state.system.parameters)
-    assert session.state.case == "III"
+    assert session.state.system.case == "III"
     session.slide("omega_1", 1.13)
     session.type(WEAKER)
-    session.wait_for(lambda: session.state.case == TYPED)
-    assert session.state.parameters["omega_1"] == 1.13
+    session.wait_for(lambda: session.state.system.case == TYPED)
+    assert session.state.system.parameters["omega_1"] == 1.13
 
 
 def test_typing_starts_from_coefficients_without_rounding_errors(session: Session) -> None:
     session.state.show_system(review_system(System("I", parameters={"omega_1": 1.46, "epsilon": 0.7})))
     before = session.state.potential
     session.panel.known.value = TYPED
-    session.wait_for(lambda: session.state.case == TYPED)
-    assert session.state.formula == "1.0658x² + y²/2 − 0.7xy²"
+    session.wait_for(lambda: session.state.system.case == TYPED)
+    assert session.state.system.formula == "1.0658x² + y²/2 − 0.7xy²"
     for (i, j, c), (k, m, expected) in zip(sorted(session.state.potential.terms), sorted(before.terms), strict=True):
         assert (i, j) == (k, m)
         assert c == pytest.approx(expected, rel=5e-12)

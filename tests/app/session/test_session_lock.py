@@ -14,7 +14,8 @@ import pytest
 from bokeh.server.session import ServerSession
 
 from app.session.explorer import Explorer
-from app.state.view_state import LAYERS, Analysis
+from app.state.view import Analysis
+from app.state.view_state import LAYERS
 from app.views.components.analysis_choice import LAYER_LABELS
 from app.views.maps.map_toolbar import Drag
 from engine import Plane
@@ -25,7 +26,7 @@ from tests.app.session.opened_page import opened_page
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
     lambda explorer: send(explorer.orbits.playback.player, {"step": 10, "begin": 0, "end": 10}),
-    lambda explorer: send(explorer.controls.exact_energy, {"number": 0.3, "typed": 1}),
+    lambda explorer: send(explorer.controls.exact_energy, {"value": 0.3, "count": 1, "done": True}),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
     # As the lists do.

@@ -11,13 +11,14 @@ import pytest
 from app.browser.ensemble_player import EnsemblePlayer
 from app.session.watch_presenter import WatchPresenter
 from app.state.system_review import review_catalogue_entry
-from app.state.view_state import Analysis, ViewState
+from app.state.view import Analysis
+from app.state.view_state import ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts
-from engine import CASES, Plane, compute_flux
+from engine import CASES, Plane, System, compute_flux
 from engine.jobs.manager import Jobs
 from engine.warmup import prepare_for_maps
 from tests.app.browser_messages import send
-from tests.app.session.session_lock import locked_by
+from tests.app.session.session_lock import context_of
 
 
 class Session:
@@ -25,8 +26,8 @@ class Session:
 
     def __init__(self, jobs: Jobs, **chosen: Any) -> None:
         self.changed = threading.Condition()
-        self.state = ViewState(case="III", energy=0.45, analysis=Analysis.WATCH, **chosen)
-        self.presenter = WatchPresenter(self.state, jobs, locked_by(self.changed))
+        self.state = ViewState(system=System("III"), energy=0.45, analysis=Analysis.WATCH, **chosen)
+        self.presenter = WatchPresenter(context_of(self.state, jobs, self.changed))
         _, player = self.presenter.build()
         assert isinstance(player, EnsemblePlayer)
         self.player = player

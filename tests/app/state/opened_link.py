@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.state.permalink import fit_to_system, linked_system, read_link, refused_link, without_system
+from app.state.permalink import fit_to_system, linked_view, read_link, refused_link, without_system
 from app.state.view_state import ViewState
 from engine.systems.review.potential_review import review_system
 from plots.texts.accepted_potentials import refusal
@@ -14,7 +14,7 @@ def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:
     """The view of a link once its system is reviewed, and the messages about the link."""
     values, problems = read_link(parameters)
     try:
-        reviewed = review_system(linked_system(values))
+        reviewed = review_system(linked_view(values).system)
         problem = refusal(reviewed)
     except ValueError as error:
         problem = str(error)

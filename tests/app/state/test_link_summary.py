@@ -6,14 +6,15 @@ from urllib.parse import parse_qsl, urlencode
 
 import pytest
 
-from app.state.link_summary import LinkSummary, summary_of
-from app.state.permalink import read_link
+from app.state.link_summary import link_sentence, link_title
+from app.state.permalink import linked_view, read_link
+from app.state.view import View
 
 
-def summary(link: str) -> LinkSummary:
+def view(link: str) -> View:
     values, problems = read_link(dict(parse_qsl(link)))
     assert problems == []
-    return summary_of(values)
+    return linked_view(values)
 
 
 @pytest.mark.parametrize(
@@ -28,7 +29,7 @@ def summary(link: str) -> LinkSummary:
     ],
 )
 def test_the_title_has_a_short_formula_and_no_other_text(formula: str, title: str) -> None:
-    assert summary(urlencode({"V": formula})).title == title
+    assert link_title(view(urlencode({"V": formula}))) == title
 
 
 @pytest.mark.parametrize(
@@ -41,4 +42,4 @@ def test_the_title_has_a_short_formula_and_no_other_text(formula: str, title: st
     ],
 )
 def test_the_sentence_names_system_plane_and_energy(link: str, begin: str) -> None:
-    assert summary(link).describe().startswith(begin)
+    assert link_sentence(view(link)).startswith(begin)

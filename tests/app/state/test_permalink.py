@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.compared_view import ComparedView
-from app.state.permalink import LONGEST_VALUE, linked_system, read_link, without_system, write_link
-from app.state.view_state import IMAGE_CHOICES, LAYERS, PICTURES, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
+from app.state.permalink import LONGEST_VALUE, linked_view, read_link, without_system, write_link
+from app.state.view import Analysis, View
+from app.state.view_state import IMAGE_CHOICES, LAYERS, PICTURES, RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
 from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
 from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window
 from engine.systems.system import TYPED
@@ -49,7 +49,7 @@ def test_a_link_contains_the_view_state_at_full_precision(
     case, plane, energy, t_max, resolution, window, box, starts, switched_on, analysis, palette, look, images, lock_times
 ) -> None:
     chosen = {
-        "case": case, "plane": plane, "energy": energy, "t_max": t_max, "resolution": resolution,
+        "system": System(case), "plane": plane, "energy": energy, "t_max": t_max, "resolution": resolution,
         "window": window, "box": box, "starts": starts, "analysis": analysis, "palette": palette,
         "images": images, "lock_times": lock_times,
         "chosen": look if look < len(starts) else 0, **{name: name in switched_on for name in LAYERS},
@@ -113,7 +113,7 @@ def test_any_usual_format_of_a_number_is_read(text: str) -> None:
 
 def test_an_invalid_potential_drops_what_belongs_to_it() -> None:
     state, problems = open_link({"V": "x²", "box": "0,1,0,1", "window": "0,1,0,1", "h": "0.3", "resolution": "112"})
-    assert (state.case, state.box, state.window, state.energy, state.resolution) == ("I", None, None, 0.19, 112)
+    assert (state.system.case, state.box, state.window, state.energy, state.resolution) == ("I", None, None, 0.19, 112)
     assert len(problems) == 1
     assert problems[0].startswith("Ignored the potential in the link: ")
 
@@ -123,7 +123,7 @@ def test_a_missing_chosen_orbit_is_the_first() -> None:
 
 
 def test_an_invalid_value_does_not_affect_the_others() -> None:
-    assert read_link({"case": "III", "h": "high", "resolution": "450"})[0] == {"case": "III", "resolution": 450}
+    assert read_link({"case": "III", "h": "high", "resolution": "450"})[0] == {"system": System("III"), "resolution": 450}
 
 
 def test_a_case_without_an_energy_has_its_initial_energy() -> None:
@@ -138,8 +138,8 @@ def test_a_system_whose_bounded_orbits_are_all_integrated_has_a_short_time_unles
 
 def test_a_link_is_read_without_a_review() -> None:
     values, problems = read_link({"V": "no formula", "h": "-5", "t_max": "1e3"})
-    assert (values, problems) == ({"formula": "no formula", "energy": -5.0, "t_max": 1e3}, [])
-    assert linked_system(values) == System(TYPED, "no formula")
+    assert (values, problems) == ({"system": System(TYPED, "no formula"), "energy": -5.0, "t_max": 1e3}, [])
+    assert linked_view(values) == View(System(TYPED, "no formula"), energy=-5.0, t_max=1e3)
 
 
 def test_unknown_parameters_are_ignored() -> None:
@@ -163,24 +163,23 @@ def test_a_slice_along_a_letter_is_read_without_its_potential(formula: str) -> N
 
 
 COMPARED = [
-    ComparedView(System("II", "", {"epsilon": 1.25}), Plane.X_PX, 0.1 + 0.2),
-    ComparedView(System(TYPED, "½(x²+y²) − a x y²", {"a": 1.5}), Slice(Coordinate.X, Coordinate.THETA), 0.2),
-    ComparedView(System("III", "", {}), Plane.X_H, (0.25, 0.7)),
+    View(System("II", "", {"epsilon": 1.25}), Plane.X_PX, 0.1 + 0.2),
+    View(System(TYPED, "½(x²+y²) − a x y²", {"a": 1.5}), Slice(Coordinate.X, Coordinate.THETA), 0.2),
+    View(System("III"), Plane.X_H, 0.25),
+    View(System("II")),
 ]
 
 
 @pytest.mark.parametrize("view", COMPARED, ids=lambda view: view.title)
-def test_a_link_contains_the_view_with_which_another_is_compared(view: ComparedView) -> None:
-    values, problems = read_link(parameters(write_link(ViewState(case="I", energy=0.2, compared=view))))
+def test_a_link_contains_the_view_with_which_another_is_compared(view: View) -> None:
+    values, problems = read_link(parameters(write_link(ViewState(system=System("I"), energy=0.2, compared=view))))
     assert (values["compared"], problems) == (view, [])
 
 
 @pytest.mark.parametrize(
     ("link", "message"),
     [
-        ({"with_case": "II"}, "with_h"),
         ({"with_case": "II", "with_h": "nan"}, "with_h"),
-        ({"with_case": "II", "with_plane": "x_h", "with_h": "0.2"}, "two for an axis h"),
         ({"with_case": "II", "with_h": "1e300"}, "with_h"),
         ({"with_case": "V", "with_h": "0.2"}, "with_case=V"),
         ({"with_plane": "x,x", "with_h": "0.2"}, "with_plane=x,x"),
@@ -191,6 +190,11 @@ def test_a_view_to_compare_with_that_is_not_understood_is_left_out(link: dict[st
     values, problems = read_link(link)
     assert "compared" not in values
     assert message in " ".join(problems)
+
+
+def test_both_ends_of_an_axis_h_may_be_named() -> None:
+    values, problems = read_link({"with_case": "III", "with_plane": "x_h", "with_h": "0.25,0.7"})
+    assert (values["compared"], problems) == (View(System("III"), Plane.X_H, 0.25), [])
 
 
 @given(st.sampled_from(StartsFrom), st.sampled_from(COUNTS), st.integers(0, 2**31 - 1), st.integers(-18, -2))

@@ -14,11 +14,14 @@ from PIL import Image
 import app
 from app.state.permalink import read_link, write_link
 from app.state.presets import GROUPS, PRESETS, Preset
-from app.state.view_state import Analysis, ViewState
+from app.state.system_review import review_catalogue_entry
+from app.state.view import Analysis, View
+from app.state.view_state import ViewState
 from engine import (
     CASES,
     POTENTIALS,
     Fate,
+    MapSpec,
     Orbit,
     Plane,
     classify_orbits,
@@ -37,26 +40,30 @@ LARGEST_THUMBNAIL = 15_000
 each_preset = pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.key)
 
 
-def named(key: str) -> Preset:
-    return next(preset for preset in PRESETS if preset.key == key)
+def view_of(key: str) -> View:
+    return next(preset.view for preset in PRESETS if preset.key == key)
 
 
-def start_of(preset: Preset, x: float, ordinate: float) -> np.ndarray:
-    return start_states(POTENTIALS[preset.case], preset.plane, preset.energy, np.array([x]), np.array([ordinate]))[0]
+def spec_of(view: View) -> MapSpec:
+    return view.map_spec(review_catalogue_entry(view.system.case))
 
 
-def fate_of(preset: Preset, x: float, ordinate: float, t_max: float) -> int:
-    potential = preset.plane.potential_at(POTENTIALS[preset.case], x, ordinate)
-    energy = preset.plane.energies(preset.energy, x, ordinate)
-    return int(classify_orbits(potential, energy, start_of(preset, x, ordinate)[None], t_max).fate[0])
+def start_of(view: View, x: float, ordinate: float) -> np.ndarray:
+    return start_states(POTENTIALS[view.system.case], view.plane, view.energy, np.array([x]), np.array([ordinate]))[0]
 
 
-def fates(preset: Preset) -> list[int]:
-    return [fate_of(preset, *start, preset.t_max) for start in preset.starts]
+def fate_of(view: View, x: float, ordinate: float, t_max: float) -> int:
+    potential = view.plane.potential_at(POTENTIALS[view.system.case], x, ordinate)
+    energy = view.plane.energies(view.energy, x, ordinate)
+    return int(classify_orbits(potential, energy, start_of(view, x, ordinate)[None], t_max).fate[0])
 
 
-def integrate(preset: Preset) -> Orbit:
-    return integrate_orbit(POTENTIALS[preset.case], start_of(preset, *preset.starts[0]), preset.t_max)
+def fates(view: View) -> list[int]:
+    return [fate_of(view, *start, view.t_max) for start in view.starts]
+
+
+def integrate(view: View) -> Orbit:
+    return integrate_orbit(POTENTIALS[view.system.case], start_of(view, *view.starts[0]), view.t_max)
 
 
 def test_keys_and_titles_are_unique() -> None:
@@ -67,19 +74,17 @@ def test_all_groups_cases_planes_and_pictures_occur() -> None:
     places = [preset for preset in PRESETS if preset.group == "Places"]
     assert len(places) >= 12
     assert {preset.group for preset in PRESETS} == set(GROUPS)
-    assert {preset.case for preset in places} == set(CASES)
-    assert {preset.plane for preset in PRESETS} >= set(Plane)
+    assert {preset.view.system.case for preset in places} == set(CASES)
+    assert {preset.view.plane for preset in PRESETS} >= set(Plane)
     assert {preset.picture for preset in PRESETS} == set(TITLES)
 
 
 @each_preset
 def test_a_preset_is_a_valid_view_with_a_link_and_a_small_picture(preset: Preset) -> None:
-    spec = ViewState(**preset.values()).map_spec()
-    assert (spec.t_max, spec.window) == (preset.t_max, preset.window or spec.window)
-    values, problems = read_link(dict(parse_qsl(write_link(ViewState(**preset.values()))[1:], strict_parsing=True)))
-    again = ViewState(**values)
-    assert not problems
-    assert {name: getattr(again, name) for name in preset.values()} == preset.values()
+    state = ViewState(**preset.view.values())
+    assert state.map_spec() == spec_of(preset.view)
+    values, problems = read_link(dict(parse_qsl(write_link(state)[1:], strict_parsing=True)))
+    assert (ViewState(**values).view, problems) == (preset.view, [])
     file = THUMBNAILS / f"{preset.key}.png"
     assert file.stat().st_size <= LARGEST_THUMBNAIL
     with Image.open(file) as picture:
@@ -92,13 +97,13 @@ def test_every_thumbnail_has_a_preset() -> None:
 
 @each_preset
 def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
-    spec = ViewState(**preset.values()).map_spec()
+    view, spec = preset.view, spec_of(preset.view)
     # Many orbits are watched without any of them being chosen.
-    fewest = 0 if preset.analysis is Analysis.WATCH else 1
-    assert fewest <= len(set(preset.starts)) == len(preset.starts) <= MOST_ORBITS
-    for x, ordinate in preset.starts:
+    fewest = 0 if view.analysis is Analysis.WATCH else 1
+    assert fewest <= len(set(view.starts)) == len(view.starts) <= MOST_ORBITS
+    for x, ordinate in view.starts:
         assert spec.pixel_at(x, ordinate) is not None
-        assert fate_of(preset, x, ordinate, 10.0) >= Fate.BOUNDED
+        assert fate_of(view, x, ordinate, 10.0) >= Fate.BOUNDED
 
 
 FATES = {
@@ -125,12 +130,12 @@ FATES = {
 
 @pytest.mark.parametrize("key", FATES)
 def test_fates_agree_with_the_caption(key: str) -> None:
-    assert fates(named(key)) == FATES[key]
+    assert fates(view_of(key)) == FATES[key]
 
 
 def test_shares_agree_with_the_caption() -> None:
-    preset = named("shares")
-    found = compute_map(ViewState(**preset.values()).map_spec())
+    view = view_of("shares")
+    found = compute_map(spec_of(view))
     shares = found.fractions()
     direct = np.mean((found.fate > Fate.BOUNDED)[found.interior] & (found.crossings == 0)[found.interior])
     assert shares[Fate.BOUNDED] < 0.001
@@ -140,8 +145,8 @@ def test_shares_agree_with_the_caption() -> None:
 
 
 def test_the_limit_of_stability_agrees_with_the_caption() -> None:
-    preset = named("ceiling")
-    spec = replace(ViewState(**preset.values()).map_spec(), resolution=(2, 400))
+    view = view_of("ceiling")
+    spec = replace(spec_of(view), resolution=(2, 400))
     found = compute_map(replace(spec, window=replace(spec.window, x_low=-1e-3, x_high=1e-3)))
     highest = found.ordinate[(found.fate == Fate.BOUNDED).all(axis=1)].max()
     assert highest == pytest.approx(0.5817, abs=5e-4)
@@ -149,7 +154,7 @@ def test_the_limit_of_stability_agrees_with_the_caption() -> None:
 
 @pytest.mark.slow
 def test_the_sticky_orbit_looks_regular_and_escapes_late() -> None:
-    orbit = integrate(named("super-sticky"))
+    orbit = integrate(view_of("super-sticky"))
     assert orbit.fate >= 1
     # Rounding differs between processors, and chaos amplifies it: the escape time varies.
     assert 22_000 < orbit.escape_time < 60_000
@@ -166,10 +171,10 @@ def test_as_many_orbits_are_left_as_the_caption_of_the_draining_well_says() -> N
 
 
 def test_orbits_that_are_torn_leave_when_the_caption_says() -> None:
-    preset = named("torn")
-    window, ((x, px),) = ViewState(**preset.values()).map_spec().find_window(), preset.starts
+    view = view_of("torn")
+    window, ((x, px),) = spec_of(view).find_window(), view.starts
     random = np.random.default_rng(4)
-    angle, radius = 2.0 * np.pi * random.random(2000), 10.0**preset.watched.radius * np.sqrt(random.random(2000))
+    angle, radius = 2.0 * np.pi * random.random(2000), 10.0**view.watched.radius * np.sqrt(random.random(2000))
     xs = x + 0.5 * (window.x_high - window.x_low) * radius * np.cos(angle)
     ps = px + 0.5 * (window.ordinate_high - window.ordinate_low) * radius * np.sin(angle)
     outcomes = classify_orbits(CASES["III"], 0.45, start_states(CASES["III"], Plane.X_PX, 0.45, xs, ps), t_max=100.0)

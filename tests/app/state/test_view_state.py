@@ -6,25 +6,25 @@ import numpy as np
 import pytest
 
 from app.state.view_state import ViewState
-from engine import CASES, Plane
+from engine import CASES, Plane, System
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from plots.pictures.palette import MOST_ORBITS
 
 
 @pytest.mark.parametrize("case", list(CASES))
 def test_the_energy_plane_spans_from_the_escape_energy_to_the_end_of_the_slider(case: str) -> None:
-    spec = ViewState(case=case, plane=Plane.X_H).map_spec()
+    spec = ViewState(system=System(case), plane=Plane.X_H).map_spec()
     assert spec.energy == (CASES[case].escape_energy, PAPER_ENERGIES[case].high)
 
 
 def test_on_the_energy_plane_the_ordinate_is_the_energy() -> None:
-    job = ViewState(case="II", plane=Plane.X_H).orbit_job((0.1, 0.3))
+    job = ViewState(system=System("II"), plane=Plane.X_H).orbit_job((0.1, 0.3))
     assert job is not None
     assert CASES["II"].energy(np.array(job.arguments[1])) == pytest.approx(0.3, abs=1e-15)
 
 
 def test_a_forbidden_start_has_no_orbit() -> None:
-    assert ViewState(case="I", plane=Plane.X_PX, energy=0.2).orbit_job((0.0, 2.0)) is None
+    assert ViewState(system=System("I"), plane=Plane.X_PX, energy=0.2).orbit_job((0.0, 2.0)) is None
 
 
 def starts_of(count: int) -> list[tuple[float, float]]:

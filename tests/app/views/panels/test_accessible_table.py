@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from app.state.view_state import ViewState
 from app.views.panels.accessible_table import AccessibleTable
-from engine import CASES, MapSpec, Plane, compute_map
+from engine import CASES, MapSpec, Plane, System, compute_map
 from tests.disc import disc_map
 
 
 def test_the_table_is_written_while_it_is_open() -> None:
-    table = AccessibleTable(ViewState(case="I", energy=0.19))
+    table = AccessibleTable(ViewState(system=System("I"), energy=0.19))
     table.show_orbits([])
     assert table.text.object == ""
     table.fold.button.clicks += 1
@@ -25,7 +25,7 @@ def test_the_table_is_written_while_it_is_open() -> None:
 
 
 def test_a_map_without_escapes_has_no_times() -> None:
-    table = AccessibleTable(ViewState(case="I", energy=0.1))
+    table = AccessibleTable(ViewState(system=System("I"), energy=0.1))
     table.fold.button.clicks += 1
     table.show_map(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.1, (15, 15), t_max=100.0)))
     assert "nothing escaped" in table.text.object
@@ -33,7 +33,7 @@ def test_a_map_without_escapes_has_no_times() -> None:
 
 
 def test_collisions_have_a_row() -> None:
-    table = AccessibleTable(ViewState(case="I", energy=0.19))
+    table = AccessibleTable(ViewState(system=System("I"), energy=0.19))
     table.fold.button.clicks += 1
     table.show_map(disc_map())
     assert "<th scope=row>collide with a disc</th>" in table.text.object

@@ -21,14 +21,14 @@ class Page:
 
     def __init__(self) -> None:
         self.locks: list[bool] = []
-        self.state = ViewState(case="I", energy=0.19)
+        self.state = ViewState(system=System("I"), energy=0.19)
         self.controls = Controls(
             self.state,
             ControlActions(
                 play=lambda: None,
                 choose_potential=lambda: None,
                 choose_slice=lambda: None,
-                compare=lambda on: self.state.param.update(compared=self.state.present_view() if on else None),
+                compare=lambda on: self.state.param.update(compared=self.state.view if on else None),
                 swap=lambda: None,
                 lock_times=self.locks.append,
             ),
@@ -41,9 +41,9 @@ def page() -> Page:
 
 
 def test_energies_are_released_at_the_slider_or_typed_beyond_it(page: Page) -> None:
-    send(page.controls.energy, {"energy": 0.25})
+    send(page.controls.energy, {"value": 0.25, "count": 1, "done": True})
     assert page.state.energy == 0.25
-    send(page.controls.exact_energy, {"number": 0.7, "typed": 1})
+    send(page.controls.exact_energy, {"value": 0.7, "count": 1, "done": True})
     assert page.state.energy == 0.7
     assert "beyond the end of the slider" in page.controls.energy.note
 
@@ -51,14 +51,14 @@ def test_energies_are_released_at_the_slider_or_typed_beyond_it(page: Page) -> N
 def test_another_case_resets_energy_and_orbits(page: Page) -> None:
     page.state.param.update(starts=((0.1, 0.1),))
     page.controls.case.value = "III"
-    assert (page.state.case, page.state.energy, page.state.starts) == ("III", 0.35, ())
+    assert (page.state.system.case, page.state.energy, page.state.starts) == ("III", 0.35, ())
 
 
 def test_the_controls_follow_a_preset(page: Page) -> None:
-    page.state.param.update(case="II", plane=Plane.X_Y, energy=0.22, t_max=1e3, palette="safe")
+    page.state.param.update(system=System("II"), plane=Plane.X_Y, energy=0.22, t_max=1e3, palette="safe")
     shown = {name: getattr(page.controls, name).value for name in ("case", "plane")}
     assert shown == {"case": "II", "plane": Plane.X_Y}
-    assert page.controls.energy.energy == 0.22
+    assert page.controls.energy.value == 0.22
 
 
 def open_quality(page: Page) -> dict[str, Widget]:
@@ -96,7 +96,7 @@ def test_the_lock_asks_for_the_limits_of_the_map_and_follows_the_state(page: Pag
 
 def test_the_switch_of_the_comparison_follows_the_state_and_asks_for_it(page: Page) -> None:
     comparison = page.controls.comparison
-    page.state.compared = page.state.present_view()
+    page.state.compared = page.state.view
     assert comparison.switch.value
     assert "Case I, (x, px), h = 0.19" in comparison.view.object
     comparison.switch.value = []
@@ -116,7 +116,7 @@ def test_other_potentials_leave_no_case_selected(page: Page) -> None:
     page.state.show_system(review_system(System(TYPED, "½(x² + y²) − x²y")))
     assert page.controls.case.value is None
     assert page.controls.other.color == "primary"
-    assert page.state.case == TYPED
+    assert page.state.system.case == TYPED
 
 
 def test_another_case_writes_no_plane_that_is_shown_already(page: Page) -> None:
@@ -124,5 +124,5 @@ def test_another_case_writes_no_plane_that_is_shown_already(page: Page) -> None:
     written: list[object] = []
     page.controls.plane.param.watch(lambda event: written.append(event.new), "value", onlychanged=False)
     page.controls.case.value = "II"
-    assert page.state.case == "II"
+    assert page.state.system.case == "II"
     assert written == []

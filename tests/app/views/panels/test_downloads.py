@@ -13,7 +13,7 @@ import xarray as xr
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from app.views.panels.downloads import Downloads
-from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, integrate_orbit
+from engine import CASES, EscapeMap, MapSpec, Plane, System, compute_map, integrate_orbit
 from plots.pictures.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
 
@@ -28,7 +28,7 @@ def escape_map() -> EscapeMap:
 @pytest.fixture
 def downloads_view(escape_map: EscapeMap) -> Downloads:
     """With a complete map and one orbit."""
-    shown = Downloads(ViewState(case="I", energy=0.19), lambda: None, lambda: None, lambda copied: None)
+    shown = Downloads(ViewState(system=System("I"), energy=0.19), lambda: None, lambda: None, lambda copied: None)
     shown.show_map(escape_map)
     orbit = integrate_orbit(CASES["I"], STATE, 50.0)
     shown.show_orbits([ChosenOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit))])

@@ -11,7 +11,7 @@ import pytest
 from app.state.permalink import read_link
 from app.state.view_state import ViewState
 from app.views.panels.embedding import OpenLink, embed_code
-from engine import Plane
+from engine import Plane, System
 
 ADDRESS = "https://maps.example.org/deep/app"
 
@@ -25,7 +25,7 @@ def source(code: str) -> str:
 
 @pytest.mark.parametrize(("focus", "picture"), [("", "basins"), ("times", "times")])
 def test_the_frame_shows_the_view_and_its_large_picture_or_else_the_basins(focus: str, picture: str) -> None:
-    state = ViewState(case="III", energy=0.4, plane=Plane.X_Y, focus=focus, starts=((0.1, 0.2),), judge=True)
+    state = ViewState(system=System("III"), energy=0.4, plane=Plane.X_Y, focus=focus, starts=((0.1, 0.2),), judge=True)
     address = source(embed_code(ADDRESS, state))
     values, problems = read_link(dict(parse_qsl(urlsplit(address).query)))
     assert address.startswith(f"{ADDRESS}?")

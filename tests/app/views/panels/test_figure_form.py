@@ -19,6 +19,7 @@ from engine import (
     MapSpec,
     Plane,
     SweepSpec,
+    System,
     compute_map,
     compute_regularity,
     compute_sweep,
@@ -55,13 +56,15 @@ def saved(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, bytes]]:
 
 @pytest.fixture
 def form(shown: ShownResults) -> FigureForm:
-    made = FigureForm(ViewState(case="I", energy=0.19), FileSaver(), lambda ending: f"escapes{ending}", lambda copied: None)
+    made = FigureForm(
+        ViewState(system=System("I"), energy=0.19), FileSaver(), lambda ending: f"escapes{ending}", lambda copied: None
+    )
     made.show(shown)
     return made
 
 
 def test_what_is_shown_can_be_drawn(shown: ShownResults) -> None:
-    state = ViewState(case="I", energy=0.19)
+    state = ViewState(system=System("I"), energy=0.19)
     assert list(figure_choices(ShownResults(), state)) == []
     maps = [ALL_MAPS, "Basins of escape", "Escape time", "Crossings of y = 0"]
     assert list(figure_choices(ShownResults(shown.frame), state)) == [*maps, "The well in (x, y)", "Statistics"]
@@ -71,7 +74,7 @@ def test_what_is_shown_can_be_drawn(shown: ShownResults) -> None:
 
 @pytest.mark.parametrize("title", ["The well in (x, y)", "Orbits", "Statistics", "Curves against energy", "Regular or chaotic"])
 def test_each_figure_can_be_made(title: str, shown: ShownResults) -> None:
-    make = figure_choices(shown, ViewState(case="I", energy=0.19))[title]
+    make = figure_choices(shown, ViewState(system=System("I"), energy=0.19))[title]
     assert make(FigureFormat.PNG, FigureStyle(8.5, 60.0)).startswith(b"\x89PNG")
 
 

@@ -21,7 +21,7 @@ class Drawer:
     """The panel with its state, which takes every slice."""
 
     def __init__(self) -> None:
-        self.state = ViewState(case="I", energy=0.19)
+        self.state = ViewState(system=System("I"), energy=0.19)
         self.panel = SlicePanel(self.state, self.state.show_slice)
 
     @property
@@ -32,7 +32,7 @@ class Drawer:
 
     def type(self, label: str, number: float) -> None:
         """A number that is typed into a box."""
-        send(self.boxes[label], {"number": number, "typed": 1})
+        send(self.boxes[label], {"value": number, "count": 1, "done": True})
 
 
 @pytest.fixture
@@ -46,7 +46,7 @@ def test_the_drawer_shows_the_slice_of_the_state(drawer: Drawer) -> None:
     assert drawer.panel.mode.value == "speed, at angle β from the radius"
     assert len(drawer.panel.mode.options) == 6
     assert list(drawer.boxes) == ["β ="]
-    assert drawer.boxes["β ="].shown["number"] == math.pi / 2
+    assert drawer.boxes["β ="].value == math.pi / 2
 
 
 def test_axes_ranges_and_held_coordinates_are_chosen(drawer: Drawer) -> None:

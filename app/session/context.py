@@ -1,0 +1,38 @@
+"""What the presenters of one session share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from app.job_clients.latest_request import Locked
+from app.state.view_state import ViewState
+from engine import System
+from engine.jobs.client import JobSubmitter
+
+
+@dataclass(frozen=True)
+class SessionContext:
+    """The state of a session, and what its page can do.
+
+    Attributes
+    ----------
+    state
+        The view state.
+    jobs
+        Computes results.
+    locked, latest
+        Wrap functions that change the document; of the calls of the second kind only the latest runs.
+    copy
+        Called with a text for the clipboard.
+    open_view
+        Called with a system, which is reviewed first, and values of the view state to show with it.
+    """
+
+    state: ViewState
+    jobs: JobSubmitter
+    locked: Locked
+    latest: Locked
+    copy: Callable[[str], None]
+    open_view: Callable[[System, dict[str, Any]], None]

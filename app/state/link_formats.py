@@ -1,0 +1,138 @@
+"""How values are written in links and read from them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import astuple, dataclass
+from typing import Any
+
+import numpy as np
+
+from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
+from engine import Window
+from plots.pictures.palette import MOST_ORBITS
+from plots.pictures.time_scale import TimeScale
+
+# The lower end of a scale of escape times whose link names the upper end only.
+_SHORTEST = 1.0
+
+
+@dataclass(frozen=True)
+class Format:
+    """The text of a value in a link.
+
+    Attributes
+    ----------
+    write
+        Returns the text of a value.
+    read
+        Returns the value of a text; ValueError or KeyError if there is none.
+    legal
+        Returns in words which values are legal; the settings of the server limit some.
+    """
+
+    write: Callable[[Any], str]
+    read: Callable[[str], Any]
+    legal: Callable[[], str]
+
+
+def choice_format(choices: Mapping[str, Any]) -> Format:
+    """One of some values, by its name."""
+    names = {value: name for name, value in choices.items()}
+    return Format(names.__getitem__, choices.__getitem__, lambda: listed(choices))
+
+
+def name_format(names: Iterable[str]) -> Format:
+    """One of some names."""
+    return choice_format({name: name for name in names})
+
+
+def number_choice_format(choices: Callable[[], Mapping[str, float]]) -> Format:
+    """One of some labelled numbers, in any usual format: 100000, 1e5, 1E+5, 100 000 and 100,000."""
+
+    def read(text: str) -> float:
+        by_value = {float(choice): choice for choice in choices().values()}
+        return by_value[read_number("".join(text.split()).replace(",", ""))]
+
+    return Format("{:g}".format, read, lambda: listed(choices()))
+
+
+def number_format(low: float, high: float, legal: str) -> Format:
+    """A number at full precision between two others."""
+
+    def read(text: str) -> float:
+        number = read_number(text)
+        if not low <= number <= high:
+            raise ValueError
+        return number
+
+    return Format(lambda number: repr(float(number)), read, lambda: legal)
+
+
+def read_number(text: str) -> float:
+    """A finite number."""
+    number = float(text)
+    if not np.isfinite(number):
+        raise ValueError
+    return number
+
+
+def listed(choices: Iterable[str]) -> str:
+    """Choices in words."""
+    *others, last = choices
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def _read_numbers(text: str, count: int) -> tuple[float, ...]:
+    numbers = tuple(map(read_number, text.split(",")))
+    if len(numbers) != count:
+        raise ValueError
+    return numbers
+
+
+def _joined(numbers: Iterable[float]) -> str:
+    return ",".join(repr(float(number)) for number in numbers)
+
+
+def _read_times(text: str) -> TimeScale:
+    """A scale of escape times; a single number is its upper end."""
+    return TimeScale(*_read_numbers(text, 2)) if "," in text else TimeScale(_SHORTEST, read_number(text))
+
+
+def _read_starts(text: str) -> tuple[tuple[float, ...], ...]:
+    starts = tuple(_read_numbers(pair, 2) for pair in text.split(";"))
+    if len(starts) > MOST_ORBITS:
+        raise ValueError
+    return starts
+
+
+def _read_watched(text: str) -> WatchedStarts:
+    where, count, seed, radius = text.split(",")
+    return WatchedStarts(StartsFrom(where), int(count), int(seed), read_number(radius))
+
+
+SWITCH = choice_format({"yes": True, "no": False})
+
+WINDOW = Format(
+    lambda window: _joined(astuple(window)),
+    lambda text: Window(*_read_numbers(text, 4)),
+    lambda: "four numbers x_low,x_high,ordinate_low,ordinate_high, each low below its high",
+)
+
+TIMES = Format(
+    lambda times: f"{times.low:g},{times.high:g}",
+    _read_times,
+    lambda: "two positive numbers low,high, the first below the second",
+)
+
+STARTS = Format(
+    lambda starts: ";".join(map(_joined, starts)),
+    _read_starts,
+    lambda: f"up to {MOST_ORBITS} starts x,ordinate, separated by semicolons",
+)
+
+WATCHED = Format(
+    lambda watched: f"{watched.where},{watched.count},{watched.seed},{watched.radius:g}",
+    _read_watched,
+    lambda: f"{listed(StartsFrom)}, {listed(map(str, COUNTS))}, a seed, and a power of ten, such as well,5000,1,-2",
+)

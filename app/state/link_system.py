@@ -1,0 +1,78 @@
+"""The system in a link: a case or a formula, the parameters of wells, and the letters of formulas, ``letters=a:1.5,b:-2``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from app.state.link_formats import Format, name_format, number_format
+from app.state.view import FIRST_VIEW
+from engine import POTENTIALS, System
+from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, checked_letter_value, formula_letters
+from engine.systems.parameters import WELL_PARAMETERS
+from engine.systems.system import TYPED
+
+# One parameter for all letters of a formula, as other names in links are letters, too.
+_CASE, _FORMULA, _LETTERS = "case", "V", "letters"
+
+
+def write_system(system: System) -> dict[str, str]:
+    """A system as parameters of a link."""
+    letters = system.letter_parameters
+    parts: dict[str, Any] = {
+        _CASE: system.case,
+        **({_FORMULA: system.formula} if system.case == TYPED else {}),
+        **{name: value for name, value in system.parameters.items() if name in WELL_PARAMETERS},
+        **({_LETTERS: letters} if letters else {}),
+    }
+    return {name: SYSTEM_FORMATS[name].write(part) for name, part in parts.items()}
+
+
+def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
+    """The system of the parts that a link names, not reviewed yet, and a message for letters that its formula does not have."""
+    case = parts.get(_CASE, TYPED if _FORMULA in parts else FIRST_VIEW.system.case)
+    formula, given = parts.get(_FORMULA, ""), parts.get(_LETTERS, {})
+    letters = _letters(case, formula)
+    known = {name: value for name, value in given.items() if name in letters}
+    system = System(case, formula, {**{name: parts[name] for name in WELL_PARAMETERS if name in parts}, **known})
+    if len(known) == len(given):
+        return system, []
+    legal = f"letters of the formula: {', '.join(letters)}" if letters else "a formula with letters"
+    return system, [f"Ignored the values of letters that the formula does not have: choose {legal}."]
+
+
+def _letters(case: str, formula: str) -> tuple[str, ...]:
+    """The letters of a known system or of a formula; none of one that is not understood."""
+    if case != TYPED:
+        return System(case).entry.adjustable
+    try:
+        return formula_letters(formula)
+    except ValueError:
+        return ()
+
+
+def _write_letters(values: Mapping[str, float]) -> str:
+    return ",".join(f"{name}:{value!r}" for name, value in values.items())
+
+
+def _read_letters(text: str) -> dict[str, float]:
+    pairs = [pair.split(":") for pair in text.split(",")]
+    if any(name in WELL_PARAMETERS for name, *_ in pairs):
+        raise ValueError
+    return {name: checked_letter_value(name, float(value)) for name, value in pairs}
+
+
+SYSTEM_FORMATS: Mapping[str, Format] = {
+    _CASE: name_format((*POTENTIALS, TYPED)),
+    _FORMULA: Format(str, str, lambda: f"a formula in x and y of at most {LONGEST_TEXT} characters"),
+    **{
+        name: number_format(low, high, f"a number from {low:g} to {high:g}")
+        for name, (_, _, (low, high)) in WELL_PARAMETERS.items()
+    },
+    _LETTERS: Format(
+        _write_letters,
+        _read_letters,
+        lambda: f"letter:number pairs such as a:1.5,b:-2, from {-LARGEST_VALUE:g} to {LARGEST_VALUE:g}",
+    ),
+}
+"""Of the parts of a system, by their names in a link."""
