@@ -164,7 +164,7 @@ def _small_oscillation(family: _Family) -> np.ndarray:
 
 
 def _extrapolate(places: list[float], values: list[np.ndarray], target: float) -> np.ndarray:
-    """The polynomial through the values at the places, at the target."""
+    """Evaluate the polynomial through values at given places at the target."""
     points = np.array(places)
     weights = [np.prod((target - np.delete(points, k)) / (place - np.delete(points, k))) for k, place in enumerate(points)]
     predicted: np.ndarray = np.array(weights) @ np.array(values)
