@@ -138,7 +138,7 @@ class MapRequests:
             return self._generation
 
     def _deliver(self, callback: Callable[..., None], generation: int, *arguments: Any) -> None:
-        """Pass on a result of the current generation; the session keeps only the latest call, which a late result would replace."""
+        """Pass on a result of the current generation; the session keeps one call, which a late one would replace."""
         with self._generation_lock:
             if generation == self._generation:
                 callback(generation, *arguments)
