@@ -27,7 +27,7 @@ class EngineComponent(JSComponent):
 
 
 class BrowserEngine:
-    """Tells the engine in the browser what the page shows.
+    """Sends the engine in the browser the system and the view of the page.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class BrowserEngine:
         self._component.system = system.to_dict()
 
     def show_view(self, view: dict[str, Any]) -> None:
-        """Say what the page shows, in the form of `app.browser.views.describe_view`."""
+        """Send the view of the page, in the form of `app.browser.views.describe_view`."""
         self._component.view = view
 
     def play(self, energy: float, low: float, high: float) -> None:

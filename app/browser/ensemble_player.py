@@ -1,4 +1,4 @@
-"""The player of many orbits in the visitor's browser: it makes the starts, follows the orbits and paints them by itself."""
+"""The player of many orbits in the visitor's browser, which makes the starts, integrates the orbits and paints them."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from app.browser.callbacks import module_path
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class FileSaver(JSComponent):
-    """Takes no room; must be on the page."""
+    """A component without size that must be on the page."""
 
     _esm = module_path("file_saver.js")
 

@@ -33,7 +33,7 @@ class ModuleHandler(StaticFileHandler):
     """Serves a module."""
 
     def get_cache_time(self, path: str, modified: Any, mime_type: str) -> int:
-        """Ten years, as the address changes with the content."""
+        """Return ten years, because the address changes with the content."""
         return self.CACHE_MAX_AGE
 
 

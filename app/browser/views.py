@@ -1,4 +1,4 @@
-"""What the page shows, as data for the engine in the browser."""
+"""The view of the page as data for the engine in the browser."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Chaos indicators of the orbits; Birkhoff digits, which need more than the history of an orbit, are requested."""
+"""Chaos indicators of the orbits; Birkhoff digits need more than the history of an orbit, and are requested as jobs."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ class MapRequests:
             self._request_compiled(generation, spec)
 
     def _request_compiled(self, generation: int, spec: MapSpec) -> None:
-        """Request the frames, after the potentials along a parameter of a typed formula: they take as long as their reviews."""
+        """Request the frames; along a parameter of a typed formula, first the potentials, which take as long as their reviews."""
         axis = spec.plane.parameter
         if axis is None or axis.system.case != TYPED:
             self._request_frames(generation, spec)
@@ -138,7 +138,7 @@ class MapRequests:
             return self._generation
 
     def _deliver(self, callback: Callable[..., None], generation: int, *arguments: Any) -> None:
-        """Pass on a result of the current generation. The session keeps the latest call only: a late result would replace it."""
+        """Pass on a result of the current generation; the session keeps one call, which a late one would replace."""
         with self._generation_lock:
             if generation == self._generation:
                 callback(generation, *arguments)

@@ -21,7 +21,7 @@ from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 @dataclass(frozen=True)
 class ChosenOrbit:
-    """A start with its orbit, or with the reason why there is none; with neither while the orbit is computed.
+    """A start with its orbit, or with the reason why it has none; both are missing while the orbit is computed.
 
     The Birkhoff digits follow later, for bounded orbits.
     """

@@ -68,7 +68,7 @@ class PotentialPresenter:
         return True
 
     def _drop_opened(self) -> None:
-        """Cancel the review of an earlier link; that of a text that is being typed goes on."""
+        """Cancel the review of an earlier link, but not that of a text that is being typed."""
         if self._proposal is not None and self._proposal.refuse is not None:
             self._proposal = None
             self._request.cancel()
@@ -78,7 +78,7 @@ class PotentialPresenter:
         self._request.cancel()
 
     def _take(self, system: System, *, done: bool) -> None:
-        """Review a system of the panel, after the previous one of the panel: so the maps follow a steady drag."""
+        """Review a system of the panel after the previous one has been reviewed, so that the maps follow a steady drag."""
         proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)
         if self._proposal is None or self._proposal.refuse is not None:
             self._propose(proposal)
@@ -86,7 +86,7 @@ class PotentialPresenter:
             self._next = proposal
 
     def _use_if_ready(self, reviewed: SystemReview) -> None:
-        """Use a system that is being typed, unless an integrator must be compiled: a server can keep only some dozens of them."""
+        """Use a system that is being typed unless its integrator must be compiled, because a server can keep only some dozens."""
         if is_ready_for_maps(reviewed.potential):
             self._use(reviewed)
         else:
@@ -140,7 +140,7 @@ class PotentialPresenter:
             proposal.refuse(problem)
 
     def _end(self, answer: Callable[[_Proposal], None]) -> None:
-        """Answer the proposal, if there still is one."""
+        """Pass the current proposal, if any, to `answer`, and continue with the next one."""
         proposal, self._proposal = self._proposal, None
         if proposal is None:
             return
@@ -164,7 +164,7 @@ class PotentialPresenter:
         return energy if energy < reviewed.highest_energy else None
 
     def _follow(self) -> None:
-        """Follow the view state, unless it follows the panel; a system that is still under review comes too late."""
+        """Follow the view state, unless the panel has changed it; a review that is still running is cancelled."""
         if self._state.reviewed is not self.panel.used:
             self._proposal = self._next = None
             self._request.cancel()

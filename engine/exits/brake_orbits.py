@@ -176,7 +176,7 @@ def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: A
 
 
 def _join(there: _Shot, back: _Shot, axes: Axes) -> BrakeOrbit | None:
-    """The orbit whose halves two shots from its ends are; None if they are not the same orbit in the middle."""
+    """Join two shots from both ends to an orbit; None if they do not meet in the middle."""
     path, other = there.path, back.path[:, ::-1]
     if np.abs((path - other)[:, [0, -1]]).max() > _LARGEST_CHANGE * _chord_length(other):
         return None
@@ -191,7 +191,7 @@ def _join(there: _Shot, back: _Shot, axes: Axes) -> BrakeOrbit | None:
 
 
 def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
-    """When a trial orbit passes q."""
+    """The time at which a trial orbit passes q."""
 
     def distance(time: float) -> float:
         return float(axes.coordinates(shot.positions(np.array([time])))[1][0]) - q
@@ -225,7 +225,7 @@ def _distance(potential: Potential, channel: int) -> float:
 
 
 def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, rest: float) -> _Shot | None:
-    """The orbit whose start is the nearest, along the channel, to the origin of the axes; None if there is none."""
+    """Find the orbit that starts nearest to the origin of the axes along the channel; None if there is none."""
     trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _distance(potential, channel))
     bracket = _find_bracket(trials.outward_velocity, search)
     return None if bracket is None else trials.solve(bracket, rest)
@@ -254,7 +254,7 @@ class _Trials:
 
 
 def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:
-    """An inner start that moves inward and an outer one that moves outward, searched with growing strides."""
+    """Search, with growing steps, an inner start that moves inward and an outer one that moves outward."""
     here, stride = 0.0, search.stride
     first = outward_velocity(here)
     if np.isnan(first):

@@ -52,7 +52,7 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
 
 
 def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
-    """The `exit_curves` for one orbit and why they are not known ("" if they are); it can also be followed without exits.
+    """Return the `exit_curves` for one orbit, and why they are not known, or ""; orbits are also integrated without exits.
 
     Where they are not defined at the energy no orbit crosses one and no start lies beyond one; discs and the escape circle stay.
     """
@@ -66,7 +66,7 @@ def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:
-    """(outcomes, 3) the gates of exits (…, outcomes, columns), which the kernels test first: orbits end only beyond one.
+    """(outcomes, 3) the gates of exits (…, outcomes, columns): no orbit ends before a gate, which the kernels test first.
 
     Across a channel it is the line a x + b y = c slightly inside its exits at all energies; of a disc and of the escape circle it
     is the centre and the radius.

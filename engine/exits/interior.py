@@ -31,7 +31,7 @@ def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y:
 
 
 def find_outside_in_well_units(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """As `find_outside_channels`, of a potential in units of its well."""
+    """`find_outside_channels` for a potential in units of its well."""
     energies, curves, row = np.full(x.size, energy), exit_curves(potential, energy)[None], np.zeros(x.size, np.int64)
     return find_outside_starts(potential, x.ravel(), y.ravel(), energies, curves, row).reshape(x.shape)
 
@@ -39,7 +39,7 @@ def find_outside_in_well_units(potential: Potential, energy: float, x: np.ndarra
 def find_outside_starts(
     potential: Potential, x: np.ndarray, y: np.ndarray, energy: np.ndarray, curves: np.ndarray, curve_row: np.ndarray
 ) -> np.ndarray:
-    """int8 (n,), as `find_outside_channels` for points of several energies, in units of the well.
+    """(n,) int8: `find_outside_channels` for points of several energies, in units of the well.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ class LyapunovOrbit(Result):
 
     @property
     def half_path(self) -> np.ndarray:
-        """The path for plots: (101, 2) half a period from one side of the channel to the other, as the other half is the same.
+        """(101, 2) the path for plots: half a period from one side of the channel to the other; the other half is its return.
 
         In a rotating frame (201, 2) the whole closed path.
         """
@@ -313,7 +313,7 @@ def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
 
 
 def _same_ends(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two paths, (n, 2) each, connect the same points: then they are one, up to rounding errors."""
+    """Whether two paths, (n, 2) each, connect the same points, and are thus equal up to rounding errors."""
     return bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
 
 

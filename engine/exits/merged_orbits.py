@@ -52,7 +52,7 @@ def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int,
 
 
 def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: np.ndarray) -> bool:
-    """Whether any of 50 orbits that leave across an exit (columns,) comes back through it."""
+    """Whether any of 50 orbits that leave across an exit (columns,) returns through it."""
     kernels = kernels_of(potential)
     for start in _leaving_states(potential, energy, orbit.path):
         steps, _ = next(trace_pieces(kernels, start, _FOLLOWED, len(potential.outcomes)))

@@ -161,7 +161,7 @@ def _small_oscillation(family: _Family) -> np.ndarray:
 
 
 def _extrapolate(known: _Known, target: float) -> np.ndarray:
-    """The polynomial through the unknowns at some σ, at the target."""
+    """Evaluate the polynomial through the unknowns at some σ at the target."""
     points = np.array([place for place, _ in known])
     weights = [np.prod((target - np.delete(points, k)) / (place - np.delete(points, k))) for k, place in enumerate(points)]
     predicted: np.ndarray = np.array(weights) @ np.array([unknowns for _, unknowns in known])

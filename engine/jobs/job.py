@@ -13,7 +13,7 @@ from engine.jobs.cache import ResultCache
 
 
 class Queue(Enum):
-    """How the calls of a job wait for a thread."""
+    """The queue in which the calls of a job wait for a thread."""
 
     FIRST_FRAME = "first frame"
     """The function makes many short calls, which come before all others up to its first result."""
@@ -67,7 +67,7 @@ class Job[Result]:
         return self.orbits + sum(argument.orbits_held for argument in self.arguments if isinstance(argument, Job))
 
     def keywords(self, offered: Mapping[str, Any]) -> dict[str, Any]:
-        """The keyword arguments of a call: the options, and those offered that the function has parameters for."""
+        """The keyword arguments of a call: the options, and the offered values for which the function has parameters."""
         names = _parameters(self.function)
         return {**{name: value for name, value in offered.items() if name in names}, **dict(self.options)}
 

@@ -254,7 +254,7 @@ class Jobs:
                 subscription.deliver(result, last=True)
 
     def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
-        """Call the function of a job, which `run` has started or needs."""
+        """Call the function of a job that `run` has started, or that it needs."""
         arguments = [self._find_result(run, each) if isinstance(each, Job) else each for each in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
         offered = {
@@ -320,5 +320,5 @@ class Jobs:
 
 
 def _is_complete(result: Any) -> bool:
-    """Whether there is a result and it is final; only results that grow have an attribute ``complete``."""
+    """Whether a result is final; only results that arrive in parts have an attribute ``complete``."""
     return result is not ABSENT and getattr(result, "complete", True)

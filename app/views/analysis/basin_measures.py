@@ -71,7 +71,7 @@ class BasinMeasuresView:
             self._write()
 
     def show_box(self, box: Window | None) -> None:
-        """Say that the measures are those of a box; None is the whole view."""
+        """Show that the measures are those of a box; None is the whole view."""
         self.whole.visible = box is not None
         self._write()
 
@@ -82,7 +82,7 @@ class BasinMeasuresView:
         self._write()
 
     def show_flux(self, flux: EscapeFlux) -> None:
-        """Show the decay rate that motion inside would have if it were mixed."""
+        """Show the decay rate for mixed motion inside."""
         self._results["Flux"] = flux
         self._sentences["Flux"] = flux.describe()
         self._write()
@@ -103,7 +103,7 @@ class BasinMeasuresView:
         self._write()
 
     def wait_for_exponent(self) -> None:
-        """The exponent is being measured."""
+        """Show that the exponent is being measured."""
         self.button.disabled = True
         self._sentences["Uncertainty exponent"] = _MEASURING
         self._write()

@@ -87,7 +87,7 @@ class PotentialPanel:
         self.known.param.watch(lambda event: self._take_known(event.new), "value")
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Parts of a column, those of fixed height first, so that none moves while the formula is typed."""
+        """Return the parts of a column, those of fixed height first, so that no part moves while the formula is typed."""
         buttons = flex_row(self.reset, self.move, gap="8px")
         return [
             self.known,
@@ -144,7 +144,7 @@ class PotentialPanel:
         self.facts.object = _points(reviewed) + _remarks(reviewed)
 
     def wait(self) -> None:
-        """The system of the widgets is under review."""
+        """Show that the system of the widgets is under review."""
         self._write("<p>Reviewing …</p>")
 
     def say(self, sentence: str) -> None:

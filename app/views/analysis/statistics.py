@@ -183,14 +183,14 @@ def _simplify(plot: Any, _element: Any) -> None:
 
 
 def _plot(element: hv.Element, name: str, title: str) -> Any:
-    """The plot of an element, with its help text; to change its data is 20 times faster than to draw it again."""
+    """Return the plot of an element with its help text. Changing its data is 20 times faster than drawing it again."""
     plot = hv.renderer("bokeh").get_plot(element)
     plot.state.elements = [HTML(html=title_with_help(title, name))]
     return plot
 
 
 def _describe(plot: Any, text: str, formats: dict[str, str]) -> None:
-    """Describe the bar under the mouse, also above a bar that is low."""
+    """Describe the bar under the mouse, even if the mouse is above a low bar."""
     plot.state.add_tools(chart_hover(text, formats, [plot.handles["glyph_renderer"]], mode="vline"))
 
 
