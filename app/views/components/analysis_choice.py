@@ -7,8 +7,8 @@ from html import escape
 
 import panel as pn
 
-from app.state.view import Analysis
-from app.state.view_state import IMAGE_CHOICES, LAYERS, ViewState
+from app.state.view import IMAGE_CHOICES, LAYERS, Analysis
+from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
 

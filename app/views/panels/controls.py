@@ -12,7 +12,8 @@ import panel as pn
 from app.browser.energy_slider import SHOWN, EnergySlider
 from app.browser.number_box import NumberBox
 from app.state.system_review import review_catalogue_entry
-from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
+from app.state.view import allowed_resolutions, allowed_t_max
+from app.state.view_state import ViewState
 from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
