@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from typing import Any
 
@@ -153,6 +153,11 @@ class View:
     def values(self) -> dict[str, Any]:
         """The values of all fields by their names."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
+
+    def within_limits(self) -> View:
+        """The view with the nearest t_max and resolution that the settings of the server allow."""
+        t_max, resolution = max(allowed_t_max().values()), max(allowed_resolutions().values())
+        return replace(self, t_max=min(self.t_max, t_max), resolution=min(self.resolution, resolution))
 
     def map_spec(self, reviewed: SystemReview) -> MapSpec:
         """The map of this view; ValueError if it has none.

@@ -94,9 +94,10 @@ class ViewState(param.Parameterized):
     )
 
     def __init__(self, **values: Any) -> None:
-        t_max, resolutions = list(allowed_t_max().values()), list(allowed_resolutions().values())
-        super().__init__(t_max=min(FIRST_VIEW.t_max, t_max[-1]), resolution=min(FIRST_VIEW.resolution, resolutions[-1]))
-        self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
+        first = FIRST_VIEW.within_limits()
+        super().__init__(t_max=first.t_max, resolution=first.resolution)
+        self.param.t_max.objects = list(allowed_t_max().values())
+        self.param.resolution.objects = list(allowed_resolutions().values())
         self._reviewed = review_catalogue_entry(self.system.case)
         self.param.update(**values)
 
