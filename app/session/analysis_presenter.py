@@ -14,8 +14,7 @@ from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.glossary import with_terms
-from app.state.view import Analysis
-from app.state.view_state import IMAGES
+from app.state.view import IMAGES, Analysis
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane

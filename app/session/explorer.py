@@ -321,7 +321,7 @@ class Explorer:
         # On a narrow screen the drawer covers the maps.
         if self._by_touch:
             self.drawers.show(None)
-        self._open_view(preset.view.system, preset.view.values())
+        self._open_view(preset.view.system, preset.view.within_limits().values())
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")

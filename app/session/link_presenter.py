@@ -24,7 +24,8 @@ from app.state.permalink import (
     write_link,
 )
 from app.state.system_review import is_known, review_catalogue_entry
-from app.state.view_state import PICTURES, ViewState
+from app.state.view import PICTURES
+from app.state.view_state import ViewState
 from app.views.components.notice import Notice
 from app.views.components.progress import ProgressView
 from app.views.panels.browser_events import BrowserEvents

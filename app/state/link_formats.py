@@ -36,6 +36,28 @@ class Format:
     legal: Callable[[], str]
 
 
+@dataclass(frozen=True)
+class LinkParameter:
+    """The parameter of a link that has the value of a field.
+
+    Attributes
+    ----------
+    name
+        In the link.
+    form
+        How its value is written and read.
+    of_system
+        Whether its value has no meaning for another system.
+    always
+        Whether its default value is written, too.
+    """
+
+    name: str
+    form: Format
+    of_system: bool = False
+    always: bool = False
+
+
 def choice_format(choices: Mapping[str, Any]) -> Format:
     """One of some values, by its name."""
     names = {value: name for name, value in choices.items()}

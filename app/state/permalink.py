@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 from urllib.parse import urlencode
 
-from app.state.link_fields import LINK_FIELDS
-from app.state.link_formats import Format, listed, number_format
+from app.state.link_formats import TIMES, Format, LinkParameter, listed, name_format, number_format
 from app.state.link_system import SYSTEM_FORMATS, system_of, write_system
-from app.state.view import FIRST_VIEW, View
+from app.state.view import FIRST_VIEW, PICTURES, VIEW_PARAMETERS, View
 from app.state.view_state import ViewState, longest_first_t_max
 from engine import Plane
 from engine.foundations.validation import LARGEST_NUMBER
@@ -17,6 +16,7 @@ from engine.slices.slice_text import read_slice, write_slice
 from engine.systems.formulas.formula_parser import LONGEST_TEXT
 from engine.systems.review.potential_review import SystemReview
 from plots.pictures.map_images import ON_DEMAND
+from plots.pictures.palette import PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT
 """Maximal length of a value in a link, in characters."""
@@ -31,18 +31,26 @@ _PLANE, _FIX, _ENERGY = "plane", "fix", "h"
 _COMPARED = "with_"
 _VIEW_NAMES = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
 
+# Of the attributes of the view state that one parameter has each; the last three are choices of the visitor.
+_LINKED: dict[str, LinkParameter] = {
+    **VIEW_PARAMETERS,
+    "focus": LinkParameter("focus", name_format(PICTURES)),
+    "palette": LinkParameter("palette", name_format(PALETTES)),
+    "lock_times": LinkParameter("lock_times", TIMES),
+}
+
 # Of what is read from one parameter.
 _FORMATS: dict[str, Format] = {
     **SYSTEM_FORMATS,
     _ENERGY: number_format(-LARGEST_NUMBER, LARGEST_NUMBER, "a number, such as 0.25"),
-    **{field.name: field.format for field in LINK_FIELDS},
-    EMBED: next(field.format for field in LINK_FIELDS if field.name == "focus"),
+    **{parameter.name: parameter.form for parameter in _LINKED.values()},
+    EMBED: _LINKED["focus"].form,
 }
 
 PARAMETERS = (*_FORMATS, _PLANE, _FIX, *(f"{_COMPARED}{name}" for name in _VIEW_NAMES))
 """Names of the parameters of a link."""
 
-LINKED = ("system", "plane", "energy", *(field.attribute for field in LINK_FIELDS), "compared")
+LINKED = ("system", "plane", "energy", *_LINKED, "compared")
 """Attributes of the view state that a link contains."""
 
 
@@ -57,10 +65,10 @@ def write_link(state: ViewState, *, embedded: bool = False) -> str:
         Whether the page shows one picture only: the one that is shown large, or else the basins.
     """
     written = _write_view(state.view)
-    for field in LINK_FIELDS:
-        value = getattr(state, field.attribute)
-        if field.always or value != field.default:
-            written[field.name] = field.format.write(value)
+    for attribute, parameter in _LINKED.items():
+        value = getattr(state, attribute)
+        if parameter.always or value != ViewState.param[attribute].default:
+            written[parameter.name] = parameter.form.write(value)
     if embedded:
         written[EMBED] = written.pop("focus", _FIRST_EMBEDDED)
     if state.compared is not None:
@@ -86,7 +94,7 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
         A message for each invalid value.
     """
     found, problems = _read_each(parameters, prefix)
-    values = {field.attribute: found[field.name] for field in LINK_FIELDS if field.name in found}
+    values = {attribute: found[parameter.name] for attribute, parameter in _LINKED.items() if parameter.name in found}
     if EMBED in found:
         picture = values["focus"] = found[EMBED]
         values |= {ON_DEMAND[picture]: True} if picture in ON_DEMAND else {}
@@ -105,7 +113,7 @@ def linked_view(values: Mapping[str, Any]) -> View:
 
 def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a link that have a meaning for any system."""
-    dropped = {"system", "energy", *(field.attribute for field in LINK_FIELDS if field.of_system)}
+    dropped = {"system", "energy", *(name for name, parameter in VIEW_PARAMETERS.items() if parameter.of_system)}
     if linked_view(values).plane.parameter is not None:
         dropped.add("plane")
     return {name: value for name, value in values.items() if name not in dropped}

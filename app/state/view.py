@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from typing import Any
 
+from app.runtime.process_state import process_state
+from app.state.link_formats import (
+    STARTS,
+    SWITCH,
+    WATCHED,
+    WINDOW,
+    Format,
+    LinkParameter,
+    choice_format,
+    name_format,
+    number_choice_format,
+)
 from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Plane, Slice, System, Window
 from engine.slices.energies import Energy
 from engine.systems.review.potential_review import SystemReview
+from plots.pictures.map_images import COMPARISON_TITLES, TITLES
+from plots.pictures.palette import MOST_ORBITS
 
 Start = tuple[float, float]
 """x and ordinate of a start in the plane."""
@@ -25,7 +40,48 @@ class Analysis(StrEnum):
     WATCH = "watch"
 
 
-_FIRST_SYSTEM, _FIRST_STARTS = System("I"), WatchedStarts()
+_FIRST_SYSTEM = System("I")
+_LINK = "link"
+_PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
+
+
+def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
+    """Return the choices up to a limit, and the smallest one in any case."""
+    least = min(choices.values())
+    return {name: value for name, value in choices.items() if value <= max(limit, least)}
+
+
+T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
+IMAGES = 3
+"""Images of the stable manifolds that are computed: later ones are less than a pixel apart."""
+
+IMAGE_CHOICES = {**{str(image): image for image in range(1, IMAGES + 1)}, "all": 0}
+"""Images of the stable manifolds that can be drawn."""
+
+RESOLUTION_CHOICES = {"112 × 112": 112, "224 × 224": 224, "450 × 450": 450, "900 × 900": 900}
+
+
+def allowed_t_max() -> dict[str, float]:
+    """Return the time horizons that the server's settings allow, by label."""
+    return _up_to(process_state().settings.longest_t_max, T_MAX_CHOICES)
+
+
+def allowed_resolutions() -> dict[str, int]:
+    """Return the resolutions that the server's settings allow, by label."""
+    return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
+
+
+PICTURES = ("well", *(name for name in TITLES if name != "curves"), *COMPARISON_TITLES)
+"""Names of the pictures: the well, the maps of starts, and the comparison with another view."""
+
+
+def _linked(name: str, form: Format, *, of_system: bool = False, always: bool = False) -> dict[str, LinkParameter]:
+    """The metadata of a field that has a parameter in links."""
+    return {_LINK: LinkParameter(name, form, of_system, always)}
+
+
+def _sides() -> dict[str, int]:
+    return {str(side): side for side in allowed_resolutions().values()}
 
 
 @dataclass(frozen=True)
@@ -40,24 +96,24 @@ class View:
         The slice.
     energy
         h, in the units of the potential; None for the first energy of the system. A slice with an axis h does not use it.
-    window
-        Part of the plane; None for the whole interior.
     t_max
         Longest time of the orbits.
     resolution
         Columns and rows of the map.
+    window, box
+        Part of the plane, and part of it for the statistics; None for the whole interior and for all of the window.
     judge
         Whether bounded orbits are classified as regular or chaotic.
     trust
         Whether pixels that depend on rounding are marked.
-    manifolds, images
-        Whether the stable manifolds of the Lyapunov orbits are drawn, and which image of them; 0 for all.
+    manifolds
+        Whether the stable manifolds of the Lyapunov orbits are drawn.
     origins
         Whether orbits are integrated backward in time, too.
+    images
+        The image of the manifolds that is drawn; 0 for all.
     analysis
         What is shown beside the maps.
-    box
-        Part of the window for the statistics; None for all of it.
     watched
         Starts of the orbits that are watched.
     starts, chosen
@@ -67,19 +123,21 @@ class View:
     system: System = _FIRST_SYSTEM
     plane: Slice = Plane.X_PX
     energy: float | None = None
-    window: Window | None = None
-    t_max: float = 1e5
-    resolution: int = MapSpec.resolution[0]
-    judge: bool = False
-    trust: bool = False
-    manifolds: bool = False
-    images: int = 0
-    origins: bool = False
-    analysis: Analysis = Analysis.ORBIT
-    box: Window | None = None
-    watched: WatchedStarts = _FIRST_STARTS
-    starts: tuple[Start, ...] = ()
-    chosen: int = 0
+    t_max: float = field(default=1e5, metadata=_linked("t_max", number_choice_format(allowed_t_max), always=True))
+    resolution: int = field(
+        default=MapSpec.resolution[0], metadata=_linked("resolution", number_choice_format(_sides), always=True)
+    )
+    window: Window | None = field(default=None, metadata=_linked("window", WINDOW, of_system=True))
+    box: Window | None = field(default=None, metadata=_linked("box", WINDOW, of_system=True))
+    judge: bool = field(default=False, metadata=_linked("judge", SWITCH))
+    trust: bool = field(default=False, metadata=_linked("trust", SWITCH))
+    manifolds: bool = field(default=False, metadata=_linked("manifolds", SWITCH))
+    origins: bool = field(default=False, metadata=_linked("origins", SWITCH))
+    images: int = field(default=0, metadata=_linked("images", choice_format(IMAGE_CHOICES)))
+    analysis: Analysis = field(default=Analysis.ORBIT, metadata=_linked("analysis", name_format(Analysis)))
+    watched: WatchedStarts = field(default=WatchedStarts(), metadata=_linked("watch", WATCHED))
+    starts: tuple[Start, ...] = field(default=(), metadata=_linked("orbits", STARTS, of_system=True))
+    chosen: int = field(default=0, metadata=_linked("look", choice_format(_PLACES), of_system=True))
 
     @property
     def title(self) -> str:
@@ -95,6 +153,11 @@ class View:
     def values(self) -> dict[str, Any]:
         """The values of all fields by their names."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
+
+    def within_limits(self) -> View:
+        """The view with the nearest t_max and resolution that the settings of the server allow."""
+        t_max, resolution = max(allowed_t_max().values()), max(allowed_resolutions().values())
+        return replace(self, t_max=min(self.t_max, t_max), resolution=min(self.resolution, resolution))
 
     def map_spec(self, reviewed: SystemReview) -> MapSpec:
         """The map of this view; ValueError if it has none.
@@ -117,3 +180,9 @@ class View:
 
 FIRST_VIEW = View()
 """The view of the page without a link."""
+
+VIEW_PARAMETERS: Mapping[str, LinkParameter] = {each.name: each.metadata[_LINK] for each in fields(View) if each.metadata}
+"""The parameters in links of all fields but system, slice and energy, in the order of links."""
+
+LAYERS = tuple(name for name, parameter in VIEW_PARAMETERS.items() if parameter.form is SWITCH)
+"""Fields that turn follow-up analyses of the map on."""

@@ -9,9 +9,19 @@ from typing import Any
 import numpy as np
 import param
 
-from app.runtime.process_state import process_state
 from app.state.system_review import review_catalogue_entry
-from app.state.view import FIRST_VIEW, Analysis, Start, View
+from app.state.view import (
+    FIRST_VIEW,
+    IMAGE_CHOICES,
+    PICTURES,
+    RESOLUTION_CHOICES,
+    T_MAX_CHOICES,
+    Analysis,
+    Start,
+    View,
+    allowed_resolutions,
+    allowed_t_max,
+)
 from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Orbit, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.foundations.validation import LARGEST_NUMBER
@@ -20,46 +30,11 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
-from plots.pictures.map_images import COMPARISON_TITLES, TITLES
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 
-
-def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
-    """Return the choices up to a limit, and the smallest one in any case."""
-    least = min(choices.values())
-    return {name: value for name, value in choices.items() if value <= max(limit, least)}
-
-
-T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
-IMAGES = 3
-"""Images of the stable manifolds that are computed: later ones are less than a pixel apart."""
-
-IMAGE_CHOICES = {**{str(image): image for image in range(1, IMAGES + 1)}, "all": 0}
-"""Images of the stable manifolds that can be drawn."""
-
-RESOLUTION_CHOICES = {"112 × 112": 112, "224 × 224": 224, "450 × 450": 450, "900 × 900": 900}
-
-
-def allowed_t_max() -> dict[str, float]:
-    """Return the time horizons that the server's settings allow, by label."""
-    return _up_to(process_state().settings.longest_t_max, T_MAX_CHOICES)
-
-
-def allowed_resolutions() -> dict[str, int]:
-    """Return the resolutions that the server's settings allow, by label."""
-    return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
-
-
 # In natural units of time.
 _LONGEST_FIRST = 1000.0
-
-LAYERS = ("judge", "trust", "manifolds", "origins")
-"""Attributes of the view state that turn follow-up analyses of the map on."""
-
-
-PICTURES = ("well", *(name for name in TITLES if name != "curves"), *COMPARISON_TITLES)
-"""Names of the pictures: the well, the maps of starts, and the comparison with another view."""
 
 
 def plane_of_system(plane: Slice, system: System) -> Slice:
@@ -119,9 +94,10 @@ class ViewState(param.Parameterized):
     )
 
     def __init__(self, **values: Any) -> None:
-        t_max, resolutions = list(allowed_t_max().values()), list(allowed_resolutions().values())
-        super().__init__(t_max=min(FIRST_VIEW.t_max, t_max[-1]), resolution=min(FIRST_VIEW.resolution, resolutions[-1]))
-        self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
+        first = FIRST_VIEW.within_limits()
+        super().__init__(t_max=first.t_max, resolution=first.resolution)
+        self.param.t_max.objects = list(allowed_t_max().values())
+        self.param.resolution.objects = list(allowed_resolutions().values())
         self._reviewed = review_catalogue_entry(self.system.case)
         self.param.update(**values)
 

@@ -7,8 +7,8 @@ from html import escape
 
 import panel as pn
 
-from app.state.view import Analysis
-from app.state.view_state import IMAGE_CHOICES, LAYERS, ViewState
+from app.state.view import IMAGE_CHOICES, LAYERS, Analysis, View
+from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
 
@@ -51,9 +51,9 @@ class LayerSwitches:
     def _make(self, name: str) -> Switches:
         """The switch of a layer."""
         on = [LAYER_LABELS[name]]
-        switch = Switches(label="Layer", options=on, value=on if getattr(self._state, name) else [], margin=(0, 10, 4, 10))
+        switch = Switches(label="Layer", options=on, margin=(0, 10, 4, 10))
+        self._state.follow(lambda is_on: switch.param.update(value=on if is_on else []), name)
         switch.param.watch(lambda event: self._write(name, on=bool(event.new)), "value")
-        self._state.param.watch(lambda event: switch.param.update(value=on if event.new else []), name)
         return switch
 
     def _choose_image(self) -> SegmentedControl:
@@ -83,27 +83,22 @@ class ComparisonSwitch:
 
     def __init__(self, state: ViewState, compare: Callable[[bool], None], swap: Callable[[], None]) -> None:
         self._state, self._on = state, ["Compare with this view"]
-        self.switch = Switches(label="Comparison", options=self._on, value=self._value(), margin=(0, 10, 4, 10))
+        self.switch = Switches(label="Comparison", options=self._on, margin=(0, 10, 4, 10))
         self.view = TextPane("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
         self.swap = button("Swap the views", swap, kind="light", margin=(2, 10))
+        state.follow(self._show, "compared")
         self.switch.param.watch(lambda event: self._take(bool(event.new), compare), "value")
-        state.param.watch(lambda event: self._follow(), "compared")
-        self._follow()
 
     def parts(self) -> list[pn.viewable.Viewable]:
         """The switch and, while it is on, the other view and the button."""
         return [self.switch, *([self.view, self.swap] if self._state.compared is not None else [])]
 
-    def _value(self) -> list[str]:
-        return self._on if self._state.compared is not None else []
-
     def _take(self, on: bool, compare: Callable[[bool], None]) -> None:
         if on != (self._state.compared is not None):
             compare(on)
 
-    def _follow(self) -> None:
-        compared = self._state.compared
-        self.switch.value = self._value()
+    def _show(self, compared: View | None) -> None:
+        self.switch.value = [] if compared is None else self._on
         self.view.object = escape(compared.title) if compared is not None else ""
 
 

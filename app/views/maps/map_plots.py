@@ -25,7 +25,7 @@ from bokeh.models import (
 )  # fmt: skip
 from bokeh.plotting import figure
 
-from app.state.view_state import PICTURES
+from app.state.view import PICTURES
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.numbers import percent
 from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure

@@ -13,7 +13,7 @@ import param
 from panel.custom import JSComponent
 
 from app.browser.callbacks import module_path
-from app.state.view_state import PICTURES
+from app.state.view import PICTURES
 from plots.pictures.map_images import TITLES
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})

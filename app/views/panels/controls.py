@@ -12,7 +12,8 @@ import panel as pn
 from app.browser.energy_slider import SHOWN, EnergySlider
 from app.browser.number_box import NumberBox
 from app.state.system_review import review_catalogue_entry
-from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
+from app.state.view import allowed_resolutions, allowed_t_max
+from app.state.view_state import ViewState
 from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
@@ -134,9 +135,9 @@ class Controls:
     def _make_lock(self) -> pn.viewable.Viewable:
         """A switch that keeps the limits of the escape times."""
         state, on = self.state, [LOCK]
-        lock = Switches(label="Escape times", options=on, value=on if state.lock_times is not None else [], margin=(0, 10))
+        lock = Switches(label="Escape times", options=on, margin=(0, 10))
+        state.follow(lambda times: lock.param.update(value=on if times is not None else []), "lock_times")
         lock.param.watch(lambda event: self._take_lock(bool(event.new)), "value")
-        state.param.watch(lambda event: lock.param.update(value=on if event.new is not None else []), "lock_times")
         return lock
 
     def _take_lock(self, locked: bool) -> None:

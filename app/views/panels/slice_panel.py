@@ -14,7 +14,7 @@ from app.browser.number_box import NumberBox
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import flex_row
-from engine import Coordinate, ParameterAxis, Slice
+from engine import Coordinate, ParameterAxis, Slice, System
 from engine.slices.slice_text import AXIS_NAMES, default_range
 from engine.systems.parameters import symbol_of
 
@@ -55,17 +55,15 @@ class SlicePanel:
         for place, axis in enumerate(self.axes):
             axis.param.watch(partial(self._take_axis, place), "value")
         self.mode.param.watch(lambda event: self._take(mode=_MODES[event.new]) if event.new else None, "value")
-        state.param.watch(lambda *events: self.follow(), ["plane", "system"])
-        self.follow()
+        state.follow(self.show, "plane", "system")
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Parts of a column."""
         hint = TextPane(f"<p class='quiet'>{_HINT}</p>", sizing_mode="stretch_width", margin=0)
         return [hint, *self.axes, self.ranges, self.mode, self.held, self.message]
 
-    def follow(self) -> None:
-        """Show the slice of the state."""
-        plane, system = self._state.plane, self._state.system
+    def show(self, plane: Slice, system: System) -> None:
+        """Show a slice of a system."""
         names = {_symbol(key): key for key in (*AXIS_NAMES, *system.parameter_names)}
         self._following = True
         try:

@@ -14,8 +14,7 @@ import pytest
 from bokeh.server.session import ServerSession
 
 from app.session.explorer import Explorer
-from app.state.view import Analysis
-from app.state.view_state import LAYERS
+from app.state.view import LAYERS, Analysis
 from app.views.components.analysis_choice import LAYER_LABELS
 from app.views.maps.map_toolbar import Drag
 from engine import Plane

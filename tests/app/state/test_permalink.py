@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.state.permalink import LONGEST_VALUE, linked_view, read_link, without_system, write_link
-from app.state.view import Analysis, View
-from app.state.view_state import IMAGE_CHOICES, LAYERS, PICTURES, RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
+from app.state.view import IMAGE_CHOICES, LAYERS, PICTURES, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, View
+from app.state.view_state import ViewState
 from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
 from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window
 from engine.systems.system import TYPED

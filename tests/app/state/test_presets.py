@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from urllib.parse import parse_qsl
@@ -12,6 +13,7 @@ import pytest
 from PIL import Image
 
 import app
+from app.runtime.process_state import ProcessState
 from app.state.permalink import read_link, write_link
 from app.state.presets import GROUPS, PRESETS, Preset
 from app.state.system_review import review_catalogue_entry
@@ -89,6 +91,13 @@ def test_a_preset_is_a_valid_view_with_a_link_and_a_small_picture(preset: Preset
     assert file.stat().st_size <= LARGEST_THUMBNAIL
     with Image.open(file) as picture:
         assert picture.size == (160, 160)
+
+
+def test_a_server_with_limits_shows_every_preset(start_state: Callable[..., ProcessState]) -> None:
+    start_state(longest_t_max=1e3, largest_resolution=112)
+    for preset in PRESETS:
+        state = ViewState(**preset.view.within_limits().values())
+        assert (state.t_max, state.resolution) == (min(preset.view.t_max, 1e3), 112)
 
 
 def test_every_thumbnail_has_a_preset() -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.state.view import Analysis
-from app.state.view_state import LAYERS, ViewState
+from app.state.view import LAYERS, Analysis
+from app.state.view_state import ViewState
 from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS, AnalysisTabs, LayerSwitches
 from app.views.components.widgets import SegmentedControl
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.state.view_state import PICTURES
+from app.state.view import PICTURES
 from app.views.components.plots import FigurePane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED
 from app.views.maps.picture_grid import SHORT_TITLES, PictureGrid
