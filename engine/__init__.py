@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits, find_multipliers
 from engine.foundations.execution import Execution
 from engine.foundations.former_names import FORMER_NAMES as FORMER_NAMES
-from engine.foundations.former_names import find_former_name
+from engine.foundations.former_names import find_former_name as find_former_name
 from engine.foundations.result import Result
 from engine.maps.compute import compute_map
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates

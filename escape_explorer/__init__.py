@@ -22,7 +22,9 @@ def __getattr__(name: str) -> Any:
     engine = import_module("engine")
     if name == "__all__":
         return engine.__all__
-    if name not in (*engine.__all__, *engine.FORMER_NAMES):
+    if name in engine.FORMER_NAMES:
+        return engine.find_former_name(name, stacklevel=3)
+    if name not in engine.__all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(engine, name)
 

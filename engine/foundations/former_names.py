@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        "Certificate": ("Evidence", "engine.propagation.evidence:Evidence"),
-        "Curves": ("Sweep", "engine.sweeps.sweep:Sweep"),
-        "CurvesSpec": ("SweepSpec", "engine.sweeps.former_calls:make_curves_spec"),
-        "compute_curves": ("compute_sweep", "engine.sweeps.sweep:compute_sweep"),
-        "run_sweep": ("compute_sweep", "engine.sweeps.former_calls:run_sweep"),
+        "Certificate": ("Evidence", "..propagation.evidence:Evidence"),
+        "Curves": ("Sweep", "..sweeps.sweep:Sweep"),
+        "CurvesSpec": ("SweepSpec", "..sweeps.former_calls:make_curves_spec"),
+        "compute_curves": ("compute_sweep", "..sweeps.sweep:compute_sweep"),
+        "run_sweep": ("compute_sweep", "..sweeps.former_calls:run_sweep"),
     }
 )
-"""Former public names: the new name, and the module and object that stand for the former one."""
+"""Former public names: the new name, and the module, as seen from this package, and object that stand for the former one."""
 
 FORMER_FIELDS: Mapping[str, str] = MappingProxyType(
     {
@@ -34,14 +34,17 @@ FORMER_FIELDS: Mapping[str, str] = MappingProxyType(
 """Former names of attributes and parameters of the public classes, and of variables and attributes in files."""
 
 
-def find_former_name(name: str) -> Any:
-    """Return what stands for a former public name, with a warning; AttributeError for any other name."""
+def find_former_name(name: str, stacklevel: int = 2) -> Any:
+    """Return what stands for a former public name, with a warning; AttributeError for any other name.
+
+    stacklevel: whom to warn, as of `warnings.warn`; by default the caller.
+    """
     if name not in FORMER_NAMES:
         raise AttributeError(f"module 'engine' has no attribute {name!r}")
     new, place = FORMER_NAMES[name]
-    _warn(name, new)
+    _warn(name, new, stacklevel + 1)
     module, _, attribute = place.partition(":")
-    return getattr(import_module(module), attribute)
+    return getattr(import_module(module, __package__), attribute)
 
 
 def with_former_fields[T](cls: type[T]) -> type[T]:
@@ -76,9 +79,9 @@ def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
     cls.__init__ = __init__
 
 
-def _warn(old: str, new: str) -> None:
-    """Warn the caller of the function that calls this one."""
-    warnings.warn(f"{old} is deprecated: use {new}", DeprecationWarning, stacklevel=3)
+def _warn(old: str, new: str, stacklevel: int = 3) -> None:
+    """Warn, by default the caller of the function that calls this one."""
+    warnings.warn(f"{old} is deprecated: use {new}", DeprecationWarning, stacklevel=stacklevel)
 
 
 def rename_stored(dataset: xr.Dataset) -> xr.Dataset:

@@ -187,7 +187,7 @@ def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, 
 def find_outside_polynomial(powers, coefficients, bernstein, x, y, energy, curves, curve_row):
     """`_find_outside` for a polynomial.
 
-    powers (terms, 2), coefficients (terms,): of V; bernstein: matrix from `bernstein_matrix`; x, y, energy (n,);
+    powers (terms, 2), coefficients (terms,): of V; bernstein: matrix of `engine.exits.interior`; x, y, energy (n,);
     curves (rows, channels, columns); curve_row (n,).
     """
     polynomial = (powers, coefficients, bernstein, np.zeros((3, bernstein.shape[0])))

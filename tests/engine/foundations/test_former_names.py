@@ -8,6 +8,7 @@ from concurrent.futures import CancelledError
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ import pytest
 import xarray as xr
 
 import engine
+import escape_explorer
 from engine import CASES, Evidence, Execution, MapSpec, Plane, SweepSpec, compute_map, compute_sweep, integrate_orbit, open_result
 
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (12, 10), t_max=200.0, use_evidence=False)
@@ -25,9 +27,10 @@ SWEEP = SweepSpec(CASES["III"], Plane.X_PX, (0.3, 0.4, 0.5), (12, 10), t_max=300
     ("old", "new"),
     [("Certificate", "Evidence"), ("Curves", "Sweep"), ("compute_curves", "compute_sweep")],
 )
-def test_former_public_names_stand_for_the_present_ones(old: str, new: str) -> None:
+@pytest.mark.parametrize("package", [engine, escape_explorer])
+def test_former_public_names_stand_for_the_present_ones(old: str, new: str, package: ModuleType) -> None:
     with pytest.warns(DeprecationWarning, match=f"^{old} is deprecated: use {new}$") as caught:
-        assert getattr(engine, old) is getattr(engine, new)
+        assert getattr(package, old) is getattr(engine, new)
     assert caught[0].filename == __file__
 
 
