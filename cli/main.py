@@ -26,6 +26,10 @@ COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep
 """Names of the modules in `commands`, which are imported when they are needed."""
 
 
+FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
+"""Former names of options."""
+
+
 class _Command(TyperCommand):
     """A command whose arguments may begin with a minus, as formulas do: all options begin with two."""
 
@@ -35,6 +39,7 @@ class _Command(TyperCommand):
         words, rest, arguments = deque(args), list[str](), list[str]()
         while words and words[0] != "--":
             word = words.popleft()
+            word = FORMER_OPTIONS.get(word, word)
             if re.match("-[^-]", word):
                 arguments.append(word)
                 continue
@@ -45,6 +50,10 @@ class _Command(TyperCommand):
     @staticmethod
     def _count_values(option: Any) -> int:
         return 0 if getattr(option, "is_flag", False) else int(option.nargs)
+
+
+FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
+"""Former names of options."""
 
 
 class _Commands(TyperGroup):

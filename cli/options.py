@@ -17,8 +17,8 @@ from cli.option_marks import But, Of
 
 MISSING = inspect.Parameter.empty
 
-NAMES = {"use_evidence": ("--evidence/--no-evidence", "--certify/--no-certify")}
-"""Names of the options of parameters that are not named after them; the last ones are former names."""
+NAMES = {"use_evidence": ("--evidence/--no-evidence",)}
+"""Names of the options of parameters that are not named after them."""
 
 
 def with_options(function: Callable[..., None]) -> Callable[..., None]:

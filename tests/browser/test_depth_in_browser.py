@@ -27,15 +27,16 @@ _MOVED_OR_LIMITED = """([address, limit]) =>
 
 @pytest.fixture(scope="module")
 def window() -> Window:
-    assert DEEP.window is not None
-    return DEEP.window
+    assert DEEP.view.window is not None
+    return DEEP.view.window
 
 
 @pytest.fixture(scope="module")
 def opened(open_for_all: Callable[..., ExplorerPage], window: Window) -> ExplorerPage:
     edges = ",".join(map(repr, (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)))
-    plane = DEEP.plane.key
-    return open_for_all(link=f"?case={DEEP.case}&plane={plane}&h={DEEP.energy!r}&t_max=1000&resolution=112&window={edges}")
+    view = DEEP.view
+    link = f"?case={view.system.case}&plane={view.plane.key}&h={view.energy!r}&t_max=1000&resolution=112&window={edges}"
+    return open_for_all(link=link)
 
 
 @pytest.mark.slow
