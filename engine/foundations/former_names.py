@@ -87,10 +87,5 @@ def _warn(old: str, new: str, stacklevel: int = 3) -> None:
 def rename_stored(dataset: xr.Dataset) -> xr.Dataset:
     """Return a dataset of an earlier version with the present names of its variables and attributes."""
     renamed = dataset.rename({old: new for old, new in FORMER_FIELDS.items() if old in dataset.variables})
-    renamed.attrs = with_present_names(dataset.attrs)
+    renamed.attrs = {FORMER_FIELDS.get(name, name): value for name, value in dataset.attrs.items()}
     return renamed
-
-
-def with_present_names(attributes: Mapping[Any, Any]) -> dict[Any, Any]:
-    """Return the attributes of a file by their present names."""
-    return {FORMER_FIELDS.get(name, name): value for name, value in attributes.items()}

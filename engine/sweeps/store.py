@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.extras import require_package
-from engine.foundations.former_names import FORMER_FIELDS, rename_stored, with_present_names
 from engine.foundations.output_lock import hold_lock
 
 if TYPE_CHECKING:
@@ -66,7 +65,7 @@ class SweepStore:
         axis = self._attributes["axis"]
         if not self._finished:
             return xr.Dataset(coords={axis: np.zeros(0)}, attrs=self._attributes)
-        dataset = rename_stored(xr.open_zarr(self._path, chunks=None, **_OPTIONS))
+        dataset: xr.Dataset = xr.open_zarr(self._path, chunks=None, **_OPTIONS)
         values = dataset[axis].values
         return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(axis)
 
@@ -91,7 +90,9 @@ class SweepStore:
         if not (self._path / "zarr.json").exists():
             raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this sweep")
         group = zarr.open_group(self._path, mode="r+", use_consolidated=False)
-        check_same_sweep(f"store={self._path}", with_present_names(group.attrs), self._attributes)
+        if "result" not in group.attrs:
+            raise ValueError(f"store={self._path}: is of an earlier version, which `open_result` reads; must be a new folder")
+        check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
         self._finished = int(group.attrs[_FINISHED])  # type: ignore[arg-type]
         if self._finished == self._attributes["count"]:
             return
@@ -100,7 +101,6 @@ class SweepStore:
             pass
         for unfinished in self._path.rglob(_UNFINISHED):
             unfinished.unlink()
-        _rename_former(self._path, group)
         for _, array in group.arrays():
             dimensions = getattr(array.metadata, "dimension_names", None) or ()
             if self._attributes["axis"] in dimensions and array.shape[0] > self._finished:
@@ -112,16 +112,6 @@ def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, 
     for name, value in wanted.items():
         if name not in but and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
             raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")
-
-
-def _rename_former(path: Path, group: Any) -> None:
-    """Give the arrays and attributes of the store of an earlier version their present names."""
-    for old, new in FORMER_FIELDS.items():
-        if (path / old).exists():
-            (path / old).rename(path / new)
-        if old in group.attrs:
-            group.attrs[new] = group.attrs[old]
-            del group.attrs[old]
 
 
 def _consolidate(path: Path) -> None:

@@ -1,15 +1,11 @@
-"""Former names warn, and stand for the present ones; files of earlier versions are read, and their stores are continued."""
+"""Former names warn, and stand for the present ones; files of earlier versions are read."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from concurrent.futures import CancelledError
 from dataclasses import replace
 from pathlib import Path
-from threading import Event
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +13,7 @@ import xarray as xr
 
 import engine
 import escape_explorer
-from engine import CASES, Evidence, Execution, MapSpec, Plane, SweepSpec, compute_map, compute_sweep, integrate_orbit, open_result
+from engine import CASES, Evidence, MapSpec, Plane, SweepSpec, compute_map, compute_sweep, integrate_orbit, open_result
 
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (12, 10), t_max=200.0, use_evidence=False)
 SWEEP = SweepSpec(CASES["III"], Plane.X_PX, (0.3, 0.4, 0.5), (12, 10), t_max=300.0, measures=("maps",))
@@ -100,27 +96,8 @@ def test_measures_take_the_dataset_of_an_earlier_version() -> None:
     assert engine.compute_statistics(as_earlier(whole.to_xarray())).shares[0] == engine.compute_statistics(whole).shares[0]
 
 
-def make_earlier_store(store: Path, values: int) -> None:
-    """The store of an earlier version that was interrupted after some values."""
-    cancel = Event()
-
-    def stop(sweep: Any) -> None:
-        if sweep.values.size == values:
-            cancel.set()
-
-    with pytest.raises(CancelledError):
-        compute_sweep(SWEEP, store, on_frame=stop, execution=Execution(cancel=cancel))
-    (store / "evidence").rename(store / "certificate")
-    group = json.loads((store / "zarr.json").read_text())
-    group["attributes"]["certify"] = group["attributes"].pop("use_evidence")
-    del group["consolidated_metadata"]
-    (store / "zarr.json").write_text(json.dumps(group))
-
-
-def test_the_store_of_an_earlier_version_is_continued(tmp_path: Path) -> None:
-    make_earlier_store(tmp_path / "store", 1)
-    found = compute_sweep(SWEEP, tmp_path / "store").dataset.load()
-    xr.testing.assert_identical(found.drop_attrs(), compute_sweep(SWEEP).dataset.drop_attrs())
-    with xr.open_zarr(tmp_path / "store") as stored:
-        assert "evidence" in stored
-        assert not {"certificate", "certify"} & {*stored.variables, *stored.attrs}
+def test_the_store_of_an_earlier_version_is_not_continued(tmp_path: Path) -> None:
+    maps = xr.Dataset({"crossings": ("h", [3]), "done": ("h", [True])}, {"h": [0.3]})
+    maps.to_zarr(tmp_path / "store", consolidated=False, zarr_format=3)
+    with pytest.raises(ValueError, match=r"store=.*: is of an earlier version, .*; must be a new folder"):
+        compute_sweep(SWEEP, tmp_path / "store")
