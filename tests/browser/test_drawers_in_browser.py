@@ -65,11 +65,12 @@ def test_every_preset_has_a_card_and_pictures_are_loaded(explorer: ExplorerPage)
 
 @pytest.mark.slow
 def test_a_card_opens_its_view(explorer: ExplorerPage) -> None:
-    window = ZOOMED.window
+    view = ZOOMED.view
+    window = view.window
     assert window is not None
     explorer.press("Gallery")
     card(explorer, ZOOMED).click()
-    explorer.wait_for_view(f"case=III&plane={ZOOMED.plane.key}&h={ZOOMED.energy!r}", "window=")
+    explorer.wait_for_view(f"case=III&plane={view.plane.key}&h={view.energy!r}", "window=")
     assert explorer.ranges("basins")[0] == window.x_low
     expect(explorer.radio("III")).to_be_checked()
     expect(explorer.page.locator("p").filter(has_text=ZOOMED.caption)).to_be_visible()

@@ -96,7 +96,7 @@ def open_wells() -> tuple[tuple[int, Potential], ...]:
 
 def energy_of(seed: int, potential: Potential) -> float:
     highest = review_potential(potential).highest_energy
-    energy = potential.energy_at(float(np.random.default_rng(seed).uniform(*FACTORS)))
+    energy = potential.well.energy_at(float(np.random.default_rng(seed).uniform(*FACTORS)))
     return min(energy, potential.escape_energy + 0.5 * (highest - potential.escape_energy))
 
 
@@ -112,7 +112,7 @@ def test_wells_with_functions(number: int) -> None:
 @pytest.mark.parametrize("number", range(0, 40, 5))
 def test_energy_is_held_in_wells_with_functions(number: int) -> None:
     _, potential = open_wells()[number]
-    energy = potential.energy_at(0.9)
+    energy = potential.well.energy_at(0.9)
     x = 0.1 * potential.units.length * np.linspace(-1.0, 1.0, 8)
     states = start_states(potential, Plane.X_Y, energy, x, np.zeros(8))
     outcomes = classify_orbits(potential, energy, states, 1e4 * potential.units.time)
@@ -139,6 +139,6 @@ def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
 )
 def test_rotating_systems_bodies_and_escape_radii(number: int) -> None:
     seed, potential, energy, starts = accepted_system(number)
-    comparison = compare(potential, energy, starts, DURATION * potential.exact_time_unit)
+    comparison = compare(potential, energy, starts, DURATION * potential.well.exact_time_unit)
     assert seed in CHAOTIC_SEEDS or comparison.robust > LEAST_ROBUST * STARTS
     assert comparison.wrong == 0

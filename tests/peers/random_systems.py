@@ -80,7 +80,7 @@ def random_system(seed: int) -> tuple[Potential, float]:
     review = review_potential(well)
     if review.refusal is not None:
         raise ValueError(review.refusal)
-    energy = well.energy_at(float(random.uniform(*FACTORS)))
+    energy = well.well.energy_at(float(random.uniform(*FACTORS)))
     energy = min(energy, well.escape_energy + 0.5 * (review.highest_energy - well.escape_energy))
     size = well.units.length
     x, y = (size * random.uniform(-0.5, 0.5, 2)).tolist()

@@ -10,6 +10,7 @@ from engine import Potential, System, classify_orbits, find_lyapunov_orbits, sam
 from engine.exits.interior import find_outside_channels
 from engine.integrator.kernels import events
 from engine.systems.catalogue.rotating_systems import ROTATING_ENTRIES
+from engine.systems.review.potential_review import review_system
 from tests.peers import taylor_heyoka
 from tests.peers.exits_by_heyoka import compare
 
@@ -23,7 +24,7 @@ TIME_TO_TURN, AFTER = 1.0, 0.1
 
 def energies_of(name: str) -> list[float]:
     """Random ones from the range of the system, of which exits are known."""
-    system, random = System(name), np.random.default_rng(len(name))
+    system, random = review_system(System(name)), np.random.default_rng(len(name))
     found: list[float] = []
     while len(found) < ENERGIES:
         energy = float(random.uniform(system.energies.low, system.energies.high))
