@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib import ft2font
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.font_manager import FontProperties, findfont
@@ -196,17 +197,28 @@ def test_doubtful_pixels_are_marked_and_have_an_entry() -> None:
     assert "doubtful" in [text.get_text() for text in legend.get_texts()]
 
 
-def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() -> None:
+def draw_with_manifolds(picture: str) -> Axes:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
     found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, images=1))
-    figure = draw_map_figure(whole, ["crossings"], PAPER, STYLE, analyses=found)
-    colours = [to_hex(curve.get_edgecolor()[0]) for curve in figure.axes[0].collections if isinstance(curve, LineCollection)]
-    assert set(PAPER.channels[:3]) <= set(colours)
-    legend = figure.axes[0].get_legend()
+    return draw_map_figure(whole, [picture], PAPER, STYLE, analyses=found).axes[0]
+
+
+def curve_colours(axes: Axes) -> set[str]:
+    return {to_hex(curve.get_edgecolor()[0]) for curve in axes.collections if isinstance(curve, LineCollection)}
+
+
+def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() -> None:
+    axes = draw_with_manifolds("crossings")
+    assert set(PAPER.channels[:3]) <= curve_colours(axes)
+    legend = axes.get_legend()
     assert legend is not None
     labels = [text.get_text() for text in legend.get_texts()]
     assert [label for label in labels if "manifold" in label] == [f"stable manifold of Lyapunov orbit {k}" for k in (1, 2, 3)]
     assert not any(label.startswith("_") for label in labels)
+
+
+def test_manifolds_are_not_drawn_over_escape_times() -> None:
+    assert curve_colours(draw_with_manifolds("times")).isdisjoint(PAPER.channels[:3])
 
 
 def test_locked_limits_are_used_for_the_pixels_and_the_colour_bar(escape_map: EscapeMap) -> None:
