@@ -78,6 +78,8 @@ def test_measures_json_equals_the_engine_result(run: Run) -> None:
     laws = fit_decay_laws(compute_statistics(frame), 100.0)
     assert laws.exponential is not None
     assert result["escape_laws"]["exponential"]["rate"] == laws.exponential.rate
+    power_law = result["escape_laws"]["power_law"]
+    assert (power_law and power_law["rate"]) == (laws.power_law and laws.power_law.rate)
     assert "uncertainty_exponent" not in result
 
 

@@ -22,6 +22,16 @@ def test_parameters_change_the_potential_and_its_energies() -> None:
     assert energies.marked == ()
 
 
+def test_a_frame_may_rotate_either_way() -> None:
+    for rotation in (-0.1, 0.1):
+        assert System("I", parameters={"rotation": rotation}).potential.rotation == rotation
+
+
+def test_a_typed_system_keeps_its_letters_and_rotation_when_it_is_edited() -> None:
+    system = System(TYPED, "½r² − a x y²", {"a": 1.5, "rotation": 0.1})
+    assert system.as_typed == system
+
+
 @pytest.mark.parametrize("system", [System(TYPED, "x y %"), System(TYPED), System("I", parameters={"omega_1": 1e3})])
 def test_an_invalid_system_has_no_potential(system: System) -> None:
     with pytest.raises(ValueError, match=r"formula|omega_1"):

@@ -21,7 +21,7 @@ from engine.integrator.source.series import ORDER
 # Together all kinds of nodes.
 TEXTS = (
     "½r² − x²y exp(−y²)",
-    "−1/√(x² + 0.7y² + 0.3) + 0.2 x² y",
+    "−1/√(x² + 0.7y² + 0.3) + 0.2 x² y log(2 + x)",
     "½log(x² + y² + 0.6) − 0.1x³ cos(x + 2y)",
     "(x² + y² + 1)^0.7 − x² y /(1 + y²) + sin(x)³",
 )
