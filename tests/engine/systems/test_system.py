@@ -25,6 +25,8 @@ def test_parameters_change_the_potential_and_its_energies() -> None:
 def test_a_frame_may_rotate_either_way() -> None:
     for rotation in (-0.1, 0.1):
         assert System("I", parameters={"rotation": rotation}).potential.rotation == rotation
+    low, high = System("I").range_of("rotation")
+    assert low == -high < 0.0
 
 
 def test_a_typed_system_keeps_its_letters_and_rotation_when_it_is_edited() -> None:
