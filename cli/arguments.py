@@ -57,6 +57,9 @@ def find_system(case: Case) -> System:
     return system
 
 
+Exponent = Annotated[bool, typer.Option(help="Whether to compute the uncertainty exponent, which takes longest.")]
+"""Type of the option of commands that measure basins."""
+
 Case = Annotated[str, typer.Argument(metavar="CASE"), Of(find_system)]
 """Type of the argument of commands for one system."""
 

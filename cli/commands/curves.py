@@ -18,7 +18,7 @@ from typing import Annotated
 
 import typer
 
-from cli.arguments import Case, file_name_part, space_values
+from cli.arguments import Case, Exponent, file_name_part, space_values
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import Of
 from cli.options import with_options
@@ -52,19 +52,13 @@ def run(
     plane: Slice,
     resolution: Annotated[tuple[int, int], Of(SweepSpec)] = (112, 112),
     t_max: Annotated[float, Of(SweepSpec)],
-    exponent: bool = True,
+    exponent: Exponent = True,
     style: FigureStyle,
     output: Stem = None,
     place: Annotated[Place, THREADS_ONLY],
     as_json: AsJson = False,
 ) -> None:
-    """Compute, write and print the measures.
-
-    Parameters
-    ----------
-    exponent
-        Whether to compute the uncertainty exponent, which takes longest.
-    """
+    """Compute, write and print the measures."""
     spec = SweepSpec(
         potential,
         plane,

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated, Any
 
+from cli.arguments import Exponent
 from cli.execution import THREADS_ONLY, Place, RunContext
 from cli.map_analyses import compute_whole_map
 from cli.option_marks import But
@@ -38,17 +39,11 @@ _FIT = ("rate", "low", "high", "p_value")
 def run(
     *,
     spec: Annotated[MapSpec, But(without=("backward",))],
-    exponent: bool = True,
+    exponent: Exponent = True,
     place: Annotated[Place, THREADS_ONLY],
     as_json: AsJson = False,
 ) -> None:
-    """Compute and print the measures of a map.
-
-    Parameters
-    ----------
-    exponent
-        Whether to compute the uncertainty exponent, which takes longest.
-    """
+    """Compute and print the measures of a map."""
     with place.run() as context:
         frame = compute_whole_map(spec, context, "map")
         measures = _measure(frame, exponent, context)
