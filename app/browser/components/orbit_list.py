@@ -6,12 +6,11 @@ Radio buttons of Bokeh fail when their choice changes while their view is being 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
-
-from app.browser.callbacks import module_path
 
 
 class OrbitList(JSComponent):
@@ -29,7 +28,7 @@ class OrbitList(JSComponent):
     rows = param.List(item_type=str, doc="text of each row")
     chosen = param.Integer(default=0, bounds=(0, None), doc="place of the row that is chosen")
 
-    _esm = module_path("orbit_list.js")
+    _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self, on_choose: Callable[[int], None], **options: Any) -> None:
         super().__init__(sizing_mode="stretch_width", margin=(0, 10), css_classes=["orbit-list"], **options)
