@@ -89,7 +89,7 @@ def compute_regularity(
     Raises
     ------
     ValueError
-        When the map is not complete, or its potential has centres.
+        When the map is not complete, or its potential has gaps in its interior.
 
     Examples
     --------

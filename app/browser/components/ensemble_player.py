@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
 
-from app.browser.callbacks import module_path
 from app.browser.module_files import WATCH_ADDRESS
 from app.state.watched_starts import COUNTS, EXPLANATIONS, LARGEST_RADIUS, SMALLEST_RADIUS
 
@@ -55,7 +55,7 @@ class EnsemblePlayer(JSComponent):
     box = param.List(default=[], doc="the four edges of the box; empty without one")
     rate = param.Number(default=0.0, doc="decay rate of mixed motion; 0 if it is not known")
 
-    _esm = module_path("ensemble_player.js")
+    _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self, on_choice: Callable[[Any], None], **options: Any) -> None:
         super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE], **options)
