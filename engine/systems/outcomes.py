@@ -35,6 +35,8 @@ class Kind:
         Those of its outcomes, with the name of one for {}; the verb of the action ends with e.
     event
         What ends an orbit: "escape" or "collision".
+    origin
+        How an orbit began that ends so backward in time, with {label} and {present} of the outcome.
     """
 
     key: ClassVar[str]
@@ -42,6 +44,7 @@ class Kind:
     label: ClassVar[str]
     action: ClassVar[str]
     event: ClassVar[str] = "escape"
+    origin: ClassVar[str] = "backward in time it {present}"
 
     @classmethod
     def outcome(cls, name: int | str, *, occurs: bool = True) -> Outcome:
@@ -54,6 +57,7 @@ class Exit(Kind):
 
     key, word = "exit", "channel"
     label, action = "channel {}", "escape through channel {}"
+    origin = "entered through {label}"
 
 
 @dataclass(frozen=True)
@@ -254,6 +258,11 @@ class Outcome:
     def event(self) -> str:
         """What ends an orbit: "escape" or "collision"."""
         return self.kind.event
+
+    @property
+    def origin(self) -> str:
+        """How an orbit began that ends so backward in time: "entered through channel 1"."""
+        return self.kind.origin.format(label=self.label, present=self.present)
 
     @property
     def sentence(self) -> str:

@@ -25,6 +25,10 @@ def test_each_has_a_sentence_and_what_an_orbit_does() -> None:
     ]  # fmt: skip
     assert [each.present for each in (channel, moon)] == ["escapes through channel 1", "collides with the Moon"]
     assert [each.event for each in (channel, moon, escape)] == ["escape", "collision", "escape"]
+    assert [each.origin for each in (channel, moon)] == [
+        "entered through channel 1",
+        "backward in time it collides with the Moon",
+    ]
 
 
 def test_files_keep_them() -> None:
