@@ -34,7 +34,7 @@ class Kind:
     label, action
         Those of its outcomes, with the name of one for {}; the verb of the action ends with e.
     event
-        What ends an orbit: "escape" or "collision".
+        What ends an orbit in a word: "escape", "collision".
     origin
         How an orbit began that ends so backward in time, with {label} and {present} of the outcome.
     """
@@ -47,16 +47,17 @@ class Kind:
     origin: ClassVar[str] = "backward in time it {present}"
 
     @classmethod
-    def outcome(cls, name: int | str, *, occurs: bool = True) -> Outcome:
-        """The outcome of orbits that end at the one of this name or number."""
-        return Outcome(cls, cls.label.format(name), cls.action.format(name), occurs)
+    def outcome(cls, number: int, name: str = "", *, occurs: bool = True) -> Outcome:
+        """The outcome of orbits that end at the one of this number, which has a name or is called "channel 1"."""
+        name = name or f"{cls.word} {number}"
+        return Outcome(cls, cls.label.format(name), cls.action.format(name), occurs, number)
 
 
 class Exit(Kind):
     """Through an exit over a saddle, the curve or line across a channel; see `engine.exits`."""
 
     key, word = "exit", "channel"
-    label, action = "channel {}", "escape through channel {}"
+    label, action = "{}", "escape through {}"
     origin = "entered through {label}"
 
 
@@ -235,12 +236,15 @@ class Outcome:
         What orbits do: "escape through channel 1", "collide with the Moon", "escape beyond the escape radius".
     occurs
         Whether orbits can have it: not a channel that is part of an exit of a lower number.
+    number
+        Its number among those of its kind, from 1 on, which decides its colour.
     """
 
     kind: type[Kind]
     label: str
     action: str
     occurs: bool = True
+    number: int = 1
 
     @property
     def present(self) -> str:
@@ -275,7 +279,7 @@ def outcomes_of(channels: int, ends: Iterable[End]) -> tuple[Outcome, ...]:
     groups = [list(group) for _, group in groupby(ends, type)]
     return (
         *(Exit.outcome(channel) for channel in range(1, channels + 1)),
-        *(end.outcome(end.name or f"{end.word} {number}") for group in groups for number, end in enumerate(group, 1)),
+        *(end.outcome(number, end.name) for group in groups for number, end in enumerate(group, 1)),
     )
 
 
@@ -286,4 +290,7 @@ def write_outcomes(outcomes: Sequence[Outcome]) -> str:
 
 def read_outcomes(text: str) -> tuple[Outcome, ...]:
     """The outcomes of an attribute."""
-    return tuple(Outcome(KINDS[key], *rest) for key, *rest in json.loads(text))
+    rows = json.loads(text)
+    keys = [key for key, *_ in rows]
+    numbers = [keys[:place].count(key) + 1 for place, key in enumerate(keys)]
+    return tuple(replace(Outcome(KINDS[key], *rest), number=number) for (key, *rest), number in zip(rows, numbers, strict=True))

@@ -104,9 +104,10 @@ class Potential(Result):
         elif not isinstance(form, PolynomialForm | ExpressionForm):
             form = checked_form(form)
         if centres is not _OF_ENDS:
-            ends = [*_without(ends, Centre), *_checked(centres, "centres", Centre)]
+            ends = [*(end for end in ends if not isinstance(end, Centre)), *_checked(centres, "centres", Centre)]
         if escape_radius is not _OF_ENDS:
-            ends = [*_without(ends, EscapeCircle), *([] if escape_radius is None else [EscapeCircle(escape_radius)])]
+            circles = [] if escape_radius is None else [EscapeCircle(escape_radius)]
+            ends = [*(end for end in ends if not isinstance(end, EscapeCircle)), *circles]
         values = {
             "name": name,
             "form": form,
@@ -364,7 +365,3 @@ def _checked[T](ends: Sequence[T], name: str, kind: type[T]) -> Sequence[T]:
     for end in ends:
         check_type(name, end, kind)
     return ends
-
-
-def _without(ends: Sequence[End], kind: type[End]) -> list[End]:
-    return [end for end in ends if not isinstance(end, kind)]

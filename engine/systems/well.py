@@ -188,9 +188,10 @@ class Well(ReadOnlyArrays):
         if not self.merged_exits(high):
             return self.outcomes
         lowest = self.exit_numbers(low)
+        names = [describe_channel(channel, self.channel_mergers, low, high) for channel in range(1, self.channels + 1)]
         exits = [
-            Exit.outcome(describe_channel(channel, self.channel_mergers, low, high), occurs=bool(lowest[channel] == channel))
-            for channel in range(1, self.channels + 1)
+            Exit.outcome(channel, f"{Exit.word} {name}", occurs=bool(lowest[channel] == channel))
+            for channel, name in enumerate(names, 1)
         ]
         return (*exits, *self.outcomes[self.channels :])
 

@@ -5,11 +5,10 @@ A colour has one meaning: outcomes, crossing classes, escape times, characters, 
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import islice
+from itertools import accumulate
 
 import numpy as np
 
@@ -57,15 +56,9 @@ DIFFERENCES: tuple[tuple[str, str], ...] = (
 
 def end_places(outcomes: Sequence[Outcome]) -> list[int]:
     """The place of each outcome in `Palette.ends`, the same in all systems; those beyond share the last of a kind."""
-    all_places = iter(range(len(PAPER.ends)))
-    of_kinds = {key: list(islice(all_places, len(PAPER.of_kinds[key]))) for key in KINDS}
-    counts: Counter[str] = Counter()
-    places = []
-    for outcome in outcomes:
-        key = outcome.kind.key
-        places.append(of_kinds[key][min(counts[key], len(of_kinds[key]) - 1)])
-        counts[key] += 1
-    return places
+    counts = {key: len(PAPER.of_kinds[key]) for key in KINDS}
+    firsts = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
+    return [firsts[each.kind.key] + min(each.number, counts[each.kind.key]) - 1 for each in outcomes]
 
 
 MOST_ORBITS = 5
@@ -167,8 +160,8 @@ class Palette:
         """Label and colour of a fate; `outcomes` are those of the potential, channels where they are not known."""
         if fate < 1:
             return self.outcomes[Fate(fate)]
-        ends = [outcome_of(k, outcomes) for k in range(1, fate + 1)]
-        return Entry(ends[-1].label, self.ends[end_places(ends)[-1]])
+        outcome = outcome_of(fate, outcomes)
+        return Entry(outcome.label, self.ends[end_places([outcome])[0]])
 
     def end_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
         """Labels and colours of a potential's outcomes."""
