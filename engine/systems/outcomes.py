@@ -16,6 +16,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from engine.foundations.validation import check_type, checked_number, replace_unchecked
+from engine.foundations.wording import format_number
 from engine.integrator.kernels import events
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 1e-6, 1e6
@@ -69,23 +70,21 @@ class End(Kind):
     ----------
     side
         On which side of the circle orbits have ended: −1 within, 1 beyond.
-    clause, syntax
-        Its clause after a formula: a pattern of what follows its word, with parameters as groups, and how errors describe it.
+    clause, syntax, spellings
+        Its clause after a formula: a pattern of what follows its word, with parameters as groups, how errors describe it, and other
+        spellings of its word.
     most
         How many a formula can have.
     attribute
         Its attribute in files.
-    x, y
-        Centre of the circle, finite, dimensionless.
-    radius
-        1e-6 to 1e6, dimensionless.
-    name
-        Its name in texts; empty for its number.
+    x, y, radius, name
+        As of `Centre`.
     """
 
     side: ClassVar[int] = -1
     clause: ClassVar[str] = r"\s*(?P<name>[\w ]{0,40}?)\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)(?P<radius>[^();]*)$"
     syntax: ClassVar[str] = "{} (x, y) radius"
+    spellings: ClassVar[tuple[str, ...]] = ()
     most: ClassVar[int] = 8
     attribute: ClassVar[str]
 
@@ -110,12 +109,17 @@ class End(Kind):
     @classmethod
     def match(cls, clause: str) -> re.Match[str] | None:
         """The parameters in a clause, if it is one of the kind."""
-        return re.match(rf"\s*{cls.word}{cls.clause}", clause)
+        return re.match(rf"\s*(?:{'|'.join((cls.word, *cls.spellings))}){cls.clause}", clause)
 
     @property
     def text(self) -> str:
         """Its clause, to be read back exactly."""
         return f"{self.word} {self.name + ' ' if self.name else ''}({self.x!r}, {self.y!r}) {self.radius!r}"
+
+    @property
+    def geometry(self) -> str:
+        """The circle in words."""
+        return f"disc of radius {format_number(self.radius)} around ({format_number(self.x)}, {format_number(self.y)})"
 
     @classmethod
     def write(cls, ends: Sequence[End]) -> Any:
@@ -171,6 +175,7 @@ class Centre(End):
 
     key, word, event, attribute = "collision", "centre", "collision", "centres"
     label, action = "collision with {}", "collide with {}"
+    spellings = ("center",)
 
 
 @dataclass(frozen=True)
@@ -192,6 +197,11 @@ class EscapeCircle(End):
     def text(self) -> str:
         """See `End.text`."""
         return f"{self.word} {self.radius!r}"
+
+    @property
+    def geometry(self) -> str:
+        """See `End.geometry`."""
+        return f"escape radius {format_number(self.radius)}"
 
     def moved(self, x: float, y: float) -> Self:
         """The same circle: it is around any origin."""
@@ -215,11 +225,6 @@ KINDS: dict[str, type[Kind]] = {kind.key: kind for kind in (Exit, Centre, Escape
 def end_kinds() -> list[type[End]]:
     """The kinds of ends besides the exits, in the order of fates."""
     return [kind for kind in KINDS.values() if issubclass(kind, End)]
-
-
-def in_order(ends: Iterable[End]) -> tuple[End, ...]:
-    """Ends in the order of fates."""
-    return tuple(sorted(ends, key=lambda end: list(KINDS).index(end.key)))
 
 
 @dataclass(frozen=True)

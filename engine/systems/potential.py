@@ -19,7 +19,7 @@ from engine.foundations.validation import LONGEST_TIME, check_type, checked_numb
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
-from engine.systems.outcomes import Centre, End, EscapeCircle, Outcome, in_order
+from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
 from engine.systems.parameters import WELL_PARAMETERS, symbol_of
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.systems.well import Well
@@ -112,7 +112,7 @@ class Potential(Result):
             "name": name,
             "form": form,
             "rotation": checked_number("rotation", rotation),
-            "ends": in_order(_checked(ends, "ends", End)),
+            "ends": tuple(sorted(_checked(ends, "ends", End), key=lambda end: list(KINDS).index(end.key))),
             "origin": (checked_number("origin", origin[0]), checked_number("origin", origin[1])),
             "lineage": lineage,
         }
