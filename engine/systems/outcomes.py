@@ -71,8 +71,7 @@ class End(Kind):
     side
         On which side of the circle orbits have ended: −1 within, 1 beyond.
     clause, syntax, spellings
-        Its clause after a formula: a pattern of what follows its word, with parameters as groups, how errors describe it, and other
-        spellings of its word.
+        Its clause after a formula: the pattern of its parameters, how errors describe it, and other spellings of its word.
     most
         How many a formula can have.
     attribute
