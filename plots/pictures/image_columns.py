@@ -191,7 +191,7 @@ def _ends(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
     """Pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
-    codes = (_FIRST_CLASS + classes).astype(np.uint8)
+    codes = (_FIRST_CLASS + classes).astype(np.min_scalar_type(_FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):
             codes[fate == outcome] = code

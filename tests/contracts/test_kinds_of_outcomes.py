@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import Centre, MapSpec, Plane, Potential, compute_map, parse_formula, write_formula
+from engine import Centre, MapSpec, Plane, Potential, compute_map, compute_origin_fates, parse_formula, write_formula
 from engine.systems import outcomes
 from engine.systems.outcomes import KINDS, EscapeCircle
 from engine.systems.stored_potential import describe_potential, read_potential
-from plots.pictures.palette import PALETTES, end_places
+from plots.pictures.image_columns import passage_column
+from plots.pictures.palette import OUTCOMES, PALETTES, end_places
 from tests.contributing import run_example
 
 WELL = "½(x² + y²) − xy²"
@@ -18,11 +19,11 @@ DOCK = (0.2, 0.3, 0.05, "the dock")
 
 @pytest.fixture
 def station(monkeypatch: pytest.MonkeyPatch) -> type[outcomes.End]:
-    """The kind of the example, with a colour."""
+    """The kind of the example, with some colours."""
     kind: type[outcomes.End] = run_example("Example: add a kind of outcome", outcomes)["Station"]
     monkeypatch.setitem(KINDS, kind.key, kind)
     for palette in PALETTES.values():
-        monkeypatch.setitem(palette.of_kinds, kind.key, ("#005f73",))
+        monkeypatch.setitem(palette.of_kinds, kind.key, ("#005f73", "#0a9396", "#94d2bd", "#e9d8a6"))
     return kind
 
 
@@ -57,3 +58,12 @@ def test_orbits_end_at_a_station_as_at_a_body_and_in_its_words_and_colour(statio
     palette = PALETTES["paper"]
     assert palette.entry(3, arrival).label == "arrival at the dock"
     assert palette.entry(3, arrival).colour == palette.ends[end_places(arrival)[2]] == "#005f73"
+
+
+def test_passages_from_a_station_have_codes_of_their_own(station: type[outcomes.End]) -> None:
+    potential = parse_formula(WELL + "; station the dock (0.2, 0.3) 0.05")
+    found = compute_origin_fates(MapSpec(potential, Plane.X_PX, 0.19, (20, 20), t_max=50.0))
+    columns = passage_column(found)
+    origins = (columns["passage"][0].astype(int) - len(OUTCOMES)) // (len(PALETTES["paper"].ends) + 1)
+    words = np.array(columns["origins"][0])[origins[(found.origin == 3) & (found.fate > 0)]]
+    assert set(words) == {"backward in time it arrives at the dock"}
