@@ -185,9 +185,9 @@ class EscapeCircle(End):
     label, action = "escape", "escape beyond the escape radius"
     side, clause, syntax, most = 1, "(?P<radius>[^;]*)$", "one {} radius", 1
 
-    x: float = field(default=0.0, init=False)
-    y: float = field(default=0.0, init=False)
-    name: str = field(default="", init=False)
+    x: float = field(default=0.0, init=False, repr=False)
+    y: float = field(default=0.0, init=False, repr=False)
+    name: str = field(default="", init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", self._checked_radius("escape_radius"))
