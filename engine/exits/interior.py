@@ -62,7 +62,7 @@ def find_outside_starts(
     allowed = potential.value(x, y) <= energy
     # A gap may lie beyond another end, and counts there.
     for number, end in sorted(enumerate(potential.ends, potential.channels + 1), key=lambda numbered: -numbered[1].side):
-        outside[allowed & end.is_beyond(x, y)] = number
+        outside[allowed & end.contains(x, y)] = number
     return outside
 
 

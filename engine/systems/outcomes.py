@@ -147,11 +147,11 @@ class End(Kind):
         """The same end with the origin of the axes moved to (x, y)."""
         return replace(self, x=self.x - x, y=self.y - y)
 
-    def is_beyond(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Whether orbits have ended at points of any shape."""
+    def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Whether points of any shape lie where orbits have ended."""
         distance = np.hypot(x - self.x, y - self.y)
-        beyond: np.ndarray = distance < self.radius if self.side < 0 else distance > self.radius
-        return beyond
+        ended: np.ndarray = distance < self.radius if self.side < 0 else distance > self.radius
+        return ended
 
 
 class Centre(End):

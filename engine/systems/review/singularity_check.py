@@ -53,5 +53,5 @@ def _origin_refusal(potential: Potential) -> str | None:
 
 def _is_beyond(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Whether points lie beyond an end besides the exits."""
-    beyond: np.ndarray = np.any([np.zeros(x.shape, bool), *(end.is_beyond(x, y) for end in potential.ends)], axis=0)
+    beyond: np.ndarray = np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)
     return beyond
