@@ -184,7 +184,7 @@ def prepare_kernels(potential: Potential) -> None:
     prepare_for_maps(potential)
     prepare_for_evidence(potential)
     _make_in_turn(lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time))
-    if potential.channels and not potential.centres:
+    if potential.channels and not potential.gaps:
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
         _make_in_turn(
             lambda: compute_regularity(_compute_small_map(potential, potential.well.energy_at(0.5)), execution=_EXECUTION)

@@ -314,8 +314,7 @@ def generate_code(
     channels: int,
     reach: float = REACH,
     *,
-    discs: int = 0,
-    ring: bool = False,
+    sides: tuple[int, ...] = (),
     rotates: bool = False,
 ) -> GeneratedCode:
     """The generated functions for a potential, the same object for all potentials of the same structure.
@@ -328,14 +327,12 @@ def generate_code(
         How many lines ``step`` tests, 0 or more.
     reach
         Radius about the origin, above 0, that contains all orbits.
-    discs
-        How many discs around centres ``step`` tests, 0 or more.
-    ring
-        Whether it tests a circle around the origin.
+    sides
+        Of each circle that ``step`` tests, see `Setting`.
     rotates
         Whether the frame rotates.
     """
-    return _generate(_find_structure(definition, Setting(channels, discs, ring, rotates), reach))
+    return _generate(_find_structure(definition, Setting(channels, sides, rotates), reach))
 
 
 @functools.singledispatch
