@@ -79,9 +79,9 @@ class LimitedProcess:
         future = self._submit(partial(_call_limited, self._seconds, function))
         try:
             result: Result = future.result(_PATIENCE * self._seconds)
-        except (BrokenExecutor, FutureTimeoutError):
+        except (BrokenExecutor, FutureTimeoutError, MemoryError):
             self.close()
-        except (MemoryError, RecursionError):
+        except RecursionError:
             pass
         else:
             return result
