@@ -335,6 +335,11 @@ def generate_code(
     return _generate(_find_structure(definition, Setting(channels, sides, rotates), reach))
 
 
+def code_digest(definition: Definition, setting: Setting) -> str:
+    """`GeneratedCode.digest` of a potential; keeps nothing of the code, which takes megabytes."""
+    return _write_code(_find_structure(definition, setting, REACH)).digest
+
+
 @functools.singledispatch
 def _find_structure(definition: Any, setting: Setting, reach: float) -> Structure:
     raise TypeError(f"definition={definition!r}: must be terms or an expression")
@@ -352,6 +357,10 @@ def _of_expression(expression: Expression, setting: Setting, _reach: float) -> S
 
 @functools.lru_cache(maxsize=_STRUCTURES)
 def _generate(structure: Structure) -> GeneratedCode:
+    return _write_code(structure)
+
+
+def _write_code(structure: Structure) -> GeneratedCode:
     table: dict[Any, int] = {}
     functions = [
         *(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent)),
