@@ -79,9 +79,10 @@ class LimitedProcess:
         future = self._submit(partial(_call_limited, self._seconds, function))
         try:
             result: Result = future.result(_PATIENCE * self._seconds)
-        except (BrokenExecutor, FutureTimeoutError):
+        except (BrokenExecutor, FutureTimeoutError, MemoryError):
+            # What the call has allocated may be there still.
             self.close()
-        except (MemoryError, RecursionError):
+        except RecursionError:
             pass
         else:
             return result
