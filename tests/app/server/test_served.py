@@ -129,7 +129,9 @@ def test_modules_of_the_engine_in_the_browser_can_be_kept(served: Served) -> Non
 
 def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None:
     assert served.get("/metrics")[2]["Content-Type"].startswith("text/plain; version=")
-    assert "Open sessions" in served.get("/status")[1]
+    page = served.get("/status")[1]
+    assert "<p>Ready.</p>" in page
+    assert "Open sessions" in page
 
 
 @pytest.mark.parametrize(
@@ -179,6 +181,7 @@ def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
     # The page asks again by itself.
     assert f"http-equiv=refresh content={headers['Retry-After']}>" in text
     assert served.get("/readiness")[0] == 503
+    assert "<p>All 2 places are taken.</p>" in served.get("/status")[1]
     assert served.metric("sessions_open") == 2
     assert served.metric("pages_refused_total") == 1
 

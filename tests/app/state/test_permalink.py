@@ -182,6 +182,7 @@ def test_a_link_contains_the_view_with_which_another_is_compared(view: View) -> 
         ({"with_case": "II", "with_h": "nan"}, "with_h"),
         ({"with_case": "II", "with_h": "1e300"}, "with_h"),
         ({"with_case": "V", "with_h": "0.2"}, "with_case=V"),
+        ({"with_case": "V", "with_h": "nan"}, "with_case=V"),
         ({"with_plane": "x,x", "with_h": "0.2"}, "with_plane=x,x"),
         ({"with_V": "x" * 501, "with_h": "0.2"}, "with_V=xxx"),
     ],
