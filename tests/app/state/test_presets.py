@@ -143,7 +143,7 @@ def test_fates_agree_with_the_caption(key: str) -> None:
 
 
 def test_the_example_on_stable_manifolds_shows_them() -> None:
-    assert view_of("threads").manifolds
+    assert "manifolds=yes" in write_link(ViewState(**view_of("threads").values()))
 
 
 def test_shares_agree_with_the_caption() -> None:
