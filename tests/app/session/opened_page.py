@@ -59,17 +59,23 @@ async def opened_page(
             yield explorer, session
     finally:
         explorer.close()
-        session.destroy()
+        await run_callbacks(session)
+        await on_loop(session, session.destroy)
+
+
+async def on_loop(session: ServerSession, function: Callable[[], object]) -> None:
+    """Call a function with the session's lock."""
+
+    # Unlike a function, a coroutine is not run in a thread.
+    async def call() -> None:
+        function()
+
+    await session.with_document_locked(call)
 
 
 async def tell_ready(session: ServerSession) -> None:
     """As a browser does that shows the page."""
-
-    # Unlike a function, a coroutine runs on the event loop.
-    async def tell() -> None:
-        session.document.callbacks.trigger_event(DocumentReady())
-
-    await session.with_document_locked(tell)
+    await on_loop(session, lambda: session.document.callbacks.trigger_event(DocumentReady()))
 
 
 async def wait_for(watched: param.Parameterized, name: str, condition: Callable[[Any], bool]) -> None:
