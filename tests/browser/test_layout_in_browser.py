@@ -86,7 +86,7 @@ def phone(open_for_all: OpenExplorer) -> ExplorerPage:
 
 
 def test_the_page_opens_with_few_models_and_elements(wide: ExplorerPage) -> None:
-    assert wide.page.evaluate("() => Bokeh.documents[0]._all_models.size") <= 250
+    assert wide.page.evaluate("() => [...Bokeh.documents[0].all_models].length") <= 250
     assert wide.page.evaluate(_ELEMENTS) <= 1275
 
 

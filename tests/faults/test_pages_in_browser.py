@@ -26,7 +26,7 @@ LIFETIME = ("--unused-session-lifetime", "3000", "--check-unused-sessions", "500
 
 # Sends a value that the control itself would not.
 _SEND_INVALID_VALUE = """label => {
-    for (const model of Bokeh.documents[0]._all_models.values())
+    for (const model of Bokeh.documents[0].all_models)
         if (model.title === label) { model.value = 'not-an-option'; return true }
     return false
 }"""
