@@ -54,10 +54,22 @@ _RAIL_AND_THUMB = """rail => {
 
 
 class ExplorerPage:
-    """The page of one session."""
+    """The page of one session, the address that it opens, and the list in which its problems are noted."""
 
-    def __init__(self, page: Page) -> None:
-        self.page = page
+    def __init__(self, page: Page, home: str = "", problems: list[str] | None = None) -> None:
+        self.page, self._home = page, home
+        self._problems = [] if problems is None else problems
+
+    def open(self) -> None:
+        """Open the address, and wait for its map."""
+        self.page.goto(self._home)
+        self.wait_until_complete()
+
+    def take_problems(self) -> list[str]:
+        """The problems since the last call."""
+        taken = [*self._problems]
+        self._problems.clear()
+        return taken
 
     def wait_until_complete(self) -> None:
         self.page.wait_for_function(

@@ -228,8 +228,8 @@ def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:
     assert explorer.page.evaluate(palette) == before
 
 
-def test_a_picture_fills_the_height_when_it_is_enlarged(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(1280, 720, QUICK)
+def test_a_picture_fills_the_height_when_it_is_enlarged(middling: ExplorerPage) -> None:
+    explorer = middling
     explorer.press(f"Enlarge, or show all: {TITLES['times']}")
     explorer.wait_for_view("focus=times")
     explorer.page.wait_for_function(f"() => ({_FIGURES})().times[4] > {0.7 * 720}")
@@ -245,6 +245,7 @@ def test_a_picture_fills_the_height_when_it_is_enlarged(open_explorer: OpenExplo
     explorer.page.keyboard.press("Escape")
     explorer.page.wait_for_function(f"() => new Set(Object.values(({_FIGURES})()).map(frame => frame[4])).size == 1")
     assert "focus" not in explorer.page.url
+    explorer.return_home()
 
 
 def help_text(explorer: ExplorerPage, name: str) -> Locator:

@@ -18,7 +18,7 @@ def test_there_are_no_axes_before_the_first_curves() -> None:
     assert plots.objects == []
     # Below the escape energy there are no escape times yet.
     for energies in ((0.1, 0.3), (0.1,)):
-        view.show(compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, energies, (20, 20), t_max=100.0, measures=CURVES)))
+        view.show(compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, energies, (20, 20), t_max=10.0, measures=CURVES)))
         assert plots.visible
         figures = [pane.object for column in plots.objects for pane in column.objects if isinstance(pane, FigurePane)]
         assert len(figures) == 1 + len(CURVE_PANELS)
