@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-import os
+import random
 import tracemalloc
 import zlib
 
@@ -106,7 +106,7 @@ def test_cookies_are_in_the_token_if_there_is_a_login() -> None:
 
 def test_the_longest_link_fits_into_the_headers_of_the_websocket(application: BokehTornado) -> None:
     # Random digits compress badly.
-    uri = ("/app?V=" + base64.urlsafe_b64encode(os.urandom(LONGEST_LINK)).decode())[:LONGEST_LINK]
+    uri = ("/app?V=" + base64.urlsafe_b64encode(random.Random(1).randbytes(LONGEST_LINK)).decode())[:LONGEST_LINK]
     token = issue_token(application, request(uri), {})
     # The other headers of a browser, with cookies.
     assert len(uri) + len(token) + 8192 < LIMITS["max_header_size"]
