@@ -157,19 +157,7 @@ def begin_a_long_map(explorer: ExplorerPage) -> None:
 
 
 @pytest.mark.slow
-def test_a_map_can_be_stopped_and_continued(explorer: ExplorerPage) -> None:
-    begin_a_long_map(explorer)
-    explorer.press("Stop")
-    expect(explorer.text("Stopped:")).to_be_visible()
-    assert explorer.column("complete") is False
-    expect(explorer.button("Stop")).to_be_hidden()
-    explorer.press("Continue")
-    expect(explorer.button("Continue")).to_be_hidden()
-    expect(explorer.button("Stop").or_(explorer.text("Done, t ="))).to_be_visible()
-
-
-@pytest.mark.slow
-def test_escape_closes_a_help_text_and_then_stops_the_map(explorer: ExplorerPage) -> None:
+def test_escape_closes_a_help_text_and_then_stops_the_map_which_can_be_continued_and_stopped(explorer: ExplorerPage) -> None:
     begin_a_long_map(explorer)
     explorer.press("About: Basins of escape")
     explorer.page.keyboard.press("Escape")
@@ -177,6 +165,12 @@ def test_escape_closes_a_help_text_and_then_stops_the_map(explorer: ExplorerPage
     expect(explorer.button("Stop")).to_be_visible()
     explorer.page.keyboard.press("Escape")
     expect(explorer.text("Stopped:")).to_be_visible()
+    assert explorer.column("complete") is False
+    expect(explorer.button("Stop")).to_be_hidden()
+    explorer.press("Continue")
+    expect(explorer.button("Continue")).to_be_hidden()
+    explorer.press("Stop")
+    expect(explorer.button("Continue")).to_be_visible()
 
 
 def test_the_address_opens_the_same_view(explorer: ExplorerPage, open_explorer: Callable[..., ExplorerPage]) -> None:

@@ -13,7 +13,7 @@ from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
-from engine import IndicatorVerdict, Plane, Separation, System, Verdict, integrate_orbit
+from engine import IndicatorVerdict, Separation, System, Verdict, integrate_orbit
 from engine.jobs.manager import Jobs
 from tests.engine.jobs.inbox import wait_until_idle
 
@@ -218,12 +218,3 @@ def test_closing_cancels_the_requests_for_digits(session: Session) -> None:
     indicators.follow(recorder.orbits)
     indicators.close()
     assert jobs.in_flight == 0
-
-
-def test_on_the_energy_plane_each_start_has_its_own_energy(session: Session) -> None:
-    state, _, recorder, _ = session
-    state.param.update(plane=Plane.X_H)
-    for h in (0.2, 0.3):
-        state.add_start((0.1, h))
-    recorder.wait_for(lambda: recorder.all_computed(2))
-    assert [one.orbit.energy for one in recorder.orbits if one.orbit] == pytest.approx([0.2, 0.3])
