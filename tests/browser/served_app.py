@@ -18,6 +18,8 @@ ROOT = Path(__file__).parents[2]
 START_SECONDS = 600
 """Enough to compile all kernels on a busy machine."""
 PANEL = ("panel", "serve", "app")
+READY = ": ready\n"
+"""What the server writes when its kernels are there."""
 NO_VARIABLES: Mapping[str, str] = {}
 
 
@@ -58,6 +60,14 @@ class Output:
             self._changed.notify_all()
 
 
+def free_port() -> int:
+    """A port of the loopback interface on which nothing listens."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
 @dataclass(frozen=True)
 class RunningApp:
     """A server process, its address and what it writes; `root` ends without a slash."""
@@ -89,16 +99,16 @@ def served_app(log: Path) -> Iterator[str]:
 def running_app(log: Path, *options: str) -> Iterator[RunningApp]:
     """The app, served with more options of `panel serve`; its kernels are there when this begins."""
     with started_app(log, *PANEL, *options) as running:
-        running.output.wait_for(": ready\n")
+        running.output.wait_for(READY)
         yield running
 
 
 @contextmanager
-def started_app(log: Path, *command: str, variables: Mapping[str, str] = NO_VARIABLES) -> Iterator[RunningApp]:
-    """A module that serves the app, with its options and environment variables; it answers when this begins."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+def started_app(
+    log: Path, *command: str, port: int | None = None, variables: Mapping[str, str] = NO_VARIABLES
+) -> Iterator[RunningApp]:
+    """A module that serves the app, with its options, port and environment variables; it answers when this begins."""
+    port = free_port() if port is None else port
     options = ["--address", "127.0.0.1", "--port", str(port), "--allow-websocket-origin", f"127.0.0.1:{port}"]
     process = subprocess.Popen(
         [sys.executable, "-m", *command, *options],
