@@ -11,12 +11,18 @@ from playwright.sync_api import expect
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
+# What moves on the screen, beginning now.
 _WATCH_SHIFTS = """() => {
-    window.shifts = 0
-    // What moves at once when a button is pressed is no surprise, as the browsers' measure has it.
-    const add = list => list.getEntries().forEach(entry => window.shifts += entry.hadRecentInput ? 0 : entry.value)
+    window.shifts = []
+    const place = ({x, y, width, height}) => [x, y, width, height].map(Math.round).join(" ")
+    const describe = ({node, previousRect, currentRect}) =>
+        `${node?.className || node?.nodeName}: from ${place(previousRect)} to ${place(currentRect)}`
+    const add = list => list.getEntries().forEach(entry =>
+        window.shifts.push(...entry.sources.map(source => ({time: entry.startTime, text: describe(source)}))))
     new PerformanceObserver(add).observe({type: "layout-shift"})
 }"""
+_PAINTED = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now()))))"
+_SHIFTS_SINCE = "since => window.shifts.filter(({time}) => time > since).map(({text}) => text)"
 PARTS = ("orbit-list", "verdict", "player", "interval", "sali", "exponent", "r2", "separation")
 
 STARTS = [(0.1, 0.05), (0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (0.0, 0.3)]
@@ -66,7 +72,7 @@ def places(explorer: ExplorerPage) -> dict[str, object]:
 def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(height=1000, link=f"{QUICK}&orbits=0.1,0.05")
     explorer.wait_for_data("r2_histories", "data.xs.length == 1")
-    explorer.page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    begin = explorer.page.evaluate(_PAINTED)
     before = places(explorer)
     explorer.page.evaluate(_WATCH_SHIFTS)
     explorer.page.get_by_role("slider", name="Time along the orbits").press("ArrowRight")
@@ -74,10 +80,16 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     explorer.wait_for_data("r2_histories", "data.xs.length == 2")
     expect(explorer.page.get_by_role("radio", name=re.compile("2: .* at t"))).to_have_count(1)
     assert places(explorer) == before
+    explorer.page.evaluate(_PAINTED)
+    assert explorer.page.evaluate(_SHIFTS_SINCE, begin) == []
     explorer.press("Find divergent start")
+    # Its line opens with the button, and stays as it is when the search ends.
+    expect(explorer.page.locator(".note").first).to_contain_text(re.compile("divergent start is|start that escapes elsewhere"))
+    begin = explorer.page.evaluate(_PAINTED)
     expect(explorer.text("The divergent start is")).to_be_visible()
     explorer.wait_for_data("separation_source", "data.t.length > 100")
-    assert explorer.page.evaluate("window.shifts") == 0
+    explorer.page.evaluate(_PAINTED)
+    assert explorer.page.evaluate(_SHIFTS_SINCE, begin) == []
 
 
 def test_messages_end_with_what_they_were_about(explorer: ExplorerPage) -> None:
