@@ -72,8 +72,3 @@ def test_each_exit_has_its_share_of_the_flux() -> None:
     nearest = np.argmin([np.hypot(*(states[:, :2] - middle).T) for middle in middles], axis=0)
     counts = np.bincount(nearest, minlength=flux.shares.size)
     np.testing.assert_allclose(counts / counts.sum(), flux.shares, atol=4.0 * 0.5 / math.sqrt(20_000))
-
-
-def test_closed_exits_are_named() -> None:
-    with pytest.raises(ValueError, match=r"energy=0.1: all exits are closed; must be above the escape energy 0.125"):
-        sample_entrances(CASES["I"], 0.1, 10)

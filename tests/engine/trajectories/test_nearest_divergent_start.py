@@ -84,19 +84,3 @@ def test_a_cancelled_search_raises() -> None:
     cancel.set()
     with pytest.raises(CancelledError):
         find(*STARTS[0], execution=Execution(cancel=cancel))
-
-
-@pytest.mark.parametrize(
-    ("start", "options", "message"),
-    [
-        (("I", Plane.X_PX, 0.2, np.nan, 0.1), {}, "x=nan: must be a finite number"),
-        (("I", Plane.X_PX, (0.1, 0.2), 0.1, 0.1), {}, "energy=.*: must be one finite number on "),
-        (("I", Plane.X_PX, 0.2, 0.1, 0.9), {}, "px=0.9: forbidden on .* must have"),
-        (("III", Plane.X_Y, 0.3, 1.2, 1.2), {}, "y=1.2: outside on .* must have"),
-        (("II", Plane.X_H, (0.2, 0.4), 0.1, -0.1), {}, "h=-0.1: forbidden on .* must have"),
-        (STARTS[0], {"furthest": 0.0}, "furthest=0.0: must be a finite number above 1e-13"),
-    ],
-)
-def test_invalid_starts_and_distances_raise(start: tuple[Any, ...], options: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        find(*start, **options)
