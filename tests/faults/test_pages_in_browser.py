@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from urllib.parse import quote
@@ -14,6 +13,7 @@ from playwright.sync_api import Browser, Page, expect
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import RunningApp, running_app
+from tests.waiting import wait_until
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -61,22 +61,13 @@ def open_page(chromium: Browser, served: RunningApp) -> Iterator[Callable[..., P
         context.close()
 
 
-def wait_for(condition: Callable[[], bool], seconds: float) -> float:
-    """Wait for a condition, and return the time in seconds."""
-    begun = time.monotonic()
-    while not condition():
-        assert time.monotonic() - begun < seconds, f"not within {seconds} s"
-        time.sleep(0.05)
-    return time.monotonic() - begun
-
-
 def test_closed_page_cancels_its_job_and_ends_its_session(open_page: Callable[..., Page], served: RunningApp) -> None:
     page = open_page(LONG_MAP)
-    wait_for(lambda: served.figure("jobs_in_flight") == 1, 60)
+    wait_until(lambda: served.figure("jobs_in_flight") == 1, 60)
     page.context.close()
-    wait_for(lambda: served.figure("websockets_open") == 0, 10)
-    assert wait_for(lambda: served.figure("jobs_in_flight") == 0, 10) < 1.0
-    wait_for(lambda: served.figure("sessions_open") == 0, 30)
+    wait_until(lambda: served.figure("websockets_open") == 0, 10)
+    assert wait_until(lambda: served.figure("jobs_in_flight") == 0, 10) < 1.0
+    wait_until(lambda: served.figure("sessions_open") == 0, 30)
 
 
 def test_failing_callback_does_not_affect_pages(open_page: Callable[..., Page], served: RunningApp, log: Path) -> None:
@@ -85,7 +76,7 @@ def test_failing_callback_does_not_affect_pages(open_page: Callable[..., Page], 
         explorer.wait_until_complete()
     broken.open_fold("Quality and colours")
     assert broken.page.evaluate(_SEND_INVALID_VALUE, "t_max")
-    wait_for(lambda: "not-an-option" in log.read_text(), 30)
+    wait_until(lambda: "not-an-option" in log.read_text(), 30)
     for explorer, energy in ((other, "0.21"), (broken, "0.22")):
         explorer.forget_pixels()
         explorer.type_number("Exact h", energy)

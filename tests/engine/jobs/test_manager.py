@@ -30,7 +30,8 @@ from engine.jobs.manager import Jobs
 from engine.jobs.map_jobs import map_job, regularity_job
 from engine.jobs.orbit_semaphore import SMALL_JOB
 from tests.app.clock import Clock
-from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
+from tests.engine.jobs.inbox import Inbox, wait_until_idle
+from tests.waiting import wait_until
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
 SEARCH = Job(find_divergent_start, (CASES["I"], Plane.X_PX, 0.2, -0.2, 0.1, 500.0))
@@ -226,7 +227,8 @@ def test_first_frames_are_computed_while_background_is_paused(paused: Jobs) -> N
     jobs, inbox = paused, Inbox()
     jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
     assert inbox.first.wait(30)
-    assert not inbox.done.wait(0.5)
+    wait_until(lambda: jobs.stats().calls_waiting > 0)
+    assert not inbox.done.is_set()
     jobs.pause_background(False)
     assert inbox.done.wait(60)
 
