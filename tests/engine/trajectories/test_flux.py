@@ -38,15 +38,6 @@ def test_flux_is_the_integral_over_the_exit_of_all_outward_velocities(potential:
         assert flux == pytest.approx(2.0 * integrate.trapezoid(speed, lengths), rel=1e-3)
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_just_above_the_saddle_the_flux_is_that_of_an_oscillator(case: str) -> None:
-    potential = CASES[case]
-    above = 1e-6
-    across = np.linalg.eigvalsh(potential.hessian_matrix(*potential.saddles[0]))[1]
-    flux = compute_flux(potential, potential.escape_energy + above).flux
-    np.testing.assert_allclose(flux, 2.0 * math.pi * above / math.sqrt(across), rtol=1e-4)
-
-
 def test_the_area_inside_is_that_of_a_disc_where_the_well_is_nearly_round() -> None:
     # With V = ½ r² − r³ f(θ) it is 2πh + 12 h² ∫ f² dθ + …; for case I the integral of cos² θ sin⁴ θ is π/8.
     h = 0.01
