@@ -78,6 +78,7 @@ def test_exits_of_a_separable_well_are_straight() -> None:
     np.testing.assert_allclose(orbit.x + orbit.y, -1.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_strongly_curved_exit_is_found_up_to_twice_the_escape_energy() -> None:
     # Polynomials of degree 16 deviate from this orbit by 2e-10.
     terms = ((2, 0, 1.1195), (0, 2, 0.3893), (1, 5, -0.6884), (2, 1, 0.8214), (4, 0, -0.2547), (3, 0, 0.5214))

@@ -8,7 +8,6 @@ from scipy.optimize import brentq
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
 from engine.exits.periodic_orbits import PeriodicOrbit, find_orbit_in_rotating_frame
-from engine.systems.known_potentials import POTENTIALS
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 from tests.peers.random_systems import random_well
 
@@ -16,7 +15,6 @@ WELLS = [
     (CASES["I"], 0.1251),
     (CASES["II"], 0.5),
     (CASES["III"], 1.0),
-    (POTENTIALS["C5"], 1.1 * POTENTIALS["C5"].escape_energy),
     (random_well(9), 2.0 * random_well(9).escape_energy),
 ]
 each_well = pytest.mark.parametrize(("potential", "energy"), WELLS)
@@ -138,7 +136,7 @@ def first_orbit(potential: Potential, energy: float) -> LyapunovOrbit:
     return find_lyapunov_orbits(potential, energy)[0]
 
 
-@pytest.mark.parametrize("potential", [hill(), CASES["III"], POTENTIALS["C5"]], ids=lambda potential: potential.name)
+@pytest.mark.parametrize("potential", [hill(), CASES["II"], CASES["III"]], ids=lambda potential: potential.name)
 def test_multipliers_of_a_lyapunov_orbit_are_those_of_the_same_orbit_by_continuation(potential: Potential) -> None:
     energy = -2.0 if potential.rotation else 1.5 * potential.escape_energy
     found = first_orbit(potential, energy).find_multipliers()

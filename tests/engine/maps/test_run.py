@@ -97,7 +97,7 @@ def test_a_test_for_evidence_that_is_interrupted_leaves_none() -> None:
     spec, counter = SPECS["III"], CallCounter()
     after_each_test = [early(compute_map(replace(spec, t_max=t_max))) for t_max in (1e3, 1e4)] + [early(at_once(spec))]
     compute_map(spec, executor=counter)
-    for good_calls in range(0, counter.calls, 2):
+    for good_calls in range(0, counter.calls, 4):
         cancel = threading.Event()
         with ForgetfulPool(good_calls, cancel) as pool:
             interrupted = compute_map(spec, cancel=cancel, executor=pool)
