@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr
@@ -57,7 +56,7 @@ class Terminal(StringIO):
 @pytest.fixture
 def run_in_terminal(run: Run, monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, str, str]]:
     """Function that runs a command in a terminal, with an action at a word; exit code, stdout, and the last line of stderr."""
-    monkeypatch.setitem(os.environ, "TERM", "xterm")
+    monkeypatch.setenv("TERM", "xterm")
 
     def run_command(word: str, action: Callable[[], None], *arguments: object) -> tuple[int, str, str]:
         terminal = Terminal(word, action)
