@@ -15,8 +15,7 @@ from typer.main import get_command
 
 from cli import map_analyses
 from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST, program
-from engine import CASES, EscapeMap
-from engine.maps.compute import run_map
+from engine import CASES, EscapeMap, MapSpec, compute_map
 from engine.maps.spec import DEFAULT_RESOLUTION
 from plots.printed.figure_style import FigureStyle
 from tests.cli.conftest import Run
@@ -106,10 +105,10 @@ def test_unwritable_output_exits_with_failed(run: Run, tmp_path: Path) -> None:
 
 
 def test_failed_computation_writes_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*arguments: Any) -> EscapeMap:
+    def fail(*_arguments: Any, **_options: Any) -> EscapeMap:
         raise RuntimeError("first line\nsecond line")
 
-    monkeypatch.setattr(map_analyses, "run_map", fail)
+    monkeypatch.setattr(map_analyses, "compute_map", fail)
     assert run(*MAP, "--output", tmp_path / "map") == (
         FAILED, "", "escape-explorer: RuntimeError: first line second line\n",
     )  # fmt: skip
@@ -125,11 +124,11 @@ def test_missing_dask_is_reported_with_the_install_command(run: Run, tmp_path: P
 
 
 def test_ctrl_c_cancels_a_map_and_writes_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*arguments: Any) -> EscapeMap:
+    def interrupted(spec: MapSpec, **options: Any) -> EscapeMap:
         signal.raise_signal(signal.SIGINT)
-        return run_map(*arguments)
+        return compute_map(spec, **options)
 
-    monkeypatch.setattr(map_analyses, "run_map", interrupted)
+    monkeypatch.setattr(map_analyses, "compute_map", interrupted)
     before = signal.getsignal(signal.SIGINT)
     code, out, err = run(*MAP, "--trust", "--output", tmp_path / "map")
     assert (code, out) == (INTERRUPTED, "")
@@ -139,12 +138,12 @@ def test_ctrl_c_cancels_a_map_and_writes_nothing(run: Run, tmp_path: Path, monke
 
 
 def test_second_ctrl_c_interrupts_at_once(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def never_stops(*arguments: Any) -> EscapeMap:
+    def never_stops(*_arguments: Any, **_options: Any) -> EscapeMap:
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
         raise AssertionError("not reached")
 
-    monkeypatch.setattr(map_analyses, "run_map", never_stops)
+    monkeypatch.setattr(map_analyses, "compute_map", never_stops)
     assert run(*MAP, "--output", tmp_path / "map") == (INTERRUPTED, "", "escape-explorer: interrupted; nothing was written\n")
     assert not any(tmp_path.iterdir())
 

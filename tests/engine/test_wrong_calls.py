@@ -71,6 +71,7 @@ WRONG_CALLS = (
     ("compute_map(III)", "spec=…: must be a MapSpec"),
     ("compute_map(spec, executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("compute_map(spec, cancel=True)", "cancel=True: must be a threading.Event or None"),
+    ("compute_map(spec, execution=4)", "execution=4: must be an Execution"),
     ("compute_map(spec, on_frame=3)", "on_frame=3: must be a function or None"),
     ("compute_map(spec, resume=spec)", "resume=…: must be an EscapeMap or None"),
     ("compute_regularity(spec)", "escape_map=…: must be an EscapeMap"),

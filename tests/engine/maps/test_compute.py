@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
-from engine import CASES, Fate, MapSpec, Plane, compute_map, compute_trust
+from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map, compute_trust
 
 SPECS = [
     MapSpec(CASES["III"], Plane.X_PX, 0.4, (30, 31), t_max=300.0),
@@ -33,10 +34,30 @@ def test_map_computed_in_blocks_is_bit_identical(spec: MapSpec, monkeypatch: pyt
 def test_cancelled_map_holds_the_blocks_computed_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.maps.compute.LARGEST_RUN", 150)
     cancel = threading.Event()
-    result = compute_map(SPECS[0], lambda _frame: cancel.set(), cancel)
+    result = compute_map(SPECS[0], on_frame=lambda _frame: cancel.set(), execution=Execution(cancel=cancel))
     assert not result.complete
     assert np.any(result.fate >= 1)
     assert np.any(result.fate == Fate.NOT_COMPUTED)
+
+
+def test_frames_cancellation_and_executor_may_be_given_by_position() -> None:
+    frames: list[EscapeMap] = []
+    cancel = threading.Event()
+    cancel.set()
+    with ThreadPoolExecutor(1) as pool:
+        assert compute_map(SPECS[0], frames.append, None, pool).complete
+        assert frames[-1].complete
+        assert not compute_map(SPECS[0], None, cancel, pool).complete
+
+
+def test_what_is_given_beside_an_execution_replaces_its_fields() -> None:
+    cancelled = threading.Event()
+    cancelled.set()
+    shares: list[float] = []
+    result = compute_map(SPECS[0], cancel=cancelled, execution=Execution(on_progress=shares.append))
+    assert not result.complete
+    assert compute_map(SPECS[0], execution=Execution(on_progress=shares.append)).complete
+    assert shares[-1] == 1.0
 
 
 def test_map_with_trust() -> None:
