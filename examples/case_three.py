@@ -155,13 +155,13 @@ plt.close(figure)
 # %% [markdown]
 # ## Save and load
 #
-# `to_xarray` returns a dataset with named axes and the provenance of the map: potential, window, integrator and version. Reading
-# the file needs xarray only; `open_result` makes the map of it again.
+# `save` writes a NetCDF file with named axes and the provenance of the map: potential, window, integrator and version. xarray
+# reads it; `open_result` makes the map of it again.
 
 # %%
-escape_map.to_xarray().to_netcdf("case-three.nc", engine="h5netcdf")
+escape_map.save("case-three.nc")
 
-with xr.open_dataset("case-three.nc", engine="h5netcdf") as loaded:
+with xr.open_dataset("case-three.nc") as loaded:
     dataset = loaded.load()
 print(f"loaded: h = {dataset.attrs['energy']}, {dict(dataset.sizes)}, {dataset.attrs['integrator']}")
 

@@ -10,6 +10,7 @@ import functools
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +31,7 @@ from engine.foundations.validation import checked_number, checks_types, warn_of_
 from engine.integrator.kernels import events
 from engine.systems.merged_channels import MergedExit, name_channels
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 # Ends of two orbits closer than this, in units of the well, are the same.
@@ -109,6 +111,10 @@ class LyapunovOrbit(Result):
     def start(self) -> np.ndarray:
         """(4,) x, y, px and py at the first point."""
         return np.array([self.x[0], self.y[0], *self.velocity])
+
+    def provenance(self) -> dict[str, Any]:
+        """The potential, the energy, the integrator and the version."""
+        return describe_run(self.potential, energy=self.energy)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """The path and its times."""

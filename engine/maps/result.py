@@ -225,6 +225,7 @@ class EscapeMap(MapResult):
             "worst_energy_error": self.worst_energy_error,
             "complete": int(self.complete),
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
+            **({} if self.rounded_share is None else {"rounded_share": self.rounded_share}),
         }
 
 

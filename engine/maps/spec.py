@@ -5,15 +5,12 @@ from __future__ import annotations
 import json
 import operator
 from dataclasses import asdict, dataclass
-from importlib import metadata
 from typing import Any
 
 import numpy as np
 
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
-from engine.integrator.source.recurrence import TOLERANCE
-from engine.integrator.source.series import ORDER
 from engine.slices.default_window import map_window
 from engine.slices.energies import Energy, common_energy, scaled_energy
 from engine.slices.parameter_family import parameter_family
@@ -23,7 +20,7 @@ from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.stored_potential import describe_potential
+from engine.systems.provenance import describe_run
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
@@ -168,22 +165,20 @@ class MapSpec:
     def provenance(self) -> dict[str, Any]:
         """The request in plain values, with the integrator and the package version."""
         window, (axes, held), axis = self.find_window(), write_slice(self.plane), self.plane.parameter
-        return {
-            **describe_potential(self.potential),
-            "energy": self.energy,
-            "plane": self.plane.title,
-            "axes": axes,
-            "fix": held,
-            "system": json.dumps(None if axis is None else asdict(axis.system)),
-            "window": (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
-            "default_window": int(self.window is None),
-            "resolution": self.resolution,
-            "t_max": self.t_max,
-            "use_evidence": int(self.use_evidence),
-            "backward": int(self.backward),
-            "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
-            "version": metadata.version("escape-explorer"),
-        }
+        return describe_run(
+            self.potential,
+            energy=self.energy,
+            plane=self.plane.title,
+            axes=axes,
+            fix=held,
+            system=json.dumps(None if axis is None else asdict(axis.system)),
+            window=(window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
+            default_window=int(self.window is None),
+            resolution=self.resolution,
+            t_max=self.t_max,
+            use_evidence=int(self.use_evidence),
+            backward=int(self.backward),
+        )
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
         """(row, column) of the pixel that contains a point of the plane; None outside the window."""

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count, format_whole
 
 MIN_ESCAPES = 100
@@ -76,7 +76,7 @@ class LawFit:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DecayLaws(Result):
+class DecayLaws(RecordedResult):
     """Decay laws fitted to the escapes of a map or of a part of it; arrays are read-only.
 
     Attributes

@@ -123,7 +123,8 @@ def compute_uncertainty_exponent(
     sampler.sample(sampler.plan_more_pairs(work), execution.part(1, 2))
     execution.report(lambda: 1.0)
     fit = sampler.fit()
-    return replace(units.restore(fit), amplitude=fit.amplitude / units.length**fit.exponent)
+    amplitude = fit.amplitude / units.length**fit.exponent
+    return replace(units.restore(fit), amplitude=amplitude, made_by=spec.provenance())
 
 
 def _separations(spec: MapSpec, count: int) -> np.ndarray:

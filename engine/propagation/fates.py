@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from engine.foundations.codes import name_code
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.integrator.kernels import events
 from engine.systems.outcomes import Outcome, exit_outcome, write_outcomes
 
@@ -107,7 +107,7 @@ def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
     return outcome_of(fate, outcomes).sentence if fate >= 1 else _SENTENCES[Fate(fate)]
 
 
-class OrbitResult(Result):
+class OrbitResult(RecordedResult):
     """Base of results on orbits, with the outcomes of their potential."""
 
     outcomes: tuple[Outcome, ...]

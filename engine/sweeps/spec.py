@@ -22,7 +22,7 @@ from engine.slices.window import GivenWindow
 from engine.sweeps.measures import MEASURES, SweepPoint
 from engine.systems.outcomes import Outcome, write_outcomes
 from engine.systems.potential import Potential
-from engine.systems.stored_potential import describe_potential
+from engine.systems.provenance import describe_potential
 
 MOST_VALUES = 10_000
 """Most energies, or values of a parameter, of one sweep."""

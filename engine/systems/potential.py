@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
 from engine.systems.outcomes import Centre, Outcome, checked_radius
 from engine.systems.parameters import WELL_PARAMETERS, symbol_of
+from engine.systems.provenance import describe_potential
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
@@ -80,6 +81,7 @@ class Potential(Result):
     escape_radius: float | None = None
     origin: tuple[float, float] = (0.0, 0.0)
     lineage: Lineage = field(default=SEARCHED, repr=False)
+    held_as: ClassVar = dict.fromkeys(("form", "rotation", "centres", "escape_radius", "origin", "lineage"), "terms")
 
     def __init__(
         self,
@@ -266,6 +268,10 @@ class Potential(Result):
         In a rotating frame, around centres and with an escape radius this evidence is not tested.
         """
         return not self.rotation and not self.centres and self.escape_radius is None
+
+    def provenance(self) -> dict[str, Any]:
+        """The potential in plain values, and the version."""
+        return super().provenance() | describe_potential(self)
 
     def numbers(self) -> dict[str, Any]:
         """The name, the escape energy and the number of channels."""

@@ -1,11 +1,10 @@
-"""Potentials as attributes of files, and back."""
+"""Potentials from the attributes of files, which `engine.systems.provenance` writes."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 from engine.systems.formulas.formula_parser import parse_formula
@@ -13,18 +12,6 @@ from engine.systems.outcomes import Centre
 from engine.systems.potential import Potential
 
 _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
-
-
-def describe_potential(potential: Potential) -> dict[str, Any]:
-    """Return name, formula with all digits, rotation, centres, escape radius (0 for none) and origin of the axes."""
-    return {
-        "potential": potential.name,
-        "terms": potential.form.text,
-        "rotation": potential.rotation,
-        "centres": json.dumps([asdict(centre) for centre in potential.centres]),
-        "escape_radius": potential.escape_radius or 0.0,
-        "origin": json.dumps(potential.origin),
-    }
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:

@@ -153,7 +153,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     evidence = _find_evidence(orbit, digits, Verdict.CHAOTIC in conclusions)
     deciding = _deciding_indicators(indicators, character)
     t_end, known = float(orbit.t[-1]), (orbit.outcomes, orbit.exits_unknown)
-    return OrbitVerdict(orbit.fate, t_end, orbit.crossings, evidence, character, deciding, *known)
+    return OrbitVerdict(orbit.fate, t_end, orbit.crossings, evidence, character, deciding, *known, made_by=orbit.made_by)
 
 
 def _combine(indicators: Sequence[IndicatorVerdict]) -> Verdict:

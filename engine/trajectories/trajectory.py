@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,11 +22,8 @@ from engine.propagation.orbit_steps import OrbitSteps, record_orbit
 from engine.systems.compiled import kernels_of
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.stored_potential import describe_potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MAX_ORBIT_TIME = 1e7
 """Largest t_max of `integrate_orbit`, whose samples then take 3 GB."""
@@ -127,12 +124,6 @@ class Orbit(OrbitResult):
         path = np.concatenate([samples, short[:, :4].T], axis=1)[:, first]
         return find_crossings(kernels, path, every_time) * [units.length, units.momentum]
 
-    def to_xarray(self) -> xr.Dataset:
-        """The samples along t, with the outcome and the potential as attributes; it can be written as NetCDF and Zarr."""
-        dataset = super().to_xarray()
-        made = {} if self.potential is None else describe_potential(self.potential)
-        return dataset.assign_attrs(made)
-
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
@@ -179,7 +170,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     start, units = checked_state("state", state), potential.units
     t_max = potential.checked_t_max(t_max, MAX_ORBIT_TIME)
     orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
-    return replace(units.restore(orbit), potential=potential)
+    return replace(units.restore(orbit), potential=potential, made_by=describe_run(potential, t_max=t_max))
 
 
 def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
