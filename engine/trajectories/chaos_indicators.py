@@ -157,7 +157,7 @@ def _evaluate(indicator: Indicator, orbit: Orbit, digits: BirkhoffDigits | None)
 
 def _describe_escape(orbit: Orbit) -> str:
     verb = outcome_of(orbit.fate, orbit.outcomes).present.partition(" ")[0]
-    return f"The orbit {verb} at t = {format_time(orbit.escape_time)}, so this is not a verdict."
+    return f"No sign of chaos before the orbit {verb} at t = {format_time(orbit.escape_time)}."
 
 
 def _describe_end(orbit: Orbit) -> str:

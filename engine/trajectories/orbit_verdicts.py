@@ -96,6 +96,13 @@ class OrbitVerdict(OrbitResult):
         until = "for ever" if self.is_bounded_for_ever else f"until t = {format_time(self.t_end)}"
         return f"{self._stays} {until}, {self.character}"
 
+    def headline(self) -> str:
+        """The verdict in a short sentence without its reasons."""
+        if self.fate >= 1:
+            return f"{outcome_of(self.fate, self.outcomes).past} at t = {format_time(self.t_end)}{self._inside}"
+        words = self.summarize()
+        return words[0].upper() + words[1:]
+
     @property
     def _may_have_left(self) -> bool:
         """Whether it has not ended, but may have passed an exit that is not known."""
