@@ -185,6 +185,6 @@ plt.close(figure)
 #
 # - `find_divergent_start`: the nearest start with another fate; `compute_separation`: the distance of two orbits against time.
 # - `find_stable_manifolds`: the curves that bound the basins; `compute_wada_test`: whether the boundaries are Wada.
-# - `fit_decay_laws`: exponential or algebraic decay; `evaluate_indicators`: several chaos indicators of one orbit.
+# - `fit_decay_laws`: exponential or algebraic decay; `judge_orbit`: several chaos indicators of one orbit.
 # - `open_result`: results from files.
 # - `compute_sweep` with a store: maps at hundreds of energies, resumable (`docs/long-runs.md`).

@@ -16,6 +16,7 @@ import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.foundations.codes import describe_codes
+from engine.foundations.former_names import FORMER_FIELDS
 from engine.foundations.pictures import load_pictures
 from engine.foundations.stored_fields import write_field
 from engine.foundations.summary import show_numbers, summarize
@@ -28,8 +29,20 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Result(ReadOnlyArrays):
+class _NamesForUsers(type):
+    """Metaclass of results: the completion of names, which reads classes too, shows what is for users."""
+
+    def __dir__(cls) -> list[str]:
+        return [name for name in super().__dir__() if name not in cls.inner_names]  # type: ignore[attr-defined]
+
+
+class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Base of dataclasses of results; their arrays are read-only."""
+
+    inner_names: ClassVar[frozenset[str]] = frozenset(
+        {"codes", "columns", "fate_labels", "held_as", "inner_names", "numbers", "row_dimension", "shown_numbers", *FORMER_FIELDS}
+    )
+    """The attributes that `dir` leaves out: they are for the modules of this package."""
 
     codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
     """The attributes that are codes, with the meaning of these."""
@@ -76,6 +89,9 @@ class Result(ReadOnlyArrays):
 
     def _repr_html_(self) -> str:
         return load_pictures().to_html(self)
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in self.inner_names]
 
     def __repr__(self) -> str:
         describe = getattr(self, "describe", None)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import operator
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
 from engine.slices.default_window import map_window
 from engine.slices.energies import Energy, common_energy, scaled_energy
+from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
@@ -88,6 +90,21 @@ class MapSpec:
     use_evidence: bool = True
     backward: bool = False
 
+    # Type checkers accept what is converted; fields have the types of what is kept.
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            potential: Potential,
+            plane: Slice | str,
+            energy: Energy | Sequence[float] | np.ndarray,
+            resolution: Sequence[int] = DEFAULT_RESOLUTION,
+            window: GivenWindow | None = None,
+            t_max: float = 1e5,
+            use_evidence: bool = True,
+            backward: bool = False,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         check_type("potential", self.potential, Potential)
         plane = checked_slice(self.plane)
@@ -132,6 +149,17 @@ class MapSpec:
         window = self.given_window or map_window(self.potential, self.plane, self.energy, self.resolution)
         _check_pixels(self, window)
         return window
+
+    def trace_zero_velocity_curve(self) -> list[np.ndarray]:
+        """The pieces (n, 2) of the boundary of the forbidden region, such as V(x, y) = h, in the window of the map.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, MapSpec, Plane
+        >>> len(MapSpec(CASES["I"], Plane.X_PX, 0.19).trace_zero_velocity_curve())
+        1
+        """
+        return trace_zero_velocity_curve(self.potential, self.plane, self.energy, self.find_window())
 
     def in_well_units(self) -> MapSpec:
         """The same map in units of the well, with its window; the legal range of t_max and of energies does not apply to it."""

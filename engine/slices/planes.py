@@ -52,7 +52,7 @@ def _fields(chosen: Slice) -> tuple[Any, ...]:
 
 @checks_types(potential=Potential)
 def start_states(
-    potential: Potential, plane: Slice, energy: float | np.ndarray, x: float | np.ndarray, ordinate: float | np.ndarray
+    potential: Potential, plane: Slice | str, energy: float | np.ndarray, x: float | np.ndarray, ordinate: float | np.ndarray
 ) -> np.ndarray:
     """The initial conditions of points of a slice.
 

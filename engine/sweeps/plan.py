@@ -72,6 +72,11 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
     execution
         How the sweep will run. Only its number of workers is used; they are assumed to be as fast as this core.
 
+    Returns
+    -------
+    The plan, with the number of `orbits`, the wall time in `seconds` if all `cores` are busy, and the `bytes` of the arrays of
+    the maps; `describe` says it in a sentence.
+
     Raises
     ------
     ValueError

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from engine.systems.provenance import describe_potential
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
+
+if TYPE_CHECKING:
+    from engine.systems.system import System
 
 Terms = tuple[tuple[int, int, float], ...]
 
@@ -57,6 +60,8 @@ class Potential(Result):
         (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`; it has no influence on any result.
     lineage
         How its well is found.
+    system
+        The `System` whose potential it is; None for one that was made otherwise.
 
     Raises
     ------
@@ -81,7 +86,12 @@ class Potential(Result):
     escape_radius: float | None = None
     origin: tuple[float, float] = (0.0, 0.0)
     lineage: Lineage = field(default=SEARCHED, repr=False)
-    held_as: ClassVar = dict.fromkeys(("form", "rotation", "centres", "escape_radius", "origin", "lineage"), "terms")
+    system: System | None = field(default=None, repr=False, compare=False)
+    inner_names: ClassVar = Result.inner_names | {
+        "check_at_rest", "check_same_motion", "check_without_centres", "checked_t_max", "continued", "form", "hessian_matrix",
+        "in_well_units", "lineage", "reversed_in_time", "tori_are_evidence", "units", "well",
+    }  # fmt: skip
+    held_as: ClassVar = dict.fromkeys(("form", "rotation", "centres", "escape_radius", "origin", "lineage", "system"), "terms")
 
     def __init__(
         self,
@@ -92,6 +102,7 @@ class Potential(Result):
         escape_radius: float | None = None,
         origin: tuple[float, float] = (0.0, 0.0),
         lineage: Lineage = SEARCHED,
+        system: System | None = None,
     ) -> None:
         check_type("name", name, str)
         if isinstance(form, Expression):
@@ -109,6 +120,7 @@ class Potential(Result):
             "escape_radius": None if escape_radius is None else checked_radius("escape_radius", escape_radius),
             "origin": (checked_number("origin", origin[0]), checked_number("origin", origin[1])),
             "lineage": lineage,
+            "system": system,
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
@@ -169,6 +181,7 @@ class Potential(Result):
             centres=tuple(centre.scaled(1.0 / units.length) for centre in self.centres),
             escape_radius=None if self.escape_radius is None else self.escape_radius / units.length,
             lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
+            system=None,
         )
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
@@ -177,7 +190,7 @@ class Potential(Result):
 
     def _changed(self, **values: Any) -> Potential:
         """Another potential, whose well is searched."""
-        return replace(self, lineage=SEARCHED, **values)
+        return replace(self, lineage=SEARCHED, system=None, **values)
 
     def in_rotating_frame(self, rotation: float) -> Potential:
         """The potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).

@@ -65,7 +65,7 @@ class DivergentStart(OrbitResult):
 @checks_types(potential=Potential, execution=Execution)
 def find_divergent_start(
     potential: Potential,
-    plane: Slice,
+    plane: Slice | str,
     energy: Energy,
     x: float,
     ordinate: float,

@@ -23,9 +23,6 @@ from engine import (
     compute_map,
     compute_statistics,
     compute_sweep,
-    find_lyapunov_orbits,
-    find_multipliers,
-    find_section_crossings,
     integrate_orbit,
     open_result,
     parse_formula,
@@ -92,19 +89,24 @@ WRONG_CALLS = (
     ("judge_orbit(orbit, 3)", "digits=3: must be a BirkhoffDigits or None"),
     ('compute_separation(III, S, S, "end")', "t_end='end': must be above 0 and at most 1e+08"),
     ('find_divergent_start(III, Plane.X_PX, 0.45, "a", 0.0)', "x='a': must be a finite number, at most 1e+09 in magnitude"),
-    ("find_multipliers(III, orbit)", "orbit=…: must be a LyapunovOrbit"),
-    ('find_multipliers(CASES["I"], find_lyapunov_orbits(III, 0.45)[0])', "potential=I: must be that of the orbit, III"),
     (
-        'default_window(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1)',
+        'MapSpec(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1).find_window()',
         "px=100: no start on (x, y), px = 100 has a real py at energy=0.1; must be at most 0.447",
     ),
     (
-        "default_window(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3))",
+        "MapSpec(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3)).find_window()",
         "py=-2: no start on (x, h), py = -2, y = 0.5, px > 0 has a real px at energy=0.3; must be at most 0.5916 in magnitude",
     ),
-    ("default_window(well, Plane.X_PX, -1.0)", "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov"),
+    (
+        "MapSpec(well, Plane.X_PX, -1.0).find_window()",
+        "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov",
+    ),
     ("start_states(III, Plane.X_PX, 0.45, np.zeros(2), np.zeros(3))", "ordinate of shape (3,): must be shaped like x, (2,)"),
-    ("channel_family(2)", "n=2: must be an integer from 3 to 12"),
+    ('ParameterAxis("b", 0.0, 1.0, III)', "parameter 'b': must be one of the system, omega_1, omega_2, epsilon, rotation"),
+    (
+        'ParameterAxis("b", 0.0, 1.0, well)',
+        "system=x² + y²: its letters are not known; must be a System, or",
+    ),
     ("parse_formula(3)", "text=3: must be text"),
     ('parse_formula("")', "formula, character 1: the formula ends where a number, x, y, r or a bracket is expected"),
     ('parse_formula("tanh(x)")', "formula, character 1: 'tan' is not understood; allowed are numbers, x, y, r"),
@@ -119,7 +121,7 @@ WRONG_CALLS = (
     ("Slice(C.X, C.PX, fixed=3)", "fixed=3: must be ((coordinate, value), …)"),
     ("Direction(3)", "key=3: must be text"),
     ('ParameterAxis("epsilon", 2, 1, System("I"))', "parameter epsilon from 2 to 1: the lower end must be below the upper end"),
-    ('ParameterAxis("epsilon", 1, 2, III)', "system=…: must be a System"),
+    ('ParameterAxis("epsilon", 1, 2, 3)', "system=3: must be a System"),
     ("Window(0, 0, 0, 1)", "window x range 0 … 0: the lower edge must be below the upper edge"),
     ('Window("a", 1, 0, 1)', "window x edge='a': must be a finite number, at most 1e+09 in magnitude"),
     ("SweepSpec(III, Plane.X_PX, 0.3)", "values=0.3: must be a sequence of finite numbers"),
@@ -230,19 +232,6 @@ def test_motion_without_a_well_is_not_called_bounded(formula: str) -> None:
 def test_a_misspelt_argument_is_answered_with_the_name_of_the_function() -> None:
     with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'$"):
         sample_orbits(CASES["III"], [(0.1, 0.0, 0.0, 0.3)], (0.0, 1.0), t_max=5.0)  # type: ignore[call-arg]
-
-
-def test_functions_of_a_potential_and_its_orbit_are_deprecated_and_agree_with_the_methods() -> None:
-    case = CASES["I"]
-    orbit, exit_orbit = integrate_orbit(case, (0.1, 0.0, 0.05, 0.3), 50.0), find_lyapunov_orbits(case, 0.19)[0]
-    for function, one in ((find_section_crossings, orbit), (find_multipliers, exit_orbit)):
-        name = function.__name__
-        with pytest.warns(
-            DeprecationWarning, match=rf"^{name}\(potential, orbit\) is deprecated: use orbit\.{name}\(\)$"
-        ) as caught:
-            found = function(case, one)
-        assert caught[0].filename == __file__
-        np.testing.assert_array_equal(found, getattr(one, name)())
 
 
 def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:

@@ -17,7 +17,6 @@ from engine import (
     Result,
     classify_orbits,
     compute_basin_entropy,
-    compute_birkhoff_digits,
     compute_map,
     compute_separation,
     compute_statistics,
@@ -32,6 +31,7 @@ from engine import (
     review_potential,
     sample_starts,
 )
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 
 POTENTIAL, STATE = CASES["I"], (0.1, 0.0, 0.05, 0.6)
 

@@ -31,7 +31,6 @@ from engine import (
     System,
     classify_orbits,
     compute_basin_entropy,
-    compute_birkhoff_digits,
     compute_flux,
     compute_map,
     compute_origin_fates,
@@ -54,6 +53,7 @@ from engine import (
     sample_orbits,
     sample_starts,
 )
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 
 C = Coordinate
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)

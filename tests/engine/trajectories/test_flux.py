@@ -8,18 +8,9 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from engine import (
-    CASES,
-    POTENTIALS,
-    Plane,
-    Potential,
-    classify_orbits,
-    compute_flux,
-    default_window,
-    find_lyapunov_orbits,
-    sample_starts,
-)
+from engine import CASES, POTENTIALS, Plane, Potential, classify_orbits, compute_flux, find_lyapunov_orbits, sample_starts
 from engine.exits.interior import find_outside_channels
+from engine.slices.default_window import default_window
 
 HENON_HEILES = POTENTIALS["HH"]
 SYSTEMS = [(CASES["I"], 0.19), (CASES["III"], 0.45), (HENON_HEILES, 0.2)]

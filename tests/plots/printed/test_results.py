@@ -19,7 +19,6 @@ from engine import (
     SampledOrbits,
     SweepSpec,
     compute_basin_entropy,
-    compute_birkhoff_digits,
     compute_map,
     compute_origin_fates,
     compute_regularity,
@@ -39,6 +38,7 @@ from engine import (
     sample_starts,
 )
 from engine.measures.labels import exit_labels
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from plots.pictures.palette import PALETTES
 
 POTENTIAL, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
