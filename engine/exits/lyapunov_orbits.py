@@ -72,7 +72,7 @@ class LyapunovOrbit(Result):
         (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
         last point are equal.
     curve
-        (columns,) the exit for the kernels; columns as in `engine.integrator.kernels.events`.
+        (columns,) the exit as the integrator takes it.
     velocity
         (2,) px and py at the first point: at rest, unless the frame rotates.
     others

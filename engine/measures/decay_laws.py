@@ -82,7 +82,7 @@ class DecayLaws(RecordedResult):
     Attributes
     ----------
     times, survival
-        (m,) survival S(t), as from `compute_survival`.
+        (m,) survival S(t), the share of the decided starts that are still inside just after t.
     t_low, t_high
         Window of the fits; t_low is NaN if no window could be chosen.
     escapes

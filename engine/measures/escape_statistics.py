@@ -36,7 +36,7 @@ class EscapeStatistics(OrbitResult):
     channel_counts
         Number of escapes through channel 1, 2, …, and at the other `outcomes`: collisions count as escapes.
     bounded, undecided, failed
-        Number of starts with the fate `Fate.BOUNDED`, `NOT_COMPUTED` (including orbits not started yet) and `FAILED`.
+        Number of starts with the fate `Fate.BOUNDED`, `Fate.NOT_COMPUTED` (including orbits not started yet) and `Fate.FAILED`.
     mean_escape_time, median_escape_time
         Mean and median over the escapes, dimensionless; NaN without escapes.
     crossing_counts

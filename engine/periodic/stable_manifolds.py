@@ -148,7 +148,7 @@ def find_stable_manifolds(
     energy
         h, finite, dimensionless.
     images
-        Number of successive intersections of each tube with the section, 1 to `MOST_IMAGES`.
+        Number of successive intersections of each tube with the section, 1 to 6.
     window
         Part of (x, px) to resolve in a zoom, given as in `MapSpec`: the spacing of points follows from its size, as far as the
         number of orbits allows, and curves beyond it are left out. None for the whole plane.

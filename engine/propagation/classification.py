@@ -147,8 +147,9 @@ def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndar
         row = int(np.argmin(legal))
         raise ValueError(f"states: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")
     difference = np.abs(potential.energy(array) - energy)
-    if np.any(difference > ENERGY_TOLERANCE * potential.units.energy):
+    tolerance = ENERGY_TOLERANCE * potential.units.energy
+    if np.any(difference > tolerance):
         row = int(np.argmax(difference))
         row_energy = float(potential.energy(array[row]))
-        raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {ENERGY_TOLERANCE:g}")
+        raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {tolerance:.2g}")
     return array

@@ -43,7 +43,7 @@ def checked_slice(value: Any) -> Slice:
     for plane in Plane if isinstance(value, str) else ():
         if value in (plane.title, plane.key):
             return plane
-    raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.title for plane in Plane)}")
+    raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.key for plane in Plane)}")
 
 
 def _fields(chosen: Slice) -> tuple[Any, ...]:

@@ -29,7 +29,7 @@ class BirkhoffDigits(RecordedResult):
     windows
         (m,) increasing window lengths T, dimensionless, with the orbit bounded for 2T. Empty for a shorter orbit.
     digits
-        (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is `TORUS_DIGITS` or more.
+        (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is 8 or more.
     time_unit
         Unit of time of the well before rounding, 1/ω, of which the windows are multiples.
     """

@@ -175,8 +175,10 @@ def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.nd
     """(n, m) times."""
     rows = np.array(np.broadcast_to(times, (count, times.size))) if times.ndim == 1 else times
     has_shape = rows.ndim == 2 and len(rows) == count and rows.size > 0
-    if not (has_shape and (rows[:, 0] >= 0.0).all() and (np.diff(rows) >= 0.0).all()):
-        raise ValueError(f"times of shape {times.shape}: must be ascending from 0, (m,) or ({count}, m)")
+    if not has_shape:
+        raise ValueError(f"times of shape {times.shape}: must be (m,) or ({count}, m)")
+    if not ((rows[:, 0] >= 0.0).all() and (np.diff(rows) >= 0.0).all()):
+        raise ValueError(f"times={short_repr(times.tolist())}: must be ascending from 0")
     for last in (rows[:, -1].min(), rows[:, -1].max()):
         potential.checked_t_max(float(last), MAX_ORBIT_TIME, name="times: the last one")
     return rows

@@ -61,7 +61,7 @@ def compute_separation(
     first, second
         (4,) initial x, y, px, py; finite, dimensionless.
     t_end
-        Last time, 0 < t_end ≤ 1e8, dimensionless; not after the escape of either orbit. Times beyond `LONGEST_SEPARATION` are
+        Last time, 0 < t_end ≤ 1e8, dimensionless; not after the escape of either orbit. Times beyond 2000 units of the well are
         left out.
     execution
         How the computation runs.

@@ -65,7 +65,7 @@ def test_window_edges_must_be_finite_and_increasing(edges: tuple[float, ...], na
 
 @pytest.mark.parametrize("plane", ["(x, z)", 3])
 def test_plane_must_be_a_slice_or_the_name_of_one(plane: Any) -> None:
-    with pytest.raises(ValueError, match=r"plane=.*: must be a Slice or one of \(x, y\), "):
+    with pytest.raises(ValueError, match=r"plane=.*: must be a Slice or one of x_y, "):
         spec_with(plane=plane)
 
 
