@@ -48,8 +48,9 @@ def main() -> None:
     long_orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.0, 0.3), 2e4)
     long_orbit.plot(show="sali")
     check_refusal(long_orbit.plot, "datashader", "page")
-    run_program("map", "I", "--energy", "0.3", "--resolution", "20", "--t-max", "100", "--output", "map.png")
-    assert Path("map.png").stat().st_size > 1000
+    run_program("map", "III", "--energy", "0.45", "--resolution", "40", "--t-max", "100", "--output", "both")
+    assert Path("both.png").stat().st_size > 1000
+    assert (open_result("both.nc").fate == escapes.fate).all()
     Path("netcdf4.nc").write_bytes(b"\x89HDF\r\n")
     check_refusal(escapes.to_holoviews, "holoviews", "page")
     check_refusal(lambda: escape_explorer.Explorer, "panel", "page")
