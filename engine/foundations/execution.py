@@ -43,6 +43,11 @@ def default_executor() -> ThreadPoolExecutor:
     return create_thread_pool(count_cores())
 
 
+if hasattr(os, "register_at_fork"):
+    # A child process has none of the threads of its parent, and would wait for them.
+    os.register_at_fork(after_in_child=default_executor.cache_clear)
+
+
 def create_thread_pool(threads: int) -> ThreadPoolExecutor:
     """A thread pool for kernels, of lower priority than the threads of this process that serve requests."""
     return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
