@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
+from engine.systems.outcomes import end_kinds
 
 if TYPE_CHECKING:
     from engine.systems.potential import Potential
 
 
 def describe_potential(potential: Potential) -> dict[str, Any]:
-    """Return name, formula with all digits, rotation, centres, escape radius (0 for none) and origin of the axes."""
+    """Return name, formula with all digits, rotation, an attribute for each kind of end, and origin of the axes."""
     return {
         "potential": potential.name,
         "terms": potential.form.text,
         "rotation": potential.rotation,
-        "centres": json.dumps([asdict(centre) for centre in potential.centres]),
-        "escape_radius": potential.escape_radius or 0.0,
+        **{kind.attribute: kind.write([end for end in potential.ends if isinstance(end, kind)]) for kind in end_kinds()},
         "origin": json.dumps(potential.origin),
     }
 

@@ -8,22 +8,22 @@ from collections.abc import Mapping
 from typing import Any
 
 from engine.systems.formulas.formula_parser import parse_formula
-from engine.systems.outcomes import Centre
+from engine.systems.outcomes import end_kinds
 from engine.systems.potential import Potential
 
 _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:
-    """Return the potential of attributes; missing attributes stand for no rotation, centres, escape radius and shift."""
+    """Return the potential of attributes; missing attributes stand for no rotation, ends of the kind and shift."""
     text, name = str(attributes["terms"]), str(attributes["potential"])
     terms = [_TERM.fullmatch(term) for term in text.split("; ")]
     if all(terms):
         potential = Potential(name, tuple((int(term[2]), int(term[3]), float(term[1])) for term in terms if term is not None))
     else:
         potential = parse_formula(text, name)
-    centres = [Centre(**centre) for centre in json.loads(attributes.get("centres", "[]"))]
-    escape_radius = float(attributes.get("escape_radius", 0.0)) or None
+    kinds = [kind for kind in end_kinds() if kind.attribute in attributes]
+    ends = [end for kind in kinds for end in kind.read(attributes[kind.attribute])]
     # The terms are those of the effective potential.
     x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
-    return Potential(name, potential.form, float(attributes.get("rotation", 0.0)), centres, escape_radius, (x, y))
+    return Potential(name, potential.form, float(attributes.get("rotation", 0.0)), origin=(x, y), ends=ends)
