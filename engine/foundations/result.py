@@ -50,7 +50,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     row_dimension: ClassVar[str] = ""
     """Name of the dimension of the columns in files; empty if the first column, whose values are different, is its coordinate."""
 
-    held_as: ClassVar[Mapping[str, str]] = {}
+    held_as: ClassVar[dict[str, str]] = {}
     """The fields that files hold under another name, or as parts, with the name of a part."""
 
     @property

@@ -59,7 +59,7 @@ class EscapeStatistics(OrbitResult):
     escape_times: np.ndarray = field(repr=False)
     t_max: float = float("inf")
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
-    held_as: ClassVar = {"crossing_counts": "escapes"}
+    held_as: ClassVar = OrbitResult.held_as | {"crossing_counts": "escapes"}
 
     @property
     def starts(self) -> int:

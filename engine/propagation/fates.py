@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -117,6 +117,7 @@ class OrbitResult(RecordedResult):
     """Base of results on orbits, with the outcomes of their potential."""
 
     outcomes: tuple[Outcome, ...]
+    held_as: ClassVar[dict[str, str]] = {"outcomes": "outcomes"}
 
     @property
     def fate_labels(self) -> Sequence[str]:

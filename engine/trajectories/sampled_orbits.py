@@ -58,7 +58,7 @@ class SampledOrbits(OrbitResult):
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     codes: ClassVar = {"fate": Fate}
     row_dimension: ClassVar = "orbit"
-    held_as: ClassVar = {name: name for name in ("t", "x", "y", "px", "py")}
+    held_as: ClassVar = OrbitResult.held_as | {name: name for name in ("t", "x", "y", "px", "py")}
 
     def columns(self) -> dict[str, np.ndarray]:
         """The outcome and the energy of each orbit."""
