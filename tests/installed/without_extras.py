@@ -46,7 +46,8 @@ def main() -> None:
     assert open_result("map.nc").spec == escapes.spec
     integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 100.0).plot()
     long_orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.0, 0.3), 2e4)
-    long_orbit.plot()
+    long_orbit.plot(show="sali")
+    check_refusal(long_orbit.plot, "datashader", "page")
     run_program("map", "III", "--energy", "0.45", "--resolution", "40", "--t-max", "100", "--output", "both")
     assert Path("both.png").stat().st_size > 1000
     assert (open_result("both.nc").fate == escapes.fate).all()
