@@ -128,11 +128,15 @@ def choose_energy(
     """
     if plane.energy_axis is not None:
         if energies is None or energy is not None:
-            raise ValueError(f"energies: the plane {plane.key} needs --energies LOW HIGH, not --energy")
+            raise ValueError(f"energies: the plane {plane.key} needs --energies LOW HIGH{_not_given('--energy', energy)}")
         return energies
     if energy is None or energies is not None:
-        raise ValueError(f"energy: the plane {plane.key} needs --energy H, not --energies")
+        raise ValueError(f"energy: the plane {plane.key} needs --energy H{_not_given('--energies', energies)}")
     return energy
+
+
+def _not_given(option: str, value: object) -> str:
+    return "" if value is None else f", not {option}"
 
 
 def find_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = next(iter(PALETTES))) -> Palette:

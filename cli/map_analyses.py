@@ -10,8 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from cli.execution import RunContext
-from engine import EscapeMap, MapSpec, compute_regularity, compute_trust, find_stable_manifolds
-from engine.maps.compute import run_map
+from engine import EscapeMap, MapSpec, compute_map, compute_regularity, compute_trust, find_stable_manifolds
 from engine.maps.origin_fates import join_origin_fates
 from engine.periodic.stable_manifolds import MOST_IMAGES
 from engine.slices.section import SECTION
@@ -81,7 +80,7 @@ def compute_map_with_analyses(spec: MapSpec, wanted: AnalysisOptions, run: RunCo
 
 def compute_whole_map(spec: MapSpec, run: RunContext, stage: str) -> EscapeMap:
     """Return the complete map; CancelledError if interrupted."""
-    frame = run_map(spec, run.start_stage(stage))
+    frame = compute_map(spec, execution=run.start_stage(stage))
     run.execution.raise_if_cancelled()
     return frame
 

@@ -15,7 +15,6 @@ from engine import (
     SweepSpec,
     classify_orbits,
     compute_basin_entropy,
-    compute_birkhoff_digits,
     compute_map,
     compute_origin_fates,
     compute_regularity,
@@ -36,6 +35,7 @@ from engine import (
     sample_orbits,
     sample_starts,
 )
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 
 POTENTIAL, ENERGY, STATE = CASES["III"], 0.36, (0.1, 0.0, 0.05, 0.6)
 SPEC = MapSpec(POTENTIAL, Plane.X_PX, ENERGY, (40, 30), t_max=200.0)

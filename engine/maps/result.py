@@ -78,8 +78,8 @@ class EscapeMap(MapResult):
     trust
         (rows, columns) int8, the `Trust` of each pixel if it was requested, else None.
     rounded_share
-        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support, see
-        `estimate_rounded_share`; else None.
+        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support:
+        their outcome changes with the errors of the integration; else None.
 
     Examples
     --------
@@ -225,6 +225,7 @@ class EscapeMap(MapResult):
             "worst_energy_error": self.worst_energy_error,
             "complete": int(self.complete),
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
+            **({} if self.rounded_share is None else {"rounded_share": self.rounded_share}),
         }
 
 

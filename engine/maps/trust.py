@@ -115,13 +115,13 @@ def compute_trust(
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
     A pixel is tested if one of its eight neighbours has another fate or, both having escaped, other crossings, and also if it is
-    bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different directions by `SHIFT`
-    (see `shifted_starts`), the second time with tolerance `SECOND_TOLERANCE`. The pixel is doubtful if in either rerun its fate
-    changes, or its crossings before the escape, or its escape time by more than `LARGEST_DELAY`. Crossings of bounded orbits are
-    not compared, as orbits that are bounded on evidence are not integrated to t_max.
+    bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different directions by 1e-11 length
+    units of the well, at most a hundredth of a pixel, the second time with ten times the tolerance. The pixel is doubtful if in
+    either rerun its fate changes, or its crossings before the escape, or its escape time by more than 0.01 time units of the
+    well. Crossings of bounded orbits are not compared, as orbits that are bounded on evidence are not integrated to t_max.
 
-    A pixel that is bounded without evidence is also doubtful if the two reruns come to differ by `APART`. Such an orbit is
-    chaotic, and only chance keeps it inside until t_max. Of two pixels that are mirror images only the first is tested.
+    A pixel that is bounded without evidence is also doubtful if the two reruns come to differ by 1e-4 in phase space. Such an
+    orbit is chaotic, and only chance keeps it inside until t_max. Of two pixels that are mirror images only the first is tested.
 
     Parameters
     ----------

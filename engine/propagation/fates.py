@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from engine.foundations.codes import name_code
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.integrator.kernels import events
 from engine.systems.outcomes import Exit, Outcome, write_outcomes
 
@@ -113,10 +113,11 @@ def renumber(fates: np.ndarray, numbers: np.ndarray) -> np.ndarray:
     return renumbered
 
 
-class OrbitResult(Result):
+class OrbitResult(RecordedResult):
     """Base of results on orbits, with the outcomes of their potential."""
 
     outcomes: tuple[Outcome, ...]
+    held_as: ClassVar[dict[str, str]] = {"outcomes": "outcomes"}
 
     @property
     def fate_labels(self) -> Sequence[str]:

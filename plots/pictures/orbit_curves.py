@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine import Orbit, Potential, Window, default_window
+from engine import Orbit, Potential, Window
 from engine.foundations.extras import require_package
+from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from plots.pictures.histories import History
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES

@@ -24,17 +24,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
-from engine import (
-    EscapeMap,
-    Fate,
-    Potential,
-    Slice,
-    StableManifolds,
-    Window,
-    trace_zero_velocity_curve,
-)
+from engine import EscapeMap, Fate, Potential, Slice, StableManifolds, Window
 from engine.exits.lyapunov_orbits import find_known_exits
 from engine.slices.energies import common_energy
+from engine.slices.limiting_curves import trace_zero_velocity_curve
 from plots.pictures.axis_labels import label_axis
 from plots.pictures.manifold_strokes import Stroke, manifold_strokes
 from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses

@@ -36,9 +36,9 @@ from engine import (
     UncertaintyExponent,
     WadaTest,
     Window,
-    default_window,
 )
 from engine.foundations.extras import require_package
+from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from engine.slices.section import SECTION
 from plots.pictures.image_columns import passage_column

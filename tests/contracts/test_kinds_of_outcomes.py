@@ -8,7 +8,8 @@ import pytest
 from engine import Centre, MapSpec, Plane, Potential, compute_map, compute_origin_fates, parse_formula, write_formula
 from engine.systems import outcomes
 from engine.systems.outcomes import KINDS, EscapeCircle
-from engine.systems.stored_potential import describe_potential, read_potential
+from engine.systems.provenance import describe_potential
+from engine.systems.stored_potential import read_potential
 from plots.pictures.image_columns import passage_column
 from plots.pictures.palette import OUTCOMES, PALETTES, end_places
 from tests.contributing import run_example

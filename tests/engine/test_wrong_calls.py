@@ -25,9 +25,6 @@ from engine import (
     compute_map,
     compute_statistics,
     compute_sweep,
-    find_lyapunov_orbits,
-    find_multipliers,
-    find_section_crossings,
     integrate_orbit,
     open_result,
     parse_formula,
@@ -63,7 +60,7 @@ WRONG_CALLS = (
     ('MapSpec("III", Plane.X_PX, 0.45)', "potential='III': must be a Potential"),
     (
         'MapSpec(III, "x-px", 0.45)',
-        "plane='x-px': must be a Slice or one of (x, y), (x, px), (x, h), (y, py), (x, y), β = 1.5708",
+        "plane='x-px': must be a Slice or one of x_y, x_px, x_h, y_py, tangential",
     ),
     ('MapSpec(III, Plane.X_PX, "0.45")', "energy='0.45': must be one finite number on (x, px), at most 1e+09 in magnitude"),
     ("MapSpec(III, Plane.X_H, 0.45)", "energy=0.45: on (x, h) must be a pair (low, high) of finite numbers with low < high"),
@@ -91,6 +88,7 @@ WRONG_CALLS = (
     ("compute_map(III)", "spec=…: must be a MapSpec"),
     ("compute_map(spec, executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("compute_map(spec, cancel=True)", "cancel=True: must be a threading.Event or None"),
+    ("compute_map(spec, execution=4)", "execution=4: must be an Execution"),
     ("compute_map(spec, on_frame=3)", "on_frame=3: must be a function or None"),
     ("compute_map(spec, resume=spec)", "resume=…: must be an EscapeMap or None"),
     (
@@ -124,19 +122,24 @@ WRONG_CALLS = (
     ("find_divergent_start(III, Plane.X_Y, 0.3, 1.2, 1.2)", "x=1.2, y=1.2: outside on (x, y) at h=0.3; must have V ≤ h and"),
     ('find_divergent_start(CASES["II"], Plane.X_H, (0.2, 0.4), 0.1, -0.1)', "x=0.1, h=-0.1: forbidden on (x, h) at h=-0.1;"),
     ("find_divergent_start(III, Plane.X_PX, 0.45, 0.1, 0.1, furthest=0.0)", "furthest=0.0: must be a finite number above 1e-13"),
-    ("find_multipliers(III, orbit)", "orbit=…: must be a LyapunovOrbit"),
-    ('find_multipliers(CASES["I"], find_lyapunov_orbits(III, 0.45)[0])', "potential=I: must be that of the orbit, III"),
     (
-        'default_window(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1)',
+        'MapSpec(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1).find_window()',
         "px=100: no start on (x, y), px = 100 has a real py at energy=0.1; must be at most 0.447",
     ),
     (
-        "default_window(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3))",
+        "MapSpec(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3)).find_window()",
         "py=-2: no start on (x, h), py = -2, y = 0.5, px > 0 has a real px at energy=0.3; must be at most 0.5916 in magnitude",
     ),
-    ("default_window(well, Plane.X_PX, -1.0)", "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov"),
+    (
+        "MapSpec(well, Plane.X_PX, -1.0).find_window()",
+        "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov",
+    ),
     ("start_states(III, Plane.X_PX, 0.45, np.zeros(2), np.zeros(3))", "ordinate of shape (3,): must be shaped like x, (2,)"),
-    ("channel_family(2)", "n=2: must be an integer from 3 to 12"),
+    ('ParameterAxis("b", 0.0, 1.0, III)', "parameter 'b': must be one of the system, omega_1, omega_2, epsilon, rotation"),
+    (
+        'ParameterAxis("b", 0.0, 1.0, well)',
+        "system=x² + y²: its letters are not known; must be a System, or",
+    ),
     ("parse_formula(3)", "text=3: must be text"),
     ('parse_formula("")', "formula, character 1: the formula ends where a number, x, y, r or a bracket is expected"),
     ('parse_formula("tanh(x)")', "formula, character 1: 'tan' is not understood; allowed are numbers, x, y, r"),
@@ -165,9 +168,9 @@ WRONG_CALLS = (
     ('Direction("x", x=1.0)', "direction 'x': its name must be an identifier and none of a coordinate"),
     ('Direction("u")', "direction u: one of x, y, px, py must not be 0"),
     ('ParameterAxis("epsilon", 2, 1, System("I"))', "parameter epsilon from 2 to 1: the lower end must be below the upper end"),
-    ('ParameterAxis("epsilon", 1, 2, III)', "system=…: must be a System"),
     ('ParameterAxis("mass", 0.5, 2.0, System("I"))', "parameter 'mass': must be one of the system, omega_1, omega_2,"),
     ('ParameterAxis("epsilon", -1.0, 0.5, System("I"))', "parameter epsilon from -1 to 0.5: must be between 0.01 and 100"),
+    ('ParameterAxis("epsilon", 1, 2, 3)', "system=3: must be a System"),
     ("Window(0, 0, 0, 1)", "window x range 0 … 0: the lower edge must be below the upper edge"),
     ('Window("a", 1, 0, 1)', "window x edge='a': must be a finite number, at most 1e+09 in magnitude"),
     ("Window(0.0, 1.0, 0.0, 0.0)", "window ordinate range 0.0 … 0.0: the lower edge must be below the upper edge"),
@@ -195,10 +198,10 @@ WRONG_CALLS = (
     ("plan_sweep(sw, cores=0)", "cores=0: must be an integer from 1 to 1000000"),
     ("sample_orbits(III, [S], (0.0, 1.0), execution=4)", "execution=4: must be an Execution"),
     ("sample_orbits(III, S, (0.0, 1.0))", "states=(0.1, 0.0, 0.05, 0.6): must be (n, 4) finite numbers x, y, px, py, at most"),
-    ("sample_orbits(III, [S], 10.0)", "times of shape (): must be ascending from 0, (m,) or (1, m)"),
+    ("sample_orbits(III, [S], 10.0)", "times of shape (): must be (m,) or (1, m)"),
     ("sample_orbits(III, [S], (0.0, 1e9))", "times: the last one=1000000000.0: must be above 0 and at most 1e+07"),
-    ("sample_orbits(III, [S], (1.0, 0.5))", "times of shape (2,): must be ascending from 0, (m,) or (1, m)"),
-    ("sample_orbits(III, [S, S], np.zeros((3, 2)))", "times of shape (3, 2): must be ascending from 0, (m,) or (2, m)"),
+    ("sample_orbits(III, [S], (1.0, 0.5))", "times"),
+    ("sample_orbits(III, [S, S], np.zeros((3, 2)))", "times of shape (3, 2): must be (m,) or (2, m)"),
     ("sample_orbits(III, [S], (0.0,))", "times: the last one=0.0: must be above 0 and at most 1e+07"),
     ("open_result(3)", "path=3: must be text or a path"),
     ("open_result(tmp)", "path=…: is a folder without zarr.json; must be a NetCDF file or a Zarr store of format 3"),
@@ -318,19 +321,6 @@ def test_motion_without_a_well_is_not_called_bounded(formula: str) -> None:
 def test_a_misspelt_argument_is_answered_with_the_name_of_the_function() -> None:
     with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'$"):
         sample_orbits(CASES["III"], [(0.1, 0.0, 0.0, 0.3)], (0.0, 1.0), t_max=5.0)  # type: ignore[call-arg]
-
-
-def test_functions_of_a_potential_and_its_orbit_are_deprecated_and_agree_with_the_methods() -> None:
-    case = CASES["I"]
-    orbit, exit_orbit = integrate_orbit(case, (0.1, 0.0, 0.05, 0.3), 50.0), find_lyapunov_orbits(case, 0.19)[0]
-    for function, one in ((find_section_crossings, orbit), (find_multipliers, exit_orbit)):
-        name = function.__name__
-        with pytest.warns(
-            DeprecationWarning, match=rf"^{name}\(potential, orbit\) is deprecated: use orbit\.{name}\(\)$"
-        ) as caught:
-            found = function(case, one)
-        assert caught[0].filename == __file__
-        np.testing.assert_array_equal(found, getattr(one, name)())
 
 
 def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
-from engine import CASES, Execution, Fate, MapSpec, Plane, compute_map, compute_trust
+from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map, compute_trust
 from engine.maps.compute import LARGEST_RUN
 from engine.maps.result import PIXEL_ARRAYS
 from engine.maps.row_blocks import BlockStack
@@ -50,6 +51,26 @@ def test_a_large_map_is_computed_in_blocks_which_keep_no_states() -> None:
     large = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.4, (columns, rows), (5.0, 6.0, 5.0, 6.0)))
     assert large.complete
     assert large.batch is None
+
+
+def test_frames_cancellation_and_executor_may_be_given_by_position() -> None:
+    frames: list[EscapeMap] = []
+    cancel = threading.Event()
+    cancel.set()
+    with ThreadPoolExecutor(1) as pool:
+        assert compute_map(SPECS[0], frames.append, None, pool).complete
+        assert frames[-1].complete
+        assert not compute_map(SPECS[0], None, cancel, pool).complete
+
+
+def test_what_is_given_beside_an_execution_replaces_its_fields() -> None:
+    cancelled = threading.Event()
+    cancelled.set()
+    shares: list[float] = []
+    result = compute_map(SPECS[0], cancel=cancelled, execution=Execution(on_progress=shares.append))
+    assert not result.complete
+    assert compute_map(SPECS[0], execution=Execution(on_progress=shares.append)).complete
+    assert shares[-1] == 1.0
 
 
 def test_map_with_trust() -> None:

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import CASES, Coordinate, MapSpec, Plane, Potential, Slice, default_window
+from engine import CASES, Coordinate, MapSpec, Plane, Potential, Slice
+from engine.slices.default_window import default_window
 from engine.slices.energies import Energy
 
 I = CASES["I"]  # noqa: E741  # named like the case
@@ -78,3 +79,10 @@ def test_other_maps_have_the_default_window(case: str, plane: Slice, count: int)
     """An even number, a line that orbits leave, a potential without the symmetry, a line of starts alone."""
     spec = MapSpec(CASES[case], plane, 0.6, (count, count))
     assert spec.find_window() == default_window(CASES[case], plane, 0.6)
+
+
+def test_the_zero_velocity_curve_lies_in_the_window_where_the_energy_is_just_enough() -> None:
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, window=(-0.2, 0.5, -0.7, 0.7))
+    x, px = np.concatenate(spec.trace_zero_velocity_curve()).T
+    np.testing.assert_allclose(0.5 * px**2 + CASES["I"].value(x, 0.0), 0.19, atol=1e-4)
+    assert -0.2 <= x.min() < x.max() <= 0.5

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, Window, compute_map, default_window
+from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, Window, compute_map
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.execution import Execution, SerialExecutor
 from engine.integrator.kernels.dense_output import advance_states
@@ -24,6 +24,7 @@ from engine.maps.trust import (
     shifted_starts,
 )
 from engine.propagation.batch import OrbitBatch, propagate_batch
+from engine.slices.default_window import default_window
 from engine.systems.compiled import kernels_of
 
 SAMPLE = 60

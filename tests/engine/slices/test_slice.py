@@ -16,11 +16,11 @@ from engine import (
     Slice,
     Window,
     compute_map,
-    default_window,
     start_states,
-    trace_zero_velocity_curve,
 )
 from engine.exits.interior import find_outside_channels
+from engine.slices.default_window import default_window
+from engine.slices.limiting_curves import trace_zero_velocity_curve
 from tests.peers.exit_lines import exit_lines
 from tests.peers.random_systems import random_well
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine import CASES, POTENTIALS, System, parse_formula, review_potential
+from engine import CASES, POTENTIALS, ParameterAxis, System, parse_formula, review_potential
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
@@ -54,3 +54,29 @@ def test_letters_are_parameters_beside_those_of_the_well() -> None:
     assert system.potential == parse_formula("½r² − 1.5 x y² + x³").with_parameters(omega_1=1.1)
     assert system.title == "Typed potential with ω1 = 1.1, a = 1.5"
     assert hash(system) == hash(System(TYPED, system.formula, {"omega_1": 1.1, "a": 1.5}))
+
+
+def test_the_system_of_a_formula_has_its_letters_and_its_rotation() -> None:
+    system = System.from_formula("½r² − a x y²", a=1.5, rotation=0.1)
+    assert system == System(TYPED, "½r² − a x y²", {"a": 1.5, "rotation": 0.1})
+    assert system.potential.rotation == 0.1
+
+
+@pytest.mark.parametrize(
+    "system", [System.from_formula("½r² − a x y²", a=1.5), System("Earth-Moon"), System("I", "", {"epsilon": 2.0})]
+)
+def test_a_potential_knows_the_system_that_it_is_of(system: System) -> None:
+    assert system.potential.system == system
+    assert ParameterAxis(system.parameter_names[-1], 0.5, 2.0, system.potential).system == system
+
+
+def test_a_changed_potential_is_not_of_the_system() -> None:
+    potential = CASES["I"]
+    changed = potential.with_parameters(epsilon=2.0), potential.in_rotating_frame(0.1), potential.with_outcomes((), 5.0)
+    assert [each.system for each in changed] == [None, None, None]
+
+
+@pytest.mark.parametrize("parameters", [{"b": 2.0}, {"a": float("nan")}, {"a": 1e10}])
+def test_an_illegal_value_of_a_letter_is_named(parameters: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match=r"b.* is not a letter of the formula; its letters are a|a=.*: must be"):
+        _ = System(TYPED, "½r² − a x y²", parameters).potential

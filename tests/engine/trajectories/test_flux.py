@@ -8,18 +8,9 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from engine import (
-    CASES,
-    POTENTIALS,
-    Plane,
-    Potential,
-    classify_orbits,
-    compute_flux,
-    default_window,
-    find_lyapunov_orbits,
-    sample_starts,
-)
+from engine import CASES, POTENTIALS, Plane, Potential, classify_orbits, compute_flux, find_lyapunov_orbits, sample_starts
 from engine.exits.interior import find_outside_channels
+from engine.slices.default_window import default_window
 
 # Standard errors by which a share may be off: the probability of a false alarm is 6e-7 for each.
 LARGEST_DEVIATION = 5.0

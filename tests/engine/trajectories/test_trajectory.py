@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -11,7 +13,6 @@ from engine import (
     Fate,
     Orbit,
     Plane,
-    Verdict,
     classify_orbits,
     integrate_orbit,
     judge_orbit,
@@ -19,6 +20,8 @@ from engine import (
     start_states,
 )
 from engine.propagation.deviation_vectors import DEVIATION_VECTORS
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
+from engine.trajectories.chaos_indicators import Verdict
 from tests.peers.dop853 import equations, variational_equations
 from tests.peers.exit_lines import exit_lines
 
@@ -180,3 +183,12 @@ def test_orbits_around_a_body_are_not_called_chaotic_for_the_steps_past_it() -> 
     bounded = [orbit for orbit in orbits if orbit.fate == Fate.BOUNDED]
     assert len(bounded) > 2
     assert all(judge_orbit(orbit).character is Verdict.REGULAR for orbit in bounded)
+
+
+def test_the_birkhoff_digits_of_an_orbit_are_those_of_its_start() -> None:
+    start = (0.1, 0.0, 0.0, 0.3)
+    orbit = integrate_orbit(CASES["II"], start, t_max=2000.0)
+    found, wanted = orbit.compute_birkhoff_digits(), compute_birkhoff_digits(CASES["II"], start, 2000.0)
+    np.testing.assert_array_equal(found.digits, wanted.digits)
+    with pytest.raises(ValueError, match="this orbit has no potential"):
+        replace(orbit, potential=None).compute_birkhoff_digits()

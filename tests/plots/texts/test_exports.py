@@ -62,6 +62,13 @@ def test_netcdf_contains_the_map(name: str) -> None:
             assert back[key].attrs == variable.attrs
 
 
+def test_without_h5netcdf_the_file_is_of_netcdf_3(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("plots.texts.exports.find_spec", lambda _name: None)
+    frame = compute_map(SPECS["energies"])
+    with xr.open_dataset(BytesIO(netcdf_bytes(frame)), engine="scipy") as back:
+        xr.testing.assert_equal(back.load(), frame.to_xarray())
+
+
 def test_netcdf_contains_follow_up_analyses() -> None:
     frame = compute_map(SPECS["a window"])
     analyses = MapAnalyses(trust=compute_trust(frame), origins=compute_origin_fates(frame.spec))
