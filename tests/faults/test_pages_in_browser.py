@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import time
 from collections.abc import Callable, Iterator
 from urllib.parse import quote
 
@@ -14,6 +13,7 @@ from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import RunningApp, running_app
 from tests.conftest import TIMEOUT_MS
+from tests.waiting import wait_until
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -55,21 +55,13 @@ def open_page(chromium: Browser, served: RunningApp) -> Iterator[Callable[..., P
         context.close()
 
 
-def wait_for_figure(served: RunningApp, name: str, value: float) -> float:
-    """Ask the server until one of its figures has a value, and return the time in seconds."""
-    begun = time.monotonic()
-    while served.figure(name) != value:
-        assert time.monotonic() - begun < TIMEOUT_MS / 1000, f"{name} is not {value}"
-    return time.monotonic() - begun
-
-
 def test_closed_page_cancels_its_job_and_ends_its_session(open_page: Callable[..., Page], served: RunningApp) -> None:
     page = open_page(LONG_MAP)
-    wait_for_figure(served, "jobs_in_flight", 1)
+    wait_until(lambda: served.figure("jobs_in_flight") == 1, 60)
     page.context.close()
-    wait_for_figure(served, "websockets_open", 0)
-    assert wait_for_figure(served, "jobs_in_flight", 0) < 1.0
-    wait_for_figure(served, "sessions_open", 0)
+    wait_until(lambda: served.figure("websockets_open") == 0, 10)
+    assert wait_until(lambda: served.figure("jobs_in_flight") == 0, 10) < 1.0
+    wait_until(lambda: served.figure("sessions_open") == 0, 30)
 
 
 def test_failing_callback_does_not_affect_pages(open_page: Callable[..., Page], served: RunningApp) -> None:
