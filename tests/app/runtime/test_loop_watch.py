@@ -64,13 +64,9 @@ def test_a_slow_turn_is_logged_and_counted(late: float, caplog: pytest.LogCaptur
     assert message.endswith(f" ms of its own, with 0 ms of garbage collection; cause: {WAITING}")
 
 
-def test_garbage_collections_on_the_thread_of_the_loop_are_measured(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_garbage_collections_on_the_thread_of_the_loop_are_measured(caplog: pytest.LogCaptureFixture) -> None:
     clock, metrics = Clock(), ServerMetrics()
-    monkeypatch.setattr("app.runtime.load_monitor.time", clock)
-    monkeypatch.setattr("app.runtime.loop_watch.time", clock)
-    watch = LoopWatch(LoadMonitor(), metrics.loop_delays)
+    watch = LoopWatch(LoadMonitor(clock.monotonic), metrics.loop_delays, clock.thread_time)
     elsewhere = threading.Thread(target=watch.on_collection, args=["start", {}])
     watch.tick()
     with caplog.at_level(logging.INFO, "bokeh"):
