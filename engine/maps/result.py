@@ -44,6 +44,10 @@ def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.nda
     return {name: np.full(shape, value, dtype) for name, (dtype, value) in names.items()}
 
 
+NOTED_SHARE = 0.01
+"""Share of the interior pixels that double precision does not support from which a map says so."""
+
+
 @with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class EscapeMap(MapResult):
@@ -138,6 +142,11 @@ class EscapeMap(MapResult):
         """Largest relative energy error of the decided orbits; NaN if there are none."""
         errors = self.energy_error[np.isfinite(self.energy_error)]
         return float(errors.max()) if errors.size else float("nan")
+
+    @property
+    def is_rounded(self) -> bool:
+        """Whether double precision does not support `NOTED_SHARE` of the pixels or more."""
+        return self.rounded_share is not None and self.rounded_share >= NOTED_SHARE
 
     @property
     def nbytes(self) -> int:

@@ -21,28 +21,23 @@ export function fateName(code, names, {ends}) {
  * What is known of a pixel, in lines. Columns of layers that are off, and of maps that they are not computed for, have other sizes.
  *
  * @param {number} pixel
- * @param {{maps: Columns, doubts: Columns, compared: Columns}} columns  of the pictures, of the layer of trust, and of the other view
- * @param {{bounded: number, first: number, firstEvidence: number, ends: number, channels: number}} codes  the first of each kind, and
- *   the numbers of ends and of channels
- * @param {{evidence: string[], characters: string[], trusts: string[], fates: string[]}} words  by code
+ * @param {{maps: Columns, compared: Columns}} columns  of the pictures, and of the other view
+ * @param {{bounded: number, first: number, firstEvidence: number}} codes  the first of each kind
+ * @param {{evidence: string[], layers: Record<string, string[]>, fates: string[]}} words  by code; those of the layers by their columns
  */
-export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
+export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const fates = maps.fate[0]
   const fate = fates[pixel]
   if (fate < codes.bounded) return ""
   const known = (/** @type {any} */ image) => (image?.length === fates.length ? image[pixel] : undefined)
   const time = maps.escape_time[0][pixel]
   const crossings = maps.crossings[0][pixel]
-  const passage = known(maps.passage[0]) - codes.first
-  const origin = Math.floor(passage / codes.ends)
   const lines = [
     Number.isFinite(time) && `escape time ${time.toPrecision(5)}`,
     fate > codes.bounded
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
       : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
-    words.characters[known(maps.character[0]) - codes.first],
-    passage >= 0 && describeOrigin(origin, codes.channels, maps),
-    words.trusts[known(doubts.trust[0])],
+    ...Object.entries(words.layers).map(([column, sentences]) => withEnds(sentences[known(maps[column][0])], maps)),
     known(maps.difference[0]) >= codes.first &&
       isSamePlace(maps, compared) &&
       `other view: ${fateName(known(compared.fate[0]), words.fates, compared)}`,
@@ -50,10 +45,9 @@ export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
   return lines.filter(line => line).join("\n")
 }
 
-/** Where an orbit was before. @type {(origin: number, channels: number, columns: Columns) => string} */
-function describeOrigin(origin, channels, {ends}) {
-  if (origin > channels) return `backward in time it ${ends[0][origin - 1]}`
-  return origin > 0 ? `entered through channel ${origin}` : "never entered: inside since −t_max"
+/** A sentence in which `{k}` stands for the words of the k-th end. @type {(sentence: string | undefined, columns: Columns) => string} */
+function withEnds(sentence = "", {ends}) {
+  return sentence.replace(/\{(\d+)\}/, (_, place) => ends[0][place])
 }
 
 /** Whether two images have the same window. @type {(one: Columns, other: Columns) => boolean} */

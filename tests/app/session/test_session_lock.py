@@ -14,10 +14,10 @@ import pytest
 from bokeh.server.session import ServerSession
 
 from app.session.explorer import Explorer
-from app.state.view import LAYERS, Analysis
-from app.views.components.analysis_choice import LAYER_LABELS
+from app.state.view import Analysis
 from app.views.maps.map_toolbar import Drag
 from engine import Plane
+from plots.layers.table import LAYERS
 from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
 from tests.app.session.opened_page import opened_page
@@ -34,8 +34,8 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     lambda explorer: explorer.state.param.update(palette="safe"),
     *(
         lambda explorer, name=name, on=on: explorer.controls.layers.switches[name].param.update(value=on)
-        for name in LAYERS
-        for on in ([LAYER_LABELS[name]], [])
+        for name, layer in LAYERS.items()
+        for on in ([layer.title], [])
     ),
     # As the tabs do.
     *(lambda explorer, analysis=analysis: explorer.state.param.update(analysis=analysis) for analysis in Analysis),

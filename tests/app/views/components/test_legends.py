@@ -7,10 +7,13 @@ from typing import Any
 
 import pytest
 
-from app.views.maps.map_legend import LegendContents, map_legend
-from engine import CASES, Fate, MapSpec, Plane, parse_formula
+from app.views.components.legends import picture_legend
+from engine import CASES, Fate, MapSpec, Plane, Potential, parse_formula
 from engine.systems.outcomes import Centre
-from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
+from plots.layers.picture import ShownMap
+from plots.layers.table import map_legend
+from plots.layers.trust import TONES
+from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER, Palette
 from plots.pictures.time_scale import TimeScale
 from tests.disc import DISC
 
@@ -18,10 +21,10 @@ PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]*)")
 ALL = frozenset(int(fate) for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED, 1, 2))
 
 
-def contents(**changes: Any) -> LegendContents:
-    spec = MapSpec(CASES["II"], Plane.X_PX, 0.2)
-    values: dict[str, Any] = {"palette": PAPER, "times": TimeScale(2.5, 100.0), "locked": False, "regularity": "", "fates": ALL}
-    return LegendContents(spec, **(values | changes))
+def legend(picture: str, potential: Potential = CASES["II"], **changes: Any) -> str:
+    """HTML of the legend of a picture."""
+    values: dict[str, Any] = {"palette": PAPER, "times": TimeScale(2.5, 100.0), "fates": ALL}
+    return picture_legend(map_legend(picture, ShownMap(MapSpec(potential, Plane.X_PX, 0.19), **(values | changes))))
 
 
 def entries(html: str) -> list[tuple[str, str]]:
@@ -31,50 +34,48 @@ def entries(html: str) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("palette", [PAPER, COLOUR_BLIND_SAFE], ids=lambda palette: palette.name)
 def test_exits_and_outcomes_have_the_colours_of_the_palette(palette: Palette) -> None:
-    colours = dict(entries(map_legend("basins", contents(palette=palette), [])))
+    colours = dict(entries(legend("basins", palette=palette)))
     assert [colours[str(k)] for k in (1, 2, 3)] == list(palette.channels[:3])
     words = {Fate.BOUNDED: "bounded", Fate.FORBIDDEN: "forbidden", Fate.OUTSIDE: "outside", Fate.NOT_COMPUTED: "not decided yet"}
     assert {colours[word] == palette.outcomes[fate].colour for fate, word in words.items()} == {True}
 
 
 def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whole_ones_as_titles() -> None:
-    labels = [label for label, _ in entries(map_legend("basins", contents(fates=frozenset({int(Fate.BOUNDED)})), []))]
+    labels = [label for label, _ in entries(legend("basins", fates=frozenset({int(Fate.BOUNDED)})))]
     assert labels == ["1", "2", "3", "bounded"]
-    html = map_legend("basins", contents(), [])
+    html = legend("basins")
     assert f"title='{PAPER.outcomes[Fate.FORBIDDEN].label}'" in html
     assert "title='channel 2'" in html
 
 
 def test_crossings_have_their_classes_and_what_is_drawn_over_them() -> None:
     expected = [(entry.label, entry.colour) for entry in PAPER.crossing_entries]
-    assert entries(map_legend("crossings", contents(), [])) == expected
-    assert ("doubtful pixels", "#123456") in entries(map_legend("crossings", contents(), [Entry("doubtful pixels", "#123456")]))
+    assert entries(legend("crossings")) == expected
+    html = legend("crossings", results={"trust": None})
+    assert "doubtful pixels" in html
+    assert all(tone in html for tone in TONES)
 
 
 def test_the_scale_has_both_ends_and_says_whether_it_is_locked() -> None:
-    html = map_legend("times", contents(times=TimeScale(2.5, 1234.0)), [])
+    html = legend("times", times=TimeScale(2.5, 1234.0))
     assert "≤ 2.5 " in html
     assert "≥ 1 234" in html
     assert PAPER.escape_time[0] in html
     assert PAPER.escape_time[-1] in html
     assert "locked" not in html
-    assert "locked" in map_legend("times", contents(locked=True), [])
+    assert "locked" in legend("times", is_locked=True)
 
 
 def test_layers_have_legends_of_their_own() -> None:
-    html = map_legend("characters", contents(regularity="1 % are chaotic."), [])
-    assert "bounded and chaotic" in html
-    assert "1 % are chaotic." in html
-    assert "Enters by" in map_legend("origins", contents(), [])
+    assert "bounded and chaotic" in legend("characters")
+    assert "Enters by" in legend("origins")
 
 
 def test_a_collision_has_its_label_and_colour() -> None:
-    of_disc = LegendContents(MapSpec(DISC, Plane.X_PX, 0.19), PAPER, TimeScale(2.5, 100.0), False, "", ALL)
-    assert ("collision with a disc", PAPER.collisions[0]) in entries(map_legend("basins", of_disc, []))
-    assert "<th scope=col>collision with a disc</th>" in map_legend("origins", of_disc, [])
+    assert ("collision with a disc", PAPER.collisions[0]) in entries(legend("basins", DISC))
+    assert "<th scope=col>collision with a disc</th>" in legend("origins", DISC)
 
 
 def test_the_name_of_a_centre_is_text() -> None:
     named = parse_formula("½(x² + y²) − xy²").with_outcomes([Centre(0.2, 0.3, 0.05, "<b>'")])
-    of_disc = LegendContents(MapSpec(named, Plane.X_PX, 0.19), PAPER, TimeScale(2.5, 100.0), False, "", ALL)
-    assert not any("<b>" in map_legend(picture, of_disc, []) for picture in ("basins", "origins"))
+    assert not any("<b>" in legend(picture, named) for picture in ("basins", "origins"))
