@@ -29,7 +29,7 @@ from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
 from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.maps.trust import TrustMap, compute_trust
+from engine.maps.trust import Trust, TrustMap, compute_trust
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
@@ -39,7 +39,7 @@ from engine.measures.wada import WadaTest, compute_wada_test
 from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.propagation.classification import Outcomes, classify_orbits
 from engine.propagation.evidence import Evidence
-from engine.propagation.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
+from engine.propagation.fates import CHAOS_THRESHOLD, Fate, Regularity
 from engine.slices.axes import Coordinate, Direction, ParameterAxis
 from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve

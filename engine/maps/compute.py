@@ -13,11 +13,11 @@ from engine.foundations.execution import Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.maps.parameter_map import LineStack
 from engine.maps.result import EscapeMap
+from engine.maps.rounded_share import estimate_rounded_share
 from engine.maps.row_blocks import BlockStack
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import run_stages
-from engine.maps.trust import compute_trust, estimate_rounded_share
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""
@@ -34,7 +34,6 @@ def compute_map(
     executor: Executor | None = None,
     *,
     resume: EscapeMap | None = None,
-    with_trust: bool = False,
     on_progress: Callable[[float], None] | None = None,
 ) -> EscapeMap:
     """Compute an escape map.
@@ -53,9 +52,6 @@ def compute_map(
     resume
         An earlier map, complete or cancelled, whose spec differs at most by a smaller t_max: its orbits are continued. Maps
         computed in blocks cannot be resumed.
-    with_trust
-        Whether to compute the reliability of each pixel as well (`compute_trust`) once the map is complete; when cancelled,
-        pixels not tested yet are `Trust.NOT_TESTED`.
     on_progress
         Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
 
@@ -75,7 +71,7 @@ def compute_map(
     >>> escapes.complete, round(sum(escapes.fractions().values()), 12)
     (True, 1.0)
     """
-    return run_map(spec, Execution(executor, cancel, on_progress), on_frame, resume=resume, with_trust=with_trust)
+    return run_map(spec, Execution(executor, cancel, on_progress), on_frame, resume=resume)
 
 
 @shows_progress("escape map")
@@ -85,20 +81,16 @@ def run_map(
     on_frame: Callable[[EscapeMap], None] | None = None,
     *,
     resume: EscapeMap | None = None,
-    with_trust: bool = False,
 ) -> EscapeMap:
     """`compute_map` with its execution as one object."""
     if resume is not None:
         _check_resumable(spec, resume)
-    part = execution.part(0, 2) if with_trust else execution
     work = _begin(spec, resume, coarse_first=on_frame is not None)
-    run_stages(work, part, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
-    result = _in_units_of(spec, _with_rounded_share(work.result(), part))
+    run_stages(work, execution, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
+    result = _in_units_of(spec, _with_rounded_share(work.result(), execution))
     if on_frame is not None and result.complete:
         on_frame(replace(result, batch=None))
-    if not (with_trust and result.complete):
-        return result
-    return replace(result, trust=compute_trust(result, execution=execution.part(1, 2)).trust)
+    return result
 
 
 def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:

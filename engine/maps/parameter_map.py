@@ -70,9 +70,7 @@ class Line:
         for name in _NUMBERED:
             arrays[name] = renumbered(arrays[name], own)
         x, ordinate = self.spec.pixel_centres()
-        line = replace(
-            escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, trust=None, **arrays
-        )
+        line = replace(escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, **arrays)
         if escape_map.batch is None:
             return line
         pixels = np.arange(escape_map.fate.size).reshape(escape_map.fate.shape)[self.place].ravel()

@@ -32,6 +32,12 @@ class PixelAnalysis(MapResult):
     complete: bool = field(default=True, kw_only=True)
     pixel_arrays: ClassVar[PixelArrays] = {}
     """The arrays with a value for each pixel, as `empty_arrays` takes them."""
+    kinds: ClassVar[dict[str, type[PixelAnalysis]]] = {}
+    """All analyses by the names of their classes, which files contain."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        PixelAnalysis.kinds[cls.__name__] = cls
 
     def to_xarray(self) -> xr.Dataset:
         """The values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""

@@ -16,7 +16,7 @@ from engine.foundations.validation import checked_flag
 from engine.maps.spec import MapSpec
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, Trust, name_fate
+from engine.propagation.fates import Fate, name_fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
 from engine.systems.well_units import TIME
@@ -79,8 +79,6 @@ class EscapeMap(MapResult):
         bool, the pixels whose orbits have been started.
     batch
         State of the orbits `continued_pixels` for ``resume``, in units of the well; None in frames.
-    trust
-        (rows, columns) int8, the `Trust` of each pixel if it was requested, else None.
     rounded_share
         For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support, see
         `estimate_rounded_share`; else None.
@@ -110,7 +108,6 @@ class EscapeMap(MapResult):
     complete: bool
     started: np.ndarray = field(repr=False)
     batch: OrbitBatch | None = field(default=None, repr=False)
-    trust: np.ndarray | None = field(default=None, repr=False)
     rounded_share: float | None = None
 
     def numbers(self) -> dict[str, Any]:
@@ -152,7 +149,6 @@ class EscapeMap(MapResult):
     def nbytes(self) -> int:
         """Bytes held by the arrays, including the integration state."""
         arrays: list[np.ndarray] = [getattr(self, name) for name in PIXEL_ARRAYS]
-        arrays += [self.trust] if self.trust is not None else []
         return sum(array.nbytes for array in arrays) + (self.batch.nbytes if self.batch else 0)
 
     def check_complete(self, name: str) -> None:
@@ -218,8 +214,6 @@ class EscapeMap(MapResult):
             "outside": (dims, self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
             "evidence": (dims, self.evidence, {"long_name": "why the orbit is bounded", **describe_codes(Evidence)}),
         }
-        if self.trust is not None:
-            variables["trust"] = (dims, self.trust, {"long_name": "reliability of the outcome", **describe_codes(Trust)})
         coordinates = {
             ordinate: (ordinate, self.ordinate, {"units": "1"}),
             abscissa: (abscissa, self.x, {"units": "1"}),

@@ -52,7 +52,7 @@ def read_map(dataset: xr.Dataset) -> EscapeMap:
     return EscapeMap(
         spec=spec, x=read_only(np.array(dataset[abscissa].values)), ordinate=read_only(np.array(dataset[ordinate].values)),
         stride=1, horizon=spec.t_max, progress=float(started.mean()), complete=bool(started.all()), started=read_only(started),
-        trust=read_only(np.array(dataset["trust"].values)) if "trust" in dataset else None, **arrays,
+        **arrays,
     )  # fmt: skip
 
 

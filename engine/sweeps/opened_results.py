@@ -15,11 +15,9 @@ from engine.foundations.extras import require_package
 from engine.foundations.former_names import rename_stored
 from engine.foundations.result import Result
 from engine.foundations.validation import checks_types
-from engine.maps.origin_fates import OriginFateMap
-from engine.maps.regularity import RegularityMap
+from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import read_map, read_spec
-from engine.maps.trust import TrustMap
 from engine.measures.basin_entropy import BasinEntropy
 from engine.measures.uncertainty_exponent import UncertaintyExponent
 from engine.propagation.classification import Outcomes
@@ -38,8 +36,8 @@ if TYPE_CHECKING:
 _KINDS: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
-        EscapeMap, RegularityMap, TrustMap, OriginFateMap, Orbit, Outcomes, Separation, BirkhoffDigits, DivergentStart,
-        BasinEntropy, UncertaintyExponent, Sweep, SampledOrbits,
+        EscapeMap, Orbit, Outcomes, Separation, BirkhoffDigits, DivergentStart, BasinEntropy, UncertaintyExponent, Sweep,
+        SampledOrbits,
     )
 }  # fmt: skip
 # Readers of results with a field that is neither a number nor an array nor a request of maps.
@@ -60,7 +58,7 @@ def open_result(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    An equal result: an `EscapeMap`, `RegularityMap`, `TrustMap`, `OriginFateMap`, `Orbit`, `SampledOrbits`, `Outcomes`,
+    An equal result: an `EscapeMap`, a result of its pixels, an `Orbit`, `SampledOrbits`, `Outcomes`,
     `Separation`, `BirkhoffDigits`, `DivergentStart`, `BasinEntropy`, `UncertaintyExponent`, or `Sweep`, which `compute_sweep`
     takes as `earlier`. A map has no integration state and cannot be resumed. The dataset of a sweep in a store is read on access;
     measures and analyses take one of its maps, ``sweep.dataset.sel(h=0.3)``. Sweeps and curves of earlier versions are opened as
@@ -111,10 +109,11 @@ def open_result(path: str | os.PathLike[str]) -> Any:
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     if dataset.attrs.get("result") == _FORMER_CURVES:
         return dataset
-    kind = _KINDS.get(str(dataset.attrs.get("result")))
+    kinds = _KINDS | PixelAnalysis.kinds
+    kind = kinds.get(str(dataset.attrs.get("result")))
     if kind is None:
         held = dataset.attrs.get("result", "no result")
-        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(_KINDS)}. xarray opens it")
+        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(kinds)}. xarray opens it")
     dataset = rename_stored(dataset)
     if kind in _READERS:
         return _READERS[kind](dataset)
@@ -131,7 +130,7 @@ def _value(kind: Any, name: str, dataset: xr.Dataset) -> Any:
         return read_potential(dataset.attrs) if "terms" in dataset.attrs else None
     if name == "outcomes":
         return read_outcomes(dataset.attrs.get(name, "[]"))
-    if name in ("x", "ordinate") and kind is OriginFateMap:
+    if name in ("x", "ordinate") and issubclass(kind, PixelAnalysis):
         return read_only(read_spec(dataset).pixel_centres()[name == "ordinate"])
     if name in dataset.variables and dataset[name].ndim:
         return read_only(np.array(dataset[name].values))

@@ -7,7 +7,7 @@ import threading
 import numpy as np
 import pytest
 
-from engine import CASES, Fate, MapSpec, Plane, compute_map, compute_trust
+from engine import CASES, Fate, MapSpec, Plane, compute_map
 
 SPECS = [
     MapSpec(CASES["III"], Plane.X_PX, 0.4, (30, 31), t_max=300.0),
@@ -37,12 +37,3 @@ def test_cancelled_map_holds_the_blocks_computed_so_far(monkeypatch: pytest.Monk
     assert not result.complete
     assert np.any(result.fate >= 1)
     assert np.any(result.fate == Fate.NOT_COMPUTED)
-
-
-def test_map_with_trust() -> None:
-    spec = MapSpec(CASES["II"], Plane.X_PX, 0.2, (40, 40), t_max=500.0)
-    whole = compute_map(spec, with_trust=True)
-    np.testing.assert_array_equal(whole.trust, compute_trust(compute_map(spec)).trust)
-    dataset = whole.to_xarray()
-    np.testing.assert_array_equal(dataset["trust"], whole.trust)
-    assert "3: doubtful" in dataset["trust"].attrs["codes"]

@@ -67,7 +67,6 @@ RESULTS: dict[str, Callable[[], Result | None]] = {
     "regularity": lambda: compute_regularity(compute_map(replace(SPEC, t_max=1200.0))),
     "trust": lambda: compute_trust(compute_map(SPEC)),
     "origins": lambda: compute_origin_fates(SPEC),
-    "map with trust": lambda: compute_map(SPEC, with_trust=True),
     "escaping orbit": lambda: integrate_orbit(TYPED, STATE, t_max=50.0),
     "bounded orbit": lambda: integrate_orbit(III, (0.05, 0.0, 0.0, 0.1), t_max=50.0),
     "sampled orbits": lambda: sample_orbits(III, sample_starts(III, 0.36, 5), [0.0, 2.0, 9.0]),
