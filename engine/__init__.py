@@ -10,7 +10,7 @@ These are the public names of the library. All results show themselves in notebo
 - orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `compute_birkhoff_digits`, `judge_orbit`,
   `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`,
-  `compute_origin_fates`, `find_stable_manifolds`
+  `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
 - files: `Result.to_xarray`, `open_result`
@@ -25,6 +25,7 @@ from engine.foundations.former_names import FORMER_NAMES as FORMER_NAMES
 from engine.foundations.former_names import find_former_name as find_former_name
 from engine.foundations.result import Result
 from engine.maps.compute import compute_map
+from engine.maps.descriptors import DescriptorMap, TimeDirection, compute_lagrangian_descriptor
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
 from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
@@ -83,6 +84,7 @@ __all__ = [
     "Centre",
     "Coordinate",
     "DecayLaws",
+    "DescriptorMap",
     "Direction",
     "DivergentStart",
     "EscapeFlux",
@@ -114,6 +116,7 @@ __all__ = [
     "SweepPlan",
     "SweepSpec",
     "System",
+    "TimeDirection",
     "Trust",
     "TrustMap",
     "UncertaintyExponent",
@@ -125,6 +128,7 @@ __all__ = [
     "compute_basin_entropy",
     "compute_birkhoff_digits",
     "compute_flux",
+    "compute_lagrangian_descriptor",
     "compute_map",
     "compute_origin_fates",
     "compute_regularity",

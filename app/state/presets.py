@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.state.view import Analysis, View
+from app.state.view import Analysis, View, default_settings
 from app.state.watched_starts import StartsFrom, WatchedStarts
-from engine import Coordinate, ParameterAxis, Plane, Slice, System, Window
+from engine import Coordinate, ParameterAxis, Plane, Slice, System, TimeDirection, Window
 
 GROUPS = ("The paper", "Places", "Explanations", "Other slices", "Other systems")
 """Kinds of figures in the paper, details found by zooming, analyses that explain both; slices and systems not in the paper."""
@@ -246,6 +246,14 @@ PRESETS: tuple[Preset, ...] = (
         caption="Each orbit is integrated in both directions of time: the hue shows the exit, the tone the entrance. Large "
         "tiles of one colour are fast passages with one history; between them future and past both depend sensitively "
         "on the start. Grey orbits neither came from an exit nor leave through one.",
+    ),
+    Preset(
+        key="parting", title="Where orbits part", group=_EXPLANATIONS, picture="descriptors",
+        view=View(System("II"), Plane.X_PX, 0.2, t_max=1e4, layers=frozenset({"descriptor"}),
+                  settings={**default_settings(), "descriptor_direction": TimeDirection.FORWARD, "descriptor_time": 20.0},
+                  starts=((0.2, 0.3), (0.25, 0.1))),
+        caption="The colour is the square root of the speed, integrated along each orbit up to t = 20 or its exit. Where it "
+        "changes abruptly, neighbours part: there run stable manifolds, found without the periodic orbits that they belong to.",
     ),
     Preset(
         key="doubt", title="Doubtful pixels", group=_EXPLANATIONS, picture="basins",

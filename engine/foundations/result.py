@@ -81,6 +81,10 @@ class Result(ReadOnlyArrays):
         """The scalar attributes by name."""
         return {name: value for name, value in self._attributes().items() if isinstance(value, bool | int | float | str)}
 
+    def plain_numbers(self) -> dict[str, Any]:
+        """The scalar attributes as files hold them: codes and flags as numbers, choices as texts."""
+        return {name: _plain(value) for name, value in self.numbers().items()}
+
     def columns(self) -> Mapping[str, np.ndarray]:
         """The one-dimensional arrays by name that are as long as the first of them; empty if there are none."""
         arrays = {name: a for name, a in self._attributes().items() if isinstance(a, np.ndarray) and a.ndim == 1}
@@ -106,8 +110,7 @@ class Result(ReadOnlyArrays):
         """
         import xarray as xr
 
-        columns = self.columns()
-        scalars = {name: _plain(value) for name, value in self.numbers().items()}
+        columns, scalars = self.columns(), self.plain_numbers()
         made = {"result": type(self).__name__}
         if not columns:
             return xr.Dataset({name: ((), value, self._meaning(name, value)) for name, value in scalars.items()}, attrs=made)

@@ -49,7 +49,7 @@ class PixelAnalysis(MapResult):
         images = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray) and value.ndim == 2}
         dims = (ordinate_name, abscissa_name)
         variables = {name: (dims, image, self._meaning(name, image)) for name, image in images.items()}
-        attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(self.complete)}
+        attributes = {"result": type(self).__name__, **self.spec.provenance(), **self.plain_numbers()}
         return xr.Dataset(variables, {ordinate_name: ordinate, abscissa_name: x}, attributes)
 
     @property

@@ -118,6 +118,10 @@ class Pixels:
         Legend of a result that is drawn alone.
     sentences
         Of the codes at the mouse, empty for none; ``{k}`` stands for what orbits do at the k-th of `Palette.ends`.
+    values
+        (rows, columns) float32 numbers of a result, which its codes stand for; None without any.
+    value_name
+        What the numbers are, at the mouse.
     first_codes
         (rows, columns) codes of an image of `EscapeMap.thinned` before there is a result; None without any.
     """
@@ -127,7 +131,24 @@ class Pixels:
     colours: Callable[[Palette], Sequence[str]]
     entries: Callable[[Any, Palette], Sequence[Entry]]
     sentences: Sequence[str] = ()
+    values: Callable[[Any], np.ndarray] | None = None
+    value_name: str = ""
     first_codes: Callable[[Mapping[str, np.ndarray]], np.ndarray] | None = None
+
+    @property
+    def value_column(self) -> str:
+        """Name of the column of numbers."""
+        return f"{self.column}_value"
+
+    @property
+    def column_names(self) -> tuple[str, ...]:
+        """Names of its columns."""
+        return (self.column,) if self.values is None else (self.column, self.value_column)
+
+    def columns(self, result: Any, frame: EscapeMap | None) -> dict[str, list[Any]]:
+        """The columns of a result on its map, or without one."""
+        numbers = {} if self.values is None else {self.value_column: [self.values(result)]}
+        return {self.column: [self.codes(result, frame)], **numbers}
 
 
 @dataclass(frozen=True, eq=False)

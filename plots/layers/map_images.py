@@ -14,8 +14,8 @@ from plots.pictures.image_columns import NO_LAYER, map_columns
 from plots.pictures.palette import Palette, rgba
 from plots.pictures.time_scale import TimeScale, fitted_scale
 
-LAYER_COLUMNS = tuple(layer.pixels.column for layer in LAYERS.values() if layer.pixels is not None)
-"""Columns of the pixel codes of layers."""
+LAYER_COLUMNS = tuple(name for layer in LAYERS.values() if layer.pixels is not None for name in layer.pixels.column_names)
+"""Columns of the pixels of layers."""
 
 
 def layer_columns(frame: EscapeMap, names: Collection[str]) -> dict[str, list[Any]]:
@@ -26,10 +26,10 @@ def layer_columns(frame: EscapeMap, names: Collection[str]) -> dict[str, list[An
     return dict.fromkeys(LAYER_COLUMNS, NO_LAYER) | known
 
 
-def result_column(name: str, frame: EscapeMap, result: Any) -> dict[str, list[Any]]:
-    """The column of the result of a layer on its map; none if the layer has no pixels."""
+def result_columns(name: str, frame: EscapeMap, result: Any) -> dict[str, list[Any]]:
+    """The columns of the result of a layer on its map; none if the layer has no pixels."""
     pixels = LAYERS[name].pixels
-    return {} if pixels is None else {pixels.column: [pixels.codes(result, frame)]}
+    return {} if pixels is None else pixels.columns(result, frame)
 
 
 def picture_pixels(
@@ -64,7 +64,7 @@ def picture_pixels(
         raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
     drawn, columns = PICTURES[picture], map_columns(frame) | layer_columns(frame, LAYERS)
     for name, result in analyses.items():
-        columns |= result_column(name, frame, result)
+        columns |= result_columns(name, frame, result)
     pixels = rgba(drawn.colours(palette))[columns[drawn.column][0]]
     if drawn.has_times:
         _paint_times(pixels, columns["escape_time"][0], palette, times or fitted_scale(frame))

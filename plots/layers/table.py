@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
+from plots.layers.descriptors import DESCRIPTORS
 from plots.layers.escapes import BASINS, COMPARED, CROSSINGS, CURVES, DIFFERENCES, TIMES
 from plots.layers.layer import Layer, Setting
 from plots.layers.legend import Legend
@@ -21,7 +22,7 @@ def _by_name[Named: (Layer, Picture, Setting)](*entries: Named) -> Mapping[str, 
     return MappingProxyType({entry.name: entry for entry in entries})
 
 
-LAYERS = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS)
+LAYERS = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS, DESCRIPTORS)
 """The layers by their names, in the order of their switches."""
 
 SETTINGS = _by_name(*(setting for layer in LAYERS.values() for setting in layer.settings))

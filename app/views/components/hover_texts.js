@@ -23,7 +23,8 @@ export function fateName(code, names, {ends}) {
  * @param {number} pixel
  * @param {{maps: Columns, compared: Columns}} columns  of the pictures, and of the other view
  * @param {{bounded: number, first: number, firstEvidence: number}} codes  the first of each kind
- * @param {{evidence: string[], layers: Record<string, string[]>, fates: string[]}} words  by code; those of the layers by their columns
+ * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words  by code;
+ *   those of the layers by their columns, and what the numbers in other columns of layers are
  */
 export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const fates = maps.fate[0]
@@ -38,6 +39,9 @@ export function pixelDetails(pixel, {maps, compared}, codes, words) {
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
       : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
     ...Object.entries(words.layers).map(([column, sentences]) => withEnds(sentences[known(maps[column][0])], maps)),
+    ...Object.entries(words.values).map(
+      ([column, name]) => Number.isFinite(known(maps[column][0])) && `${name} ${known(maps[column][0]).toPrecision(5)}`,
+    ),
     known(maps.difference[0]) >= codes.first &&
       isSamePlace(maps, compared) &&
       `other view: ${fateName(known(compared.fate[0]), words.fates, compared)}`,

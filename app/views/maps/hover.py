@@ -65,9 +65,11 @@ def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d
         "first": len(OUTCOMES),
         "firstEvidence": len(OUTCOMES) + len(CROSSING_CLASSES),
     }
+    layers = [layer.pixels for layer in LAYERS.values() if layer.pixels is not None]
     words = {
         "evidence": [describe_evidence(code) for code in Evidence],
-        "layers": {layer.pixels.column: list(layer.pixels.sentences) for layer in LAYERS.values() if layer.pixels is not None},
+        "layers": {pixels.column: list(pixels.sentences) for pixels in layers if pixels.values is None},
+        "values": {pixels.value_column: pixels.value_name for pixels in layers if pixels.values is not None},
         "fates": _FATES,
     }
     arguments = {"maps": source, "compared": compared, "codes": codes, "words": words}

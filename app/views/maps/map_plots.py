@@ -39,7 +39,7 @@ from app.views.maps.picture_grid import PictureGrid
 from app.views.maps.well import WellView
 from engine import EscapeMap, MapSpec, Window
 from engine.foundations.wording import format_number
-from plots.layers.map_images import LAYER_COLUMNS, result_column
+from plots.layers.map_images import LAYER_COLUMNS, result_columns
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
 from plots.layers.table import PICTURES as ENTRIES
@@ -180,7 +180,7 @@ class MapsView:
         layer = LAYERS[name]
         self._results[name] = result
         if layer.pixels is not None:
-            self.source.data = {**self.source.data, **result_column(name, frame, result)}
+            self.source.data = {**self.source.data, **result_columns(name, frame, result)}
         self.overlays.show(name, result)
         if layer.picture is not None:
             self.grid.mark_empty(layer.picture.name, empty=layer.is_empty(frame))
@@ -192,7 +192,7 @@ class MapsView:
         self.overlays.remove(name)
         pixels = LAYERS[name].pixels
         if pixels is not None and self.source.data[pixels.column][0].size > 1:
-            self.source.data = {**self.source.data, pixels.column: NO_LAYER}
+            self.source.data = {**self.source.data, **dict.fromkeys(pixels.column_names, NO_LAYER)}
         self._show_legends()
 
     def set_palette(self, palette: Palette) -> None:

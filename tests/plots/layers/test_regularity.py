@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, Regularity, RegularityMap, compute_map, compute_regularity
-from plots.layers.map_images import layer_columns, result_column
+from plots.layers.map_images import layer_columns, result_columns
 from plots.layers.regularity import CODES, REGULARITY
 from plots.pictures.palette import PAPER
 
@@ -18,7 +18,7 @@ def colour_of(character: Regularity) -> str:
 def painted(frame: EscapeMap, regularity: RegularityMap | None = None) -> np.ndarray:
     """The colours of the pixels of the layer."""
     assert REGULARITY.pixels is not None
-    known = layer_columns(frame, {"judge"}) if regularity is None else result_column("judge", frame, regularity)
+    known = layer_columns(frame, {"judge"}) if regularity is None else result_columns("judge", frame, regularity)
     return np.array(REGULARITY.pixels.colours(PAPER))[known["character"][0]]
 
 

@@ -12,6 +12,7 @@ const WORDS = {
     passage: ["", "", "", "", "", "never entered", "entered through channel 2", "backward in time it {8}"],
     trust: ["not tested", "doubtful"],
   },
+  values: {length_value: "length"},
   fates: ["undecided", "failed", "outside", "forbidden", "bounded", "channel 1", "channel 2"],
 }
 const none = [new Uint8Array(1)]
@@ -25,6 +26,7 @@ const maps = {
   character: none,
   passage: none,
   trust: none,
+  length_value: none,
   difference: none,
   x: [-1],
   y: [-1],
@@ -47,6 +49,8 @@ test("layers add what they know of a pixel", () => {
   const layers = {character: [Uint8Array.of(6, 0)], passage: [Uint8Array.of(5, 6)], trust: [Uint8Array.of(1, 0)]}
   assert.deepEqual(details(0, layers), ["enclosed", "chaotic", "never entered", "doubtful"])
   assert.ok(details(1, layers).includes("entered through channel 2"))
+  assert.ok(details(1, {length_value: [Float32Array.of(NaN, 2.5)]}).includes("length 2.5000"))
+  assert.deepEqual(details(0, {length_value: [Float32Array.of(NaN, 2.5)]}), ["enclosed"])
 })
 
 test("a pixel that is compared has its end in the other view", () => {
