@@ -22,7 +22,6 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from engine import (
-    CASES,
     EscapeMap,
     Potential,
     Slice,
@@ -39,6 +38,7 @@ from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, TITLES, map_legend
 from plots.pictures.axis_labels import label_axis
 from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
+from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale, fitted_scale
 from plots.printed.figure_axes import (
     add_legend_below,
@@ -334,17 +334,3 @@ def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
 def _corners(window: Window) -> np.ndarray:
     """(2, 2) lower left and upper right corner."""
     return np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])
-
-
-def provenance_line(frame: EscapeMap) -> str:
-    """Provenance of a map in a line: potential, h, plane, window, resolution, t_max and version."""
-    facts, plane = frame.provenance(), frame.spec.plane
-    x_low, x_high, low, high = (repr(float(edge)) for edge in facts["window"])
-    name, (columns, rows) = facts["potential"], facts["resolution"]
-    energy = "" if frame.spec.common_energy is None else f"h = {facts['energy']!r}, "
-    abscissa, ordinate = plane.axis_symbols
-    return (
-        f"{'Case' if name in CASES else 'Potential'} {name}, {energy}plane {plane.title}, {abscissa} from {x_low} to {x_high}, "
-        f"{ordinate} from {low} to {high}, {columns} × {rows} starts, t_max = {facts['t_max']:g}, "
-        f"{'' if frame.complete else 'not finished, '}escape-explorer {facts['version']}"
-    )

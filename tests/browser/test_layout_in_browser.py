@@ -134,6 +134,21 @@ def test_on_a_phone_the_map_comes_first_with_the_energy_below_it(phone: Explorer
     assert play["y"] <= slider["y"] <= play["y"] + play["height"]
 
 
+_SHIFTS = """() => new Promise(done => {
+    let sum = 0
+    new PerformanceObserver(list => list.getEntries().forEach(entry => sum += entry.value)).observe({
+        type: "layout-shift", buffered: true,
+    })
+    requestAnimationFrame(() => requestAnimationFrame(() => done(sum)))
+})"""
+
+
+@pytest.mark.parametrize(("width", "touch"), [(420, True), (768, True), (1280, False)])
+def test_the_parts_of_the_page_stay_in_their_places_while_it_opens(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
+    # Below this, browsers call the layout of a page stable.
+    assert open_explorer(width, 900, QUICK, touch=touch).page.evaluate(_SHIFTS) < 0.1
+
+
 def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:
     top = figures(phone)["basins"][1]
     phone.page.evaluate("window.scrollTo(0, 200)")

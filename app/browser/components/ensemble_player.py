@@ -19,7 +19,7 @@ _STYLE = """
 button, select { font: inherit; color: inherit; background: var(--ui-surface); border: 1px solid var(--ui-edge);
   border-radius: var(--ui-radius); padding: 5px 10px; min-height: 2rem; cursor: pointer }
 button:disabled { opacity: 0.5; cursor: default }
-button.play { font-weight: 600 }
+button.play { min-width: 11.5rem; font-weight: 600 }
 :is(button, select, input):focus-visible { outline: none; box-shadow: var(--ui-focus) }
 input[type=range] { flex: 1 1 8rem; min-width: 6rem; accent-color: var(--ui-accent) }
 output { min-width: 4.5rem; font-variant-numeric: tabular-nums }
