@@ -110,7 +110,7 @@ def test_maps_of_equal_size_wrap_into_rows(escape_map: EscapeMap) -> None:
     boxes = np.array([axes.get_window_extent().extents for axes in figure.axes])
     np.testing.assert_allclose(boxes[:, 2:] - boxes[:, :2], boxes[0, 2] - boxes[0, 0], rtol=1e-9)
     assert len(np.unique(boxes[:, 0].round())) == columns
-    assert len(np.unique(boxes[:, 1].round())) == len(TITLES) / columns
+    assert len(np.unique(boxes[:, 1].round())) == math.ceil(len(TITLES) / columns)
 
 
 @pytest.mark.slow

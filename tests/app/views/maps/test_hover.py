@@ -18,8 +18,10 @@ def test_every_column_of_a_layer_has_its_words() -> None:
     hover = pixel_hover(ColumnDataSource(), ColumnDataSource(), Range1d(), Range1d())
     formatter = hover.formatters["@crossing_class"]
     assert isinstance(formatter, CustomJSHover)
-    assert formatter.args["words"]["layers"] == {pixels.column: list(pixels.sentences) for pixels in PIXELS}
-    assert len(formatter.args["words"]["evidence"]) == len(Evidence)
+    words = formatter.args["words"]
+    assert words["layers"] == {pixels.column: list(pixels.sentences) for pixels in PIXELS if pixels.values is None}
+    assert words["values"] == {pixels.value_column: pixels.value_name for pixels in PIXELS if pixels.values is not None}
+    assert len(words["evidence"]) == len(Evidence)
 
 
 @pytest.mark.parametrize("pixels", PIXELS, ids=lambda pixels: pixels.column)

@@ -106,7 +106,7 @@ def test_a_choice_stays_while_the_next_map_is_computed(
     assert form.text.object == "Regular or chaotic: this is not computed yet."
     assert not saved
     form.show(shown)
-    assert set(FIGURES) - set(form.what.options) == {"Origin and exit"}
+    assert set(FIGURES) - set(form.what.options) == {"Origin and exit", "Lagrangian descriptor"}
 
 
 @pytest.mark.parametrize(("name", "number"), [("width", 1.0), ("dpi", 5000.0), ("font_size", 0.0)])
