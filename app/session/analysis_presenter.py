@@ -65,8 +65,8 @@ class AnalysisPresenter:
         self._spec: MapSpec | None = None
         self._swept: SweepSpec | None = None
         self._analyses = NO_ANALYSES
-        # Results of the layers that are on, with their maps, before a part of them is selected.
-        self._found: dict[str, tuple[EscapeMap, Any]] = {}
+        # Results of the layers that are on, with their maps and jobs, before a part of them is selected.
+        self._found: dict[str, tuple[EscapeMap, Any, Job[Any]]] = {}
         self._notes: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(locked(self._measure), context.copy, locked(lambda: state.param.update(box=None)))
@@ -176,16 +176,20 @@ class AnalysisPresenter:
         self.notes.object = with_terms(body)
 
     def _show_result(self, layer: Layer, frame: EscapeMap, result: Any) -> None:
-        self._found[layer.name] = frame, result
+        self._found[layer.name] = frame, result, layer.job(frame.spec, self._state.settings)
         self._show_selected(layer)
 
     def _select(self) -> None:
-        for name in self._found:
-            self._show_selected(LAYERS[name])
+        """Select parts of the results by the settings, and remove those that are no results of these."""
+        for name, (frame, _, job) in list(self._found.items()):
+            if LAYERS[name].job(frame.spec, self._state.settings) == job:
+                self._show_selected(LAYERS[name])
+            else:
+                self._remove(name)
 
     def _show_selected(self, layer: Layer) -> None:
         """Show the part of the result of a layer that the settings select."""
-        frame, result = self._found[layer.name]
+        frame, result, _ = self._found[layer.name]
         selected = layer.select(result, self._state.settings)
         self._maps.show_layer(layer.name, frame, selected)
         self.note(**{layer.name: selected.describe()})

@@ -147,6 +147,20 @@ def test_origins_and_regularity_have_pictures_while_they_are_switched_on(begin: 
     assert session.analyses == MapAnalyses()
 
 
+def test_a_result_of_other_settings_is_not_shown(begin: Callable[..., Session], frame: EscapeMap) -> None:
+    session = begin(layers=frozenset({"descriptor"}))
+    session.maps.show(frame, {**session.maps.source.data})
+    session.show(frame)
+    session.wait_for(lambda: "descriptor" in session.analyses)
+    assert session.maps.source.data["descriptor_value"][0].shape == frame.fate.shape
+    with session.changed:
+        session.state.settings = {**session.state.settings, "descriptor_power": 1.0}
+        assert "descriptor" not in session.analyses
+        assert session.maps.source.data["descriptor_value"][0].size == 1
+    session.wait_for(lambda: "descriptor" in session.analyses)
+    assert session.analyses["descriptor"].power == 1.0
+
+
 def test_basins_are_measured_and_laws_are_fitted_in_the_box(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(analysis=Analysis.MEASURES)
     session.show(frame)
