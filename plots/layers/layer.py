@@ -117,7 +117,9 @@ class Pixels:
     entries
         Legend of a result that is drawn alone.
     sentences
-        Of the codes at the mouse, empty for none; ``{k}`` stands for what orbits do at the k-th of `Palette.ends`.
+        Of the codes at the mouse, empty for none.
+    own_sentences
+        Those of a result, if they depend on it.
     values
         (rows, columns) float32 numbers of a result, which its codes stand for; None without any.
     value_name
@@ -131,6 +133,7 @@ class Pixels:
     colours: Callable[[Palette], Sequence[str]]
     entries: Callable[[Any, Palette], Sequence[Entry]]
     sentences: Sequence[str] = ()
+    own_sentences: Callable[[Any], Sequence[str]] | None = None
     values: Callable[[Any], np.ndarray] | None = None
     value_name: str = ""
     first_codes: Callable[[Mapping[str, np.ndarray]], np.ndarray] | None = None
@@ -141,14 +144,22 @@ class Pixels:
         return f"{self.column}_value"
 
     @property
+    def word_column(self) -> str:
+        """Name of the column of sentences that depend on the result."""
+        return f"{self.column}_words"
+
+    @property
     def column_names(self) -> tuple[str, ...]:
         """Names of its columns."""
-        return (self.column,) if self.values is None else (self.column, self.value_column)
+        numbers = () if self.values is None else (self.value_column,)
+        words = () if self.own_sentences is None else (self.word_column,)
+        return (self.column, *numbers, *words)
 
     def columns(self, result: Any, frame: EscapeMap | None) -> dict[str, list[Any]]:
         """The columns of a result on its map, or without one."""
-        numbers = {} if self.values is None else {self.value_column: [self.values(result)]}
-        return {self.column: [self.codes(result, frame)], **numbers}
+        numbers: dict[str, list[Any]] = {} if self.values is None else {self.value_column: [self.values(result)]}
+        words = {} if self.own_sentences is None else {self.word_column: [list(self.own_sentences(result))]}
+        return {self.column: [self.codes(result, frame)], **numbers, **words}
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,8 @@ from engine.maps.origin_fates import join_origin_fates
 from plots.layers.layer import Layer, Pixels, Settings
 from plots.layers.legend import ColourTable, Legend
 from plots.layers.picture import Picture, ShownMap
-from plots.pictures.image_columns import FIRST_CLASS, end_numbers, pixel_codes
-from plots.pictures.palette import MOST_CHANNELS, PAPER, Entry, Palette, end_places, mixed, short_label
+from plots.pictures.image_columns import FIRST_CLASS, at_places, end_numbers, pixel_codes
+from plots.pictures.palette import PAPER, Entry, Palette, end_places, mixed, short_label
 
 # Ends, and none of them.
 _ENDS = len(PAPER.ends) + 1
@@ -30,7 +30,7 @@ def passage_colour(palette: Palette, origin: int, fate: int) -> str:
     colour = palette.ends[fate - 1] if fate else palette.bounded
     if origin == 0:
         return mixed(colour, palette.bounded, _BOUNDED)
-    tone = _TONES[origin - 1]
+    tone = _TONES[(origin - 1) % len(_TONES)]
     return mixed(colour, "#ffffff" if tone > 0 else "#000000", abs(tone))
 
 
@@ -40,15 +40,10 @@ def _colours(palette: Palette) -> list[str]:
     return [*palette.outcome_colours, *passages]
 
 
-def _sentences() -> list[str]:
-    passages = [_describe_origin(origin) for origin in range(_ENDS) for _ in range(_ENDS)]
-    return [""] * FIRST_CLASS + passages
-
-
-def _describe_origin(origin: int) -> str:
-    if origin == 0:
-        return "never entered: inside since −t_max"
-    return f"entered through channel {origin}" if origin <= MOST_CHANNELS else f"backward in time it {{{origin - 1}}}"
+def _sentences(origins: OriginFateMap) -> list[str]:
+    outcomes = origins.spec.outcomes
+    words = ["never entered: inside since −t_max", *at_places(outcomes, [end.origin for end in outcomes])]
+    return [""] * FIRST_CLASS + [word for word in words for _ in range(_ENDS)]
 
 
 def _job(spec: MapSpec, settings: Settings) -> Job[OriginFateMap]:
@@ -100,7 +95,7 @@ ORIGINS = Layer(
         codes=_codes,
         colours=_colours,
         entries=lambda origins, palette: _entries(palette, origins.spec.outcomes),
-        sentences=_sentences(),
+        own_sentences=_sentences,
     ),
     picture=Picture(
         name="origins",

@@ -122,10 +122,15 @@ def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 def end_words(outcomes: Sequence[Outcome]) -> list[str]:
     """What orbits of each of `Palette.ends` do; empty for those that the potential does not have."""
-    words = [""] * len(PAPER.ends)
-    for place, outcome in zip(end_places(outcomes), outcomes, strict=True):
-        words[place] = outcome.present
-    return words
+    return at_places(outcomes, [outcome.present for outcome in outcomes])
+
+
+def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
+    """Words for each outcome at its place among `Palette.ends`."""
+    placed = [""] * len(PAPER.ends)
+    for place, word in zip(end_places(outcomes), words, strict=True):
+        placed[place] = word
+    return placed
 
 
 def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
@@ -154,7 +159,7 @@ def end_numbers(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 def pixel_codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
     """Pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
-    codes = (FIRST_CLASS + classes).astype(np.uint8)
+    codes = (FIRST_CLASS + classes).astype(np.min_scalar_type(FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):
             codes[fate == outcome] = code

@@ -170,7 +170,7 @@ def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:
 def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
     if result.potential is None:
         raise TypeError("this orbit has no potential, so its exits are unknown")
-    curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
+    curves = compute_orbit_curves(result.potential, result)
     if show == "path":
         axes.set_box_aspect(1.0)
         draw_path(_panel(axes, curves.window), result.potential, [curves], palette)

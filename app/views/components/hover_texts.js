@@ -24,7 +24,7 @@ export function fateName(code, names, {ends}) {
  * @param {{maps: Columns, compared: Columns}} columns  of the pictures, and of the other view
  * @param {{bounded: number, first: number, firstEvidence: number}} codes  the first of each kind
  * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words  by code;
- *   those of the layers by their columns, and what the numbers in other columns of layers are
+ *   those of the layers by their columns, empty if the map has its own, and what the numbers in other columns of layers are
  */
 export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const fates = maps.fate[0]
@@ -38,7 +38,10 @@ export function pixelDetails(pixel, {maps, compared}, codes, words) {
     fate > codes.bounded
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
       : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
-    ...Object.entries(words.layers).map(([column, sentences]) => withEnds(sentences[known(maps[column][0])], maps)),
+    ...Object.entries(words.layers).map(([column, sentences]) => {
+      const ofMap = sentences.length ? sentences : maps[`${column}_words`][0]
+      return ofMap[known(maps[column][0])]
+    }),
     ...Object.entries(words.values).map(
       ([column, name]) => Number.isFinite(known(maps[column][0])) && `${name} ${known(maps[column][0]).toPrecision(5)}`,
     ),
@@ -47,11 +50,6 @@ export function pixelDetails(pixel, {maps, compared}, codes, words) {
       `other view: ${fateName(known(compared.fate[0]), words.fates, compared)}`,
   ]
   return lines.filter(line => line).join("\n")
-}
-
-/** A sentence in which `{k}` stands for the words of the k-th end. @type {(sentence: string | undefined, columns: Columns) => string} */
-function withEnds(sentence = "", {ends}) {
-  return sentence.replace(/\{(\d+)\}/, (_, place) => ends[0][place])
 }
 
 /** Whether two images have the same window. @type {(one: Columns, other: Columns) => boolean} */

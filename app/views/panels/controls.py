@@ -223,7 +223,7 @@ class Controls:
 def _outcomes(potential: Potential) -> str:
     """What orbits end at, and from which energy on."""
     frame = f"rotates at Ω = {potential.rotation:.6g}; " if potential.rotation else ""
-    if not potential.centres and potential.escape_radius is None:
+    if not potential.ends:
         return f"{frame}{potential.channels} exit channels above h = {potential.escape_energy:.6g}"
     labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
     opened = f"; channels open above h = {potential.escape_energy:.6g}" if potential.channels else ""

@@ -42,7 +42,7 @@ def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
 
 def test_a_collision_has_a_colour_and_words_of_its_own() -> None:
     columns, fate = map_columns(frame := disc_map()), frame.fate
-    assert set(np.array(PAPER.fate_colours)[columns["fate"][0]][fate == 3]) == {PAPER.collisions[0]}
+    assert set(np.array(PAPER.fate_colours)[columns["fate"][0]][fate == 3]) == {PAPER.of_kinds["collision"][0]}
     (code,) = set(columns["fate"][0][fate == 3].tolist())
     assert columns["ends"][0][code - len(OUTCOMES)] == "collides with a disc"
 

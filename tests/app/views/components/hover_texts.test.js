@@ -9,7 +9,7 @@ const WORDS = {
   evidence: ["integrated", "enclosed"],
   layers: {
     character: ["", "", "", "", "", "regular", "chaotic"],
-    passage: ["", "", "", "", "", "never entered", "entered through channel 2", "backward in time it {8}"],
+    passage: [],
     trust: ["not tested", "doubtful"],
   },
   values: {length_value: "length"},
@@ -25,6 +25,7 @@ const maps = {
   crossing_class: [Uint8Array.of(11, 6)],
   character: none,
   passage: none,
+  passage_words: [["", "", "", "", "", "never entered", "entered through channel 2"]],
   trust: none,
   length_value: none,
   difference: none,
@@ -59,14 +60,12 @@ test("a pixel that is compared has its end in the other view", () => {
   assert.deepEqual(details(0, layers, {...other, x: [-2]}), ["enclosed"])
 })
 
-test("an end has the words of its map, also in the other view and backward in time", () => {
+test("an end has the words of its map, also in the other view", () => {
   const ends = [["", "escapes through channel 2", "", "", "", "", "", "", "collides with a disc"]]
   const names = WORDS.fates.slice(0, 5)
   assert.equal(fateName(6, names, {ends}), "escapes through channel 2")
   assert.equal(fateName(13, names, {ends}), "collides with a disc")
   assert.equal(fateName(7, names, {ends}), "undecided")
-  const columns = {maps: {...maps, ends, passage: [Uint8Array.of(0, 7)]}, compared: other}
-  assert.ok(pixelDetails(1, columns, CODES, WORDS).includes("backward in time it collides with a disc"))
 })
 
 test("an outcome that is no orbit has no details", () => {

@@ -72,7 +72,7 @@ def test_layers_have_legends_of_their_own() -> None:
 
 
 def test_a_collision_has_its_label_and_colour() -> None:
-    assert ("collision with a disc", PAPER.collisions[0]) in entries(legend("basins", DISC))
+    assert ("collision with a disc", PAPER.of_kinds["collision"][0]) in entries(legend("basins", DISC))
     assert "<th scope=col>collision with a disc</th>" in legend("origins", DISC)
 
 
