@@ -17,12 +17,15 @@ from plots.layers.picture import Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, at_places, end_numbers, pixel_codes
 from plots.pictures.palette import PAPER, Entry, Palette, end_places, mixed, short_label
 
-# Ends, and none of them.
-_ENDS = len(PAPER.ends) + 1
 # For origins 1 to 13: share of white (positive) or black (negative) mixed into the colour of the end.
 _TONES = (0.6, 0.0, -0.4, -0.65, 0.35, -0.2, 0.78, -0.8, 0.48, -0.52, 0.2, -0.3, 0.7)
 # For orbits that never entered: share of the colour of bounded orbits.
 _BOUNDED = 0.65
+
+
+def _count_ends() -> int:
+    """The number of ends, and none of them."""
+    return len(PAPER.ends) + 1
 
 
 def passage_colour(palette: Palette, origin: int, fate: int) -> str:
@@ -36,14 +39,14 @@ def passage_colour(palette: Palette, origin: int, fate: int) -> str:
 
 def _colours(palette: Palette) -> list[str]:
     """By origin, none first, then by fate."""
-    passages = (passage_colour(palette, origin, fate) for origin in range(_ENDS) for fate in range(_ENDS))
+    passages = (passage_colour(palette, origin, fate) for origin in range(_count_ends()) for fate in range(_count_ends()))
     return [*palette.outcome_colours, *passages]
 
 
 def _sentences(origins: OriginFateMap) -> list[str]:
     outcomes = origins.spec.outcomes
     words = ["never entered: inside since −t_max", *at_places(outcomes, [end.origin for end in outcomes])]
-    return [""] * FIRST_CLASS + [word for word in words for _ in range(_ENDS)]
+    return [""] * FIRST_CLASS + [word for word in words for _ in range(_count_ends())]
 
 
 def _job(spec: MapSpec, settings: Settings) -> Job[OriginFateMap]:
@@ -58,7 +61,7 @@ def _codes(origins: OriginFateMap, frame: EscapeMap | None) -> np.ndarray:
     origin, fate = (end_numbers(codes, origins.spec.outcomes) for codes in (origins.origin, origins.fate))
     # If the origin or the fate is neither an end nor bounded, the pixel shows it.
     outcome = np.minimum(origins.origin, origins.fate)
-    return pixel_codes(outcome, origin * _ENDS + fate, bounded_too=True)
+    return pixel_codes(outcome, origin * _count_ends() + fate, bounded_too=True)
 
 
 def _legend(shown: ShownMap) -> Legend:
