@@ -13,6 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from cli.layer_options import LayerOptions, read_layers
 from cli.option_marks import Of
 from engine import POTENTIALS, Plane, Potential, Slice, System, review_potential
 from engine.foundations.validation import checked_count
@@ -188,6 +189,7 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Slice | None: find_plane,
     Energy: choose_energy,
     Palette: find_palette,
+    LayerOptions: read_layers,
 }
 """Functions that make a value of a type of words; a parameter of theirs that has one of these types is made first."""
 

@@ -8,7 +8,7 @@ These are the public names of the library. All results show themselves in notebo
 - orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `judge_orbit`, `compute_separation`,
   `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`,
-  `compute_origin_fates`, `find_stable_manifolds`
+  `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
 - files: `Result.save`, `open_result`
@@ -23,11 +23,12 @@ from engine.foundations.former_names import FORMER_NAMES as FORMER_NAMES
 from engine.foundations.former_names import find_former_name as find_former_name
 from engine.foundations.result import Result
 from engine.maps.compute import compute_map
+from engine.maps.descriptors import DescriptorMap, TimeDirection, compute_lagrangian_descriptor
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
 from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.maps.trust import TrustMap, compute_trust
+from engine.maps.trust import Trust, TrustMap, compute_trust
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws, LawFit
@@ -37,7 +38,7 @@ from engine.measures.wada import WadaTest, compute_wada_test
 from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.propagation.classification import Outcomes, classify_orbits
 from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, Regularity, Trust
+from engine.propagation.fates import Fate, Regularity
 from engine.slices.axes import Coordinate, Direction, ParameterAxis
 from engine.slices.planes import Plane, start_states
 from engine.slices.sampling import sample_starts
@@ -72,6 +73,7 @@ __all__ = [
     "Centre",
     "Coordinate",
     "DecayLaws",
+    "DescriptorMap",
     "Direction",
     "DivergentStart",
     "EscapeFlux",
@@ -103,6 +105,7 @@ __all__ = [
     "Sweep",
     "SweepSpec",
     "System",
+    "TimeDirection",
     "Trust",
     "TrustMap",
     "UncertaintyExponent",
@@ -111,6 +114,7 @@ __all__ = [
     "classify_orbits",
     "compute_basin_entropy",
     "compute_flux",
+    "compute_lagrangian_descriptor",
     "compute_map",
     "compute_origin_fates",
     "compute_regularity",

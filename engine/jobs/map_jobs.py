@@ -10,11 +10,8 @@ from engine.foundations.execution import Execution
 from engine.jobs.cache import ResultCache
 from engine.jobs.job import Job, Queue
 from engine.maps.compute import LARGEST_RUN, compute_map
-from engine.maps.origin_fates import OriginFateMap, join_origin_fates
-from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.maps.trust import TrustMap, compute_trust
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
@@ -67,21 +64,6 @@ def members_job(axis: ParameterAxis | None) -> Job[None] | None:
     if axis is None or axis.system.case != TYPED:
         return None
     return Job(find_members, (axis,), queue=Queue.LIMITED)
-
-
-def regularity_job(spec: MapSpec) -> Job[RegularityMap]:
-    """The job of the regularity of a map's bounded orbits."""
-    return Job(compute_regularity, (map_job(spec),))
-
-
-def trust_job(spec: MapSpec) -> Job[TrustMap]:
-    """The job of the trust in a map's pixels."""
-    return Job(compute_trust, (map_job(spec),))
-
-
-def origin_fate_job(spec: MapSpec) -> Job[OriginFateMap]:
-    """The job of the exits of a map's orbits in the past and the future; `spec` is the map forward in time."""
-    return Job(join_origin_fates, tuple(map_job(replace(spec, backward=backward)) for backward in (False, True)))
 
 
 def basin_measures_job(spec: MapSpec, box: Window | None = None) -> Job[BasinMeasures]:

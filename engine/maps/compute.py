@@ -14,11 +14,11 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.validation import checks_types
 from engine.maps.parameter_map import LineStack
 from engine.maps.result import EscapeMap
+from engine.maps.rounded_share import estimate_rounded_share
 from engine.maps.row_blocks import BlockStack
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import run_stages
-from engine.maps.trust import compute_trust, estimate_rounded_share
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""
@@ -36,7 +36,6 @@ def compute_map(
     executor: Executor | None = None,
     *,
     resume: EscapeMap | None = None,
-    with_trust: bool = False,
     on_progress: Callable[[float], None] | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> EscapeMap:
@@ -55,9 +54,6 @@ def compute_map(
     resume
         An earlier map, complete or cancelled, whose spec differs at most by a smaller t_max: its orbits are continued. Maps
         computed in blocks cannot be resumed.
-    with_trust
-        Whether to compute the reliability of each pixel as well (`compute_trust`) once the map is complete; when cancelled,
-        pixels not tested yet are `Trust.NOT_TESTED`.
     execution
         How the computation runs. When it is cancelled, the map is returned as it is, with ``complete`` False.
 
@@ -81,15 +77,12 @@ def compute_map(
     execution = replace(execution, **{name: value for name, value in given.items() if value is not None})
     if resume is not None:
         _check_resumable(spec, resume)
-    part = execution.part(0, 2) if with_trust else execution
     work = _begin(spec, resume, coarse_first=on_frame is not None)
-    run_stages(work, part, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
-    result = _in_units_of(spec, _with_rounded_share(work.result(), part))
+    run_stages(work, execution, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
+    result = _in_units_of(spec, _with_rounded_share(work.result(), execution))
     if on_frame is not None and result.complete:
         on_frame(replace(result, batch=None))
-    if not (with_trust and result.complete):
-        return result
-    return replace(result, trust=compute_trust(result, execution=execution.part(1, 2)).trust)
+    return result
 
 
 def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:

@@ -55,7 +55,6 @@ def read_map(dataset: xr.Dataset) -> EscapeMap:
     return EscapeMap(
         spec=spec, x=read_only(np.array(dataset[abscissa].values)), ordinate=read_only(np.array(dataset[ordinate].values)),
         stride=1, horizon=spec.t_max, progress=float(started.mean()), complete=bool(started.all()), started=read_only(started),
-        trust=read_only(np.array(dataset["trust"].values)) if "trust" in dataset else None,
         rounded_share=float(dataset.attrs["rounded_share"]) if "rounded_share" in dataset.attrs else None, **arrays,
     )  # fmt: skip
 

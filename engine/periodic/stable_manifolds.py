@@ -119,6 +119,14 @@ class StableManifolds(Result):
             for channel, image, x, px in zip(*parts, strict=True)
         )
 
+    def describe(self) -> str:
+        """The numbers of arcs and points in one sentence."""
+        images = sorted({arc.image for arc in self.arcs})
+        shown = f"images {', '.join(map(str, images))}" if len(images) > 1 else f"image {images[0]}" if images else "no image"
+        points = sum(arc.x.size for arc in self.arcs)
+        truncated = ", some of them truncated spirals" if self.truncated else ""
+        return f"Stable manifolds of the Lyapunov orbits, {shown}: {len(self.arcs)} arcs of {points} points{truncated}."
+
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""

@@ -50,25 +50,6 @@ class Regularity(IntEnum):
         return self.name.lower().replace("_", " ")
 
 
-class Trust(IntEnum):
-    """Whether the outcome of a pixel is robust against small changes.
-
-    ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
-    outcome, and the orbit escapes or is bounded on evidence. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its
-    number of crossings before the escape or its escape time changed, or it is bounded only by chance.
-    ``NOT_TESTED``: not computed yet.
-    """
-
-    NOT_APPLICABLE = 0
-    LIKE_NEIGHBOURS = 1
-    CONFIRMED = 2
-    DOUBTFUL = 3
-    NOT_TESTED = 4
-
-    def __str__(self) -> str:
-        return self.name.lower().replace("_", " ")
-
-
 _SENTENCES = {
     Fate.BOUNDED: "Bounded: has not escaped by t_max.",
     Fate.FORBIDDEN: "Forbidden: no orbit of this energy can start here because its kinetic energy would be negative.",

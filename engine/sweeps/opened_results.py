@@ -14,11 +14,9 @@ from engine.foundations.former_names import rename_stored
 from engine.foundations.result import RecordedResult, Result
 from engine.foundations.stored_fields import plain_attributes, read_field
 from engine.foundations.validation import checks_types
-from engine.maps.origin_fates import OriginFateMap
-from engine.maps.regularity import RegularityMap
+from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import read_map, read_spec
-from engine.maps.trust import TrustMap
 from engine.measures.basin_entropy import BasinEntropy
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics
@@ -45,7 +43,7 @@ if TYPE_CHECKING:
 _KINDS: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
-        EscapeMap, RegularityMap, TrustMap, OriginFateMap, StableManifolds, Orbit, SampledOrbits, Outcomes, OrbitVerdict,
+        EscapeMap, StableManifolds, Orbit, SampledOrbits, Outcomes, OrbitVerdict,
         LyapunovOrbit, EscapeFlux, Separation, BirkhoffDigits, DivergentStart, BasinEntropy, WadaTest, UncertaintyExponent,
         EscapeStatistics, DecayLaws, Sweep, Potential, PotentialReview,
     )
@@ -130,10 +128,11 @@ def open_result(path: str | os.PathLike[str]) -> Any:
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     if dataset.attrs.get("result") == _FORMER_CURVES:
         return dataset
-    kind = _KINDS.get(str(dataset.attrs.get("result")))
+    kinds = _KINDS | PixelAnalysis.kinds
+    kind = kinds.get(str(dataset.attrs.get("result")))
     if kind is None:
         held = dataset.attrs.get("result", "no result")
-        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(_KINDS)}. xarray opens it")
+        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(kinds)}. xarray opens it")
     dataset = rename_stored(dataset)
     return _READERS[kind](dataset) if kind in _READERS else _read_fields(kind, dataset)
 
@@ -141,7 +140,10 @@ def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
 def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
     """A result from its fields; those that the file does not hold have their default values, or are None."""
     hints, values = get_type_hints(kind), {}
-    dataset = _FORMS[kind](dataset) if kind in _FORMS else dataset
+    if kind is SampledOrbits:
+        dataset = _with_times_of_each(dataset)
+    elif issubclass(kind, PixelAnalysis):
+        dataset = _with_names_of_axes(dataset)
     for each in fields(kind):
         name = kind.held_as.get(each.name, each.name)
         if each.name in _HELD_OTHERWISE:
@@ -171,16 +173,11 @@ def _with_times_of_each(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _with_names_of_axes(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset of a map with the axes x and ordinate."""
-    ordinate, abscissa = dataset["fate"].dims
+    """The dataset of an analysis of a map with the axes x and ordinate."""
+    ordinate, abscissa = next(variable.dims for variable in dataset.data_vars.values() if variable.ndim == 2)
     return dataset.rename({abscissa: "x", ordinate: "ordinate"})
 
 
-# Datasets that do not hold each array of their result under its name.
-_FORMS: Mapping[Any, Callable[[xr.Dataset], xr.Dataset]] = {
-    SampledOrbits: _with_times_of_each,
-    OriginFateMap: _with_names_of_axes,
-}
 # Fields that are several attributes or variables.
 _HELD_OTHERWISE: Mapping[str, Callable[[xr.Dataset], Any]] = {
     "spec": read_spec,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, Sweep, System, judge_orbit
 from engine.systems.system import TYPED
-from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 
 if TYPE_CHECKING:
     import numpy as np

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import expect
 
-from app.views.components.analysis_choice import LAYER_LABELS
+from plots.layers.table import LAYERS
 from tests.browser.explorer_page import ExplorerPage
 
 LAYERS_ON = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112&trust=yes&judge=yes&origins=yes"
@@ -37,12 +37,12 @@ def opened(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
 
 def on_in_the_address(explorer: ExplorerPage) -> set[str]:
     query = urllib.parse.parse_qs(urllib.parse.urlsplit(explorer.page.url).query)
-    return {name for name in LAYER_LABELS if query.get(name) == ["yes"]}
+    return {name for name in LAYERS if query.get(name) == ["yes"]}
 
 
 def expect_switches(explorer: ExplorerPage, on: set[str]) -> None:
-    for name, label in LAYER_LABELS.items():
-        expect(explorer.page.get_by_label(label, exact=True)).to_be_checked(checked=name in on)
+    for name, layer in LAYERS.items():
+        expect(explorer.page.get_by_label(layer.title, exact=True)).to_be_checked(checked=name in on)
 
 
 def test_a_widget_keeps_the_last_state_that_the_server_sets(explorer: ExplorerPage) -> None:
@@ -60,7 +60,7 @@ def test_the_last_choice_is_shown_when_an_older_one_arrives_after_it(explorer: E
 
 
 def test_a_switch_can_be_changed_right_after_the_server_has_set_it(explorer: ExplorerPage) -> None:
-    explorer.page.get_by_label(LAYER_LABELS["trust"], exact=True).click()
+    explorer.page.get_by_label(LAYERS["trust"].title, exact=True).click()
     explorer.page.wait_for_url(lambda address: "trust=yes" not in address)
     expect_switches(explorer, {"judge", "origins"})
     assert on_in_the_address(explorer) == {"judge", "origins"}

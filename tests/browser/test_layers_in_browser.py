@@ -25,8 +25,8 @@ def expect_tooltip(explorer: ExplorerPage, *texts: str) -> None:
 @pytest.mark.slow
 def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{VIEW}&judge=yes&trust=yes&origins=yes")
-    explorer.wait_for_data("doubts", "data.trust.length == 1")
-    explorer.page.wait_for_function("Bokeh.documents[0].get_model_by_name('maps').data.passage[0].length > 1")
+    for column in ("trust", "passage"):
+        explorer.page.wait_for_function(f"Bokeh.documents[0].get_model_by_name('maps').data.{column}[0].length > 1")
     frame = compute_map(SPEC)
     regularity, origins = compute_regularity(frame), compute_origin_fates(SPEC)
     explorer.page.wait_for_function(

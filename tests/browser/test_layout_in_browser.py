@@ -13,7 +13,7 @@ from app.state.help_texts import HELP_TEXTS
 from app.views.maps.picture_grid import SHORT_TITLES
 from app.views.maps.well import TITLE
 from engine import CASES
-from plots.pictures.map_images import TITLES
+from plots.layers.table import TITLES
 from plots.pictures.palette import PALETTES
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage

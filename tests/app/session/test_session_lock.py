@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 from app.session.explorer import Explorer
-from app.state.view import LAYERS, Analysis
-from app.views.components.analysis_choice import LAYER_LABELS
+from app.state.view import Analysis
 from app.views.maps.map_toolbar import Drag
 from engine import Plane
+from plots.layers.table import LAYERS
 from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
 from tests.app.session.opened_page import opened_page, run_callbacks
@@ -32,8 +32,8 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     lambda explorer: explorer.state.param.update(palette="safe"),
     *(
         lambda explorer, name=name, on=on: explorer.controls.layers.switches[name].param.update(value=on)
-        for name in LAYERS
-        for on in ([LAYER_LABELS[name]], [])
+        for name, layer in LAYERS.items()
+        for on in ([layer.title], [])
     ),
     # As the tabs do.
     *(lambda explorer, analysis=analysis: explorer.state.param.update(analysis=analysis) for analysis in Analysis),

@@ -33,7 +33,7 @@ from engine import (
     sample_starts,
     start_states,
 )
-from plots.pictures.map_images import TITLES
+from plots.layers.table import TITLES
 from plots.pictures.palette import MOST_ORBITS
 
 THUMBNAILS = Path(app.__file__).parent / "static" / "gallery"

@@ -27,7 +27,7 @@ from engine import (
 from engine.foundations.execution import Execution
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.jobs.map_jobs import map_job, regularity_job
+from engine.jobs.map_jobs import map_job
 from engine.jobs.orbit_semaphore import SMALL_JOB
 from tests.app.clock import Clock
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
@@ -52,7 +52,7 @@ def compute_cached_map(jobs: Jobs) -> EscapeMap:
 def test_regularity_uses_the_cached_map() -> None:
     jobs, second = Jobs(), Inbox()
     first = compute_cached_map(jobs)
-    jobs.request(regularity_job(QUICK), second.result, second.error)
+    jobs.request(Job(compute_regularity, (map_job(QUICK),)), second.result, second.error)
     assert second.done.wait(30)
     expected = compute_regularity(first)
     np.testing.assert_array_equal(second.results[-1].character, expected.character)
@@ -154,7 +154,7 @@ def test_stop_ends_all_jobs_without_callbacks() -> None:
 
 def test_making_a_job_computes_nothing() -> None:
     potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.3579)))
-    assert regularity_job(MapSpec(potential, Plane.X_PX, 0.1)).orbits_held == 224 * 224
+    assert Job(compute_regularity, (map_job(MapSpec(potential, Plane.X_PX, 0.1)),)).orbits_held == 224 * 224
     assert set(vars(potential)) == {field.name for field in fields(Potential)}
 
 

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map, compute_trust
+from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map
 from engine.maps.compute import LARGEST_RUN
 from engine.maps.result import PIXEL_ARRAYS
 from engine.maps.row_blocks import BlockStack
@@ -71,12 +71,3 @@ def test_what_is_given_beside_an_execution_replaces_its_fields() -> None:
     assert not result.complete
     assert compute_map(SPECS[0], execution=Execution(on_progress=shares.append)).complete
     assert shares[-1] == 1.0
-
-
-def test_map_with_trust() -> None:
-    spec = MapSpec(CASES["II"], Plane.X_PX, 0.2, (40, 40), t_max=500.0)
-    whole = compute_map(spec, with_trust=True)
-    np.testing.assert_array_equal(whole.trust, compute_trust(compute_map(spec)).trust)
-    dataset = whole.to_xarray()
-    np.testing.assert_array_equal(dataset["trust"], whole.trust)
-    assert "3: doubtful" in dataset["trust"].attrs["codes"]

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageColor
 
 from engine import CASES, Fate, Plane, classify_orbits
+from plots.layers.regularity import CODES
 from plots.pictures.palette import PAPER
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.all_figures import FIGURES
@@ -116,7 +117,7 @@ def test_regular_orbits_are_cyan_chaotic_magenta_and_escaping_white(cache: MapCa
     axes = FIGURES["III-regular-chaotic"].draw(cache).axes[0]
     frame = cache.map("III", Plane.X_PX, 0.26)
     character, pixels = cache.regularity(frame).character, pixels_of(axes)
-    for code, colour in ((1, PAPER.characters[1]), (2, PAPER.characters[2])):
+    for code, colour in ((code.code, code.entry(PAPER).colour) for code in CODES[1:3]):
         assert np.all(pixels[character == code] == rgba([colour])[0])
     assert (frame.fate > Fate.BOUNDED).any()
     assert not pixels[frame.fate > Fate.BOUNDED][:, 3].any()

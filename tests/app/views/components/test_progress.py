@@ -9,8 +9,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from app.views.components.progress import CONTINUE, STOP, TEST, ProgressView
+from app.views.components.progress import CONTINUE, STOP, ProgressView
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
+from plots.layers.table import LAYERS
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +21,7 @@ def escape_map() -> EscapeMap:
 
 def make_view() -> tuple[ProgressView, list[str]]:
     calls: list[str] = []
-    return ProgressView(*(partial(calls.append, name) for name in ("cancel", "resume", "test"))), calls
+    return ProgressView(*(partial(calls.append, name) for name in ("cancel", "resume")), calls.append), calls
 
 
 def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
@@ -69,9 +70,9 @@ def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_te
     view, calls = make_view()
     view.show(replace(escape_map, rounded_share=0.273))
     assert "about 27 % of the pixels depend on rounding errors" in re.sub(r"<[^>]*>", "", view.text.object)
-    assert (view.button.label, view.button.styles["visibility"]) == (TEST, "visible")
+    assert (view.button.label, view.button.styles["visibility"]) == (LAYERS["trust"].title, "visible")
     view.button.clicks += 1
-    assert calls == ["test"]
+    assert calls == ["trust"]
     for share in (None, 0.004, float("nan")):
         view.show(replace(escape_map, rounded_share=share))
         assert "rounding" not in view.text.object

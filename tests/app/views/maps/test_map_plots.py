@@ -12,8 +12,8 @@ from bokeh.models import BasicTickFormatter, BoxSelectTool, BoxZoomTool, CustomJ
 from app.views.maps.map_plots import MAPS, PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from app.views.maps.map_toolbar import Drag
 from engine import CASES, MapSpec, Plane, compute_map
+from plots.layers.table import LAYER_OF
 from plots.pictures.image_columns import map_columns
-from plots.pictures.map_images import ON_DEMAND
 from plots.pictures.time_scale import TimeScale, fitted_scale
 from tests.app.map_actions import make_maps
 
@@ -30,7 +30,7 @@ def tools(maps: MapsView, kind: type) -> list[object]:
 
 
 def test_all_figures_share_one_toolbar(maps: MapsView) -> None:
-    maps.show_pictures([*PICTURES_ALONE, *ON_DEMAND])
+    maps.show_pictures([*PICTURES_ALONE, *LAYER_OF])
     maps.show_pictures(PICTURES_COMPARED)
     assert set(maps.figures) == set(MAPS)
     assert len({id(plot.toolbar) for plot in maps.figures.values()}) == 1

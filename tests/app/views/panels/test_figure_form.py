@@ -25,7 +25,7 @@ from engine import (
     compute_sweep,
     integrate_orbit,
 )
-from plots.pictures.map_analyses import MapAnalyses
+from plots.layers.map_analyses import MapAnalyses
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from tests.app.browser_messages import send
@@ -42,7 +42,7 @@ def shown(escape_map: EscapeMap) -> ShownResults:
     """Everything that can be drawn."""
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
-    analyses = MapAnalyses(regularity=compute_regularity(escape_map))
+    analyses = MapAnalyses({"judge": compute_regularity(escape_map)})
     return ShownResults(escape_map, analyses, [ChosenOrbit((0.1, 0.05), orbit)], curves)
 
 
@@ -110,7 +110,7 @@ def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, shown: 
     assert form.text.object == "Regular or chaotic: this is not computed yet."
     assert not saved.names
     form.show(shown)
-    assert set(FIGURES) - set(form.what.options) == {"Origin and exit"}
+    assert set(FIGURES) - set(form.what.options) == {"Origin and exit", "Lagrangian descriptor"}
 
 
 @pytest.mark.parametrize(("name", "number"), [("width", 1.0), ("dpi", 5000.0), ("font_size", 0.0)])
