@@ -10,14 +10,14 @@ from typing import Any, Protocol
 from app.job_clients.error_messages import sentence
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.latest_request import Locked
+from app.job_clients.map_jobs import map_job, members_job
 from app.state.view_state import ViewState
 from engine import EscapeMap, MapSpec
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
-from engine.jobs.map_jobs import map_job, members_job
 from engine.jobs.subscription import Subscription
+from engine.maps.warmup import is_ready_for_maps, prepare_for_maps
 from engine.systems.system import TYPED
-from engine.warmup import is_ready_for_maps, prepare_for_maps
 from plots.pictures.image_columns import draw_over, map_columns
 
 

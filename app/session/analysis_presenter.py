@@ -12,6 +12,15 @@ import numpy as np
 from app.job_clients.error_messages import WINDOW_UNKNOWN
 from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
+from app.job_clients.map_jobs import (
+    basin_measures_job,
+    decay_laws_job,
+    flux_job,
+    origin_fate_job,
+    regularity_job,
+    sweep_job,
+    trust_job,
+)
 from app.session.context import SessionContext
 from app.state.glossary import with_terms
 from app.state.view import IMAGES, Analysis
@@ -35,19 +44,10 @@ from engine import (
     find_stable_manifolds,
 )
 from engine.jobs.job import Job
-from engine.jobs.map_jobs import (
-    basin_measures_job,
-    decay_laws_job,
-    flux_job,
-    origin_fate_job,
-    regularity_job,
-    sweep_job,
-    trust_job,
-)
+from engine.maps.warmup import is_ready_for_maps
 from engine.slices.section import SECTION
 from engine.slices.slice_text import default_range
 from engine.sweeps.measures import CURVES
-from engine.warmup import is_ready_for_maps
 from plots.pictures.manifold_strokes import select_image
 from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.pictures.map_images import ON_DEMAND

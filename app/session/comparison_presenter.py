@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.job_clients.latest_request import LatestRequest
+from app.job_clients.map_jobs import map_job
 from app.session.context import SessionContext
 from app.state.system_review import review_job
 from app.state.view import View
@@ -15,9 +16,8 @@ from app.views.components.numbers import grouped, percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
 from engine.jobs.job import Job, Queue
-from engine.jobs.map_jobs import map_job
+from engine.maps.warmup import is_ready_for_maps, prepare_for_maps
 from engine.systems.review.potential_review import SystemReview
-from engine.warmup import is_ready_for_maps, prepare_for_maps
 from plots.texts.accepted_potentials import refusal
 
 

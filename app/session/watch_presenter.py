@@ -9,14 +9,14 @@ import panel as pn
 
 from app.browser.ensemble_player import EnsemblePlayer
 from app.job_clients.latest_request import LatestRequest
+from app.job_clients.map_jobs import flux_job
 from app.session.context import SessionContext
 from app.state.help_texts import title_with_help
 from app.state.view import Analysis
 from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
 from engine import EscapeFlux
-from engine.jobs.map_jobs import flux_job
-from engine.warmup import is_ready_for_maps
+from engine.maps.warmup import is_ready_for_maps
 
 
 class WatchPresenter:

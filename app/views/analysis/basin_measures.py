@@ -11,13 +11,13 @@ import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Segment, Step
 from bokeh.plotting import figure
 
+from app.job_clients.map_jobs import BasinMeasures
 from app.state.glossary import with_terms
 from app.views.components.legends import legend
 from app.views.components.plots import chart_hover, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button, number_rows
 from engine import DecayLaws, EscapeFlux, Result, UncertaintyExponent, Window
-from engine.jobs.map_jobs import BasinMeasures
 from engine.measures.decay_laws import LawFit
 from plots.pictures.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 

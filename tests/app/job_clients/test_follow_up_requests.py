@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
+from app.job_clients.map_jobs import regularity_job
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, RegularityMap, compute_map
 from engine.jobs.manager import Jobs
-from engine.jobs.map_jobs import regularity_job
 
 
 class Session:

@@ -13,6 +13,7 @@ from weakref import ref
 import numpy as np
 import pytest
 
+from app.job_clients.map_jobs import map_job, regularity_job
 from engine import (
     CASES,
     EscapeMap,
@@ -29,7 +30,6 @@ from engine.jobs import manager as manager_module
 from engine.jobs import map_priority, scheduler
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.jobs.map_jobs import map_job, regularity_job
 from engine.jobs.orbit_semaphore import SMALL_JOB
 from tests.app.clock import Clock
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle

@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from app.job_clients.map_jobs import BasinMeasures
 from app.views.analysis.basin_measures import BasinMeasuresView
 from engine import (
     CASES,
@@ -17,7 +18,6 @@ from engine import (
     compute_wada_test,
     fit_decay_laws,
 )
-from engine.jobs.map_jobs import BasinMeasures
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ from dataclasses import fields
 
 import pytest
 
+from app.job_clients.map_jobs import BasinMeasures
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.components.widgets import copy_button, number_rows
@@ -20,7 +21,6 @@ from engine import (
     evaluate_indicators,
     integrate_orbit,
 )
-from engine.jobs.map_jobs import BasinMeasures
 from plots.pictures.orbit_curves import compute_orbit_curves
 
 
