@@ -30,11 +30,12 @@ from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.maps.trust import TrustMap, compute_trust
+from engine.maps.uncertain_pairs import compute_uncertainty_exponent
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
+from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.propagation.classification import Outcomes, classify_orbits

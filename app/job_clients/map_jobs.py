@@ -18,8 +18,9 @@ from engine.maps.trust import TrustMap, compute_trust
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
-from engine.measures.escape_statistics import compute_statistics, pixels_inside
+from engine.measures.escape_statistics import compute_statistics
 from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
+from engine.measures.starts import read_starts
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.slices.axes import ParameterAxis
 from engine.slices.parameter_family import find_members
@@ -114,7 +115,8 @@ def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | No
 
 
 def _measure_basins(escape_map: EscapeMap, box: Window | None) -> BasinMeasures:
-    fate = escape_map.fate[pixels_inside(escape_map, box)]
+    starts = read_starts("escape_map", escape_map)
+    fate = (starts if box is None else starts.inside(box)).fate
     entropy = compute_basin_entropy(*exit_labels(fate, bounded=ENTROPY_COUNTS_BOUNDED))
     return BasinMeasures(entropy, compute_wada_test(*exit_labels(fate, bounded=WADA_COUNTS_BOUNDED)))
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import checked_array
-from engine.maps.result import EscapeMap
-from engine.maps.stored_maps import as_map
+from engine.measures.starts import read_starts
 from engine.propagation.fates import Fate
 
 ENTROPY_COUNTS_BOUNDED = True
@@ -56,8 +55,8 @@ def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarra
     ValueError
         For any other shape or type, and for negative labels without `valid`: they are codes of starts without an outcome.
     """
-    if isinstance(labels, EscapeMap) or hasattr(labels, "data_vars"):
-        labels, valid = exit_labels(as_map("labels", labels).fate, bounded=bounded)
+    if hasattr(labels, "fate"):
+        labels, valid = exit_labels(read_starts("labels", labels).fate, bounded=bounded)
     labels = checked_array("labels", labels, keep_type=True)
     if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
         raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be integers, (rows, columns)")

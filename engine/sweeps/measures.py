@@ -17,10 +17,10 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.maps.compute import run_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.maps.uncertain_pairs import WORK, compute_uncertainty_exponent
 from engine.measures.basin_entropy import compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.measures.wada import compute_wada_test
 from engine.propagation.fates import Fate
 from engine.systems.outcomes import Outcome
@@ -73,12 +73,6 @@ class MeasuredMap:
     def statistics(self) -> EscapeStatistics:
         """Counts of the interior starts."""
         return compute_statistics(self.frame)
-
-    @property
-    def pixel_area(self) -> float:
-        """Area of a pixel, in units of the axes."""
-        window, (columns, rows) = self.frame.spec.find_window(), self.frame.spec.resolution
-        return (window.x_high - window.x_low) * (window.ordinate_high - window.ordinate_low) / (columns * rows)
 
 
 Variables = Mapping[str, Any]
@@ -164,9 +158,9 @@ def _measure_islands(measured: MeasuredMap) -> Variables:
     pixels = np.bincount(parts.ravel())[1:]
     islands = pixels[pixels >= _LEAST_ISLAND]
     return {
-        "bounded_area": _number(np.count_nonzero(bounded) * measured.pixel_area, "area of the bounded starts"),
+        "bounded_area": _number(np.count_nonzero(bounded) * measured.frame.pixel_area, "area of the bounded starts"),
         "islands": _number(islands.size, f"connected parts of the bounded starts with at least {_LEAST_ISLAND} pixels"),
-        "largest_island": _number(islands.max(initial=0) * measured.pixel_area, "area of the largest of these parts"),
+        "largest_island": _number(islands.max(initial=0) * measured.frame.pixel_area, "area of the largest of these parts"),
     }
 
 

@@ -21,7 +21,7 @@ from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import read_map, read_spec
 from engine.maps.trust import TrustMap
 from engine.measures.basin_entropy import BasinEntropy
-from engine.measures.uncertainty_exponent import UncertaintyExponent
+from engine.measures.power_law_fit import UncertaintyExponent
 from engine.propagation.classification import Outcomes
 from engine.sweeps.sweep import Sweep
 from engine.systems.outcomes import read_outcomes

@@ -37,7 +37,7 @@ from engine import (
     trace_zero_velocity_curve,
 )
 from engine.foundations.validation import LONGEST_TIME
-from engine.measures.uncertainty_exponent import fit_uncertainty
+from engine.measures.power_law_fit import fit_uncertainty
 from engine.slices.limiting_curves import trace_equipotentials
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
