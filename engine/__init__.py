@@ -11,8 +11,8 @@ These are the public names of the library. All results show themselves in notebo
   `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`,
   `compute_origin_fates`, `find_stable_manifolds`
-- basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
-  `fit_decay_laws`
+- measures: `MEASURES`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`,
+  `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `fit_decay_laws`
 - files: `Result.to_xarray`, `open_result`
 - sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
 """
@@ -32,9 +32,12 @@ from engine.maps.spec import MapSpec
 from engine.maps.trust import TrustMap, compute_trust
 from engine.maps.uncertain_pairs import compute_uncertainty_exponent
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
+from engine.measures.islands import Islands, compute_islands
+from engine.measures.measure import Measure
 from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
@@ -48,6 +51,7 @@ from engine.slices.planes import Plane, start_states
 from engine.slices.sampling import sample_starts
 from engine.slices.slice import Slice
 from engine.slices.window import Window
+from engine.sweeps.measures import MEASURES
 from engine.sweeps.opened_results import open_result
 from engine.sweeps.plan import SweepPlan, plan_sweep
 from engine.sweeps.spec import SweepSpec
@@ -78,10 +82,12 @@ from engine.trajectories.trajectory import Orbit, integrate_orbit
 __all__ = [
     "CASES",
     "CHAOS_THRESHOLD",
+    "MEASURES",
     "POTENTIALS",
     "BasinEntropy",
     "BirkhoffDigits",
     "Centre",
+    "ChaoticShare",
     "Coordinate",
     "DecayLaws",
     "Direction",
@@ -93,8 +99,10 @@ __all__ = [
     "Execution",
     "Fate",
     "IndicatorVerdict",
+    "Islands",
     "LyapunovOrbit",
     "MapSpec",
+    "Measure",
     "Orbit",
     "OrbitVerdict",
     "OriginFateMap",
@@ -125,7 +133,9 @@ __all__ = [
     "classify_orbits",
     "compute_basin_entropy",
     "compute_birkhoff_digits",
+    "compute_chaotic_share",
     "compute_flux",
+    "compute_islands",
     "compute_map",
     "compute_origin_fates",
     "compute_regularity",

@@ -62,6 +62,10 @@ class BasinEntropy(Result):
         """
         return self.s_bb > math.log(2.0) + _ROUNDING
 
+    def numbers(self) -> dict[str, Any]:
+        """The scalar attributes, and the conclusion."""
+        return {**super().numbers(), "beyond_ln2": self.beyond_ln2}
+
     def describe(self) -> str:
         """The result in one or two sentences."""
         size = f"{self.box} × {self.box} starts"

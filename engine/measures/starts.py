@@ -70,14 +70,20 @@ class Starts:
     axes: tuple[np.ndarray, np.ndarray] | None = None
     pixel_area: float = 1.0
 
-    def inside(self, window: Window) -> Starts:
-        """Those whose pixel centres lie in a window, edges included; ValueError if they are no map."""
+    def place(self, window: Window) -> tuple[slice, slice]:
+        """Rows and columns of the pixels whose centres lie in a window, edges included; ValueError if they are no map."""
         if self.axes is None:
             raise ValueError(f"window={window}: must be None for orbits that are no map")
         x, ordinate = self.axes
         rows = slice(*_find_range(ordinate, window.ordinate_low, window.ordinate_high))
-        columns = slice(*_find_range(x, window.x_low, window.x_high))
-        parts = {name: getattr(self, name)[rows, columns] for name in ("fate", "escape_time", "crossings")}
+        return rows, slice(*_find_range(x, window.x_low, window.x_high))
+
+    def inside(self, window: Window) -> Starts:
+        """Those in a window, see `place`."""
+        rows, columns = place = self.place(window)
+        assert self.axes is not None
+        x, ordinate = self.axes
+        parts = {name: getattr(self, name)[place] for name in ("fate", "escape_time", "crossings")}
         return replace(self, axes=(x[columns], ordinate[rows]), **parts)
 
 

@@ -58,7 +58,7 @@ def test_curves_are_drawn_and_a_click_opens_a_map(explorer: ExplorerPage) -> Non
     points = explorer.model_data("curve_points")
     place = int(np.argmax(points["value"]))
     explorer.button("Compute the curves").scroll_into_view_if_needed()
-    explorer.click("entropies", points["value"][place] - 1e-3, points["s_bb"][place])
+    explorer.click("basin_entropy", points["value"][place] - 1e-3, points["s_bb"][place])
     explorer.wait_for_view(f"h={points['value'][place]!r}")
     explorer.pick("Orbit")
 

@@ -17,20 +17,20 @@ from plots.pictures.sweep_panels import CURVE_PANELS
 def chart_hovers() -> list[HoverTool]:
     """The hover tools of all charts."""
     statistics = StatisticsView(lambda: None, lambda text: None)
-    measures = BasinMeasuresView(lambda: None, lambda text: None, lambda: None)
+    measures = BasinMeasuresView(lambda name: None, lambda text: None, lambda: None)
     statistics.build()
     curves = CurvesView(lambda: None, lambda energy: None)
-    plots = [statistics._times.state, statistics._probabilities.state, measures._draw_survival(), measures._draw_uncertainty()]
+    plots = [statistics._times.state, statistics._probabilities.state, measures.survival.draw(), measures.uncertainty.draw()]
     plots += [curves._draw_shares(), *map(curves._draw_panel, CURVE_PANELS)]
     return [tool for plot in plots for tool in plot.tools if isinstance(tool, HoverTool)]
 
 
 def test_every_chart_has_a_hover(chart_hovers: list[HoverTool]) -> None:
     # Two charts of statistics, two of measures, the shares, and all curves of the other panels.
-    assert len(chart_hovers) == 14
+    assert len(chart_hovers) == 16
 
 
-@pytest.mark.parametrize("place", range(14))
+@pytest.mark.parametrize("place", range(16))
 def test_every_value_of_a_text_has_a_format(chart_hovers: list[HoverTool], place: int) -> None:
     hover = chart_hovers[place]
     assert isinstance(hover.tooltips, str)
