@@ -12,7 +12,7 @@ These are the public names of the library. All results show themselves in notebo
 - maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`,
   `compute_origin_fates`, `find_stable_manifolds`
 - measures: `MEASURES`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`,
-  `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `fit_decay_laws`
+  `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`, `fit_decay_laws`
 - files: `Result.to_xarray`, `open_result`
 - sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
 """
@@ -36,6 +36,7 @@ from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
+from engine.measures.exit_matching import ExitMatching, compute_exit_matching
 from engine.measures.islands import Islands, compute_islands
 from engine.measures.measure import Measure
 from engine.measures.power_law_fit import UncertaintyExponent
@@ -70,7 +71,7 @@ from engine.trajectories.chaos_indicators import (
     compute_birkhoff_digits,
     evaluate_indicators,
 )
-from engine.trajectories.entrances import sample_entrances
+from engine.trajectories.entrances import sample_entrances, sample_entrances_by_exit
 from engine.trajectories.flux import EscapeFlux, compute_flux
 from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
 from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
@@ -97,6 +98,7 @@ __all__ = [
     "EscapeStatistics",
     "Evidence",
     "Execution",
+    "ExitMatching",
     "Fate",
     "IndicatorVerdict",
     "Islands",
@@ -134,6 +136,7 @@ __all__ = [
     "compute_basin_entropy",
     "compute_birkhoff_digits",
     "compute_chaotic_share",
+    "compute_exit_matching",
     "compute_flux",
     "compute_islands",
     "compute_map",
@@ -160,6 +163,7 @@ __all__ = [
     "plan_sweep",
     "review_potential",
     "sample_entrances",
+    "sample_entrances_by_exit",
     "sample_orbits",
     "sample_starts",
     "start_states",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -19,15 +21,45 @@ from engine import (
     compute_regularity,
     compute_sweep,
 )
-from engine.sweeps.measured_map import MeasuredMap
+from engine.sweeps.measured_map import MeasuredMap, SweepPoint
 from engine.sweeps.measures import CURVES
-from engine.sweeps.points import measure_map
+from engine.sweeps.points import compute_point, measure_map
+
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(scope="module")
 def sea() -> EscapeMap:
     """A map with regular and chaotic bounded orbits, whose pixels are mirror images."""
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (30, 30), t_max=2e3))
+
+
+@pytest.fixture(scope="module")
+def example() -> Measure:
+    """The entry of the example in CONTRIBUTING.md."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Example: add a measure\n")[2]
+    code, found = text.partition("```python\n")[2].partition("```")[0], {}
+    exec(code, found)
+    return found["BOUNDARY"]
+
+
+def test_the_example_of_the_guide_is_measured_like_any_other(
+    sea: EscapeMap, example: Measure, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("engine.sweeps.points.MEASURES", {example.name: example})
+    found = measure_map(sea, example.name)
+    assert 0.0 < found.low < found.share < found.high < 1.0
+    assert example.sentence is not None
+    assert example.sentence(found).endswith("of the starts are on a boundary.")
+    point = SweepPoint(sea.spec, "h", 0.13, (example.name,), (0, 1, 2), sea.outcomes)
+    dataset = compute_point(point, frame=sea)
+    assert dataset["boundary_share"].dims == ("h",)
+    assert (dataset["boundary_share_low"], dataset["boundary_share_high"]) == (found.low, found.high)
+
+
+def test_documents_list_all_measures() -> None:
+    text = (ROOT / "docs" / "curves.md").read_text(encoding="utf-8")
+    assert [name for name in MEASURES if f"| `{name}` |" not in text] == []
 
 
 @pytest.mark.parametrize("measure", MEASURES.values(), ids=MEASURES)

@@ -12,6 +12,8 @@ from app.views.analysis.curves import CurvesView
 from app.views.analysis.statistics import StatisticsView
 from plots.pictures.sweep_panels import CURVE_PANELS
 
+HOVERS = 2 + 2 + 1 + sum(len(panel.labels) for panel in CURVE_PANELS)
+
 
 @pytest.fixture(scope="module")
 def chart_hovers() -> list[HoverTool]:
@@ -27,10 +29,10 @@ def chart_hovers() -> list[HoverTool]:
 
 def test_every_chart_has_a_hover(chart_hovers: list[HoverTool]) -> None:
     # Two charts of statistics, two of measures, the shares, and all curves of the other panels.
-    assert len(chart_hovers) == 16
+    assert len(chart_hovers) == HOVERS
 
 
-@pytest.mark.parametrize("place", range(16))
+@pytest.mark.parametrize("place", range(HOVERS))
 def test_every_value_of_a_text_has_a_format(chart_hovers: list[HoverTool], place: int) -> None:
     hover = chart_hovers[place]
     assert isinstance(hover.tooltips, str)
