@@ -6,7 +6,7 @@ import {Ensemble} from "./ensemble.js"
 import {drawStarts} from "./ensemble_starts.js"
 import {Integrator} from "./integrator.js"
 import {Interior} from "./interior.js"
-import {cover, frames, wellFrame} from "./pictures.js"
+import {cover, frames, onMoved, wellFrame} from "./pictures.js"
 import {makePotential} from "./potential.js"
 import {onPresent, present} from "./present.js"
 import {energyAxis, energyUnit} from "./slice.js"
@@ -130,6 +130,7 @@ class Watch {
   #frame = 0
   #painted = 0
   #unlisten = onPresent(() => this.#follow())
+  #stay = onMoved(() => this.#draw())
 
   #listen() {
     const model = this.#model
@@ -401,6 +402,7 @@ class Watch {
     cancelAnimationFrame(this.#frame)
     cancelAnimationFrame(this.#nextSearch)
     this.#unlisten()
+    this.#stay()
     for (const canvas of [this.#well, this.#section]) canvas.remove()
   }
 }
