@@ -1,10 +1,10 @@
-"""Compute measures of a map: the areas of islands, basin entropy, Wada test, decay laws, flux, and slow ones from further orbits.
+"""Compute measures of a map, from its pixels and from further orbits.
 
 Examples:
 
 escape-explorer measures II --energy 0.2 --plane x_y
 
-escape-explorer measures I --energy 0.15 --measure basin_entropy --measure wada --json
+escape-explorer measures I --energy 0.15 --measure islands --json
 
 escape-explorer measures I --energy 0.15 --window -0.1 0.1 0 0.2 --no-exponent --json
 """

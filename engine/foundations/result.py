@@ -6,7 +6,7 @@ The pictures are drawn by another package, which is imported at the first of the
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -23,8 +23,38 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@dataclass(frozen=True)
+class Chart:
+    """A picture of two columns of a result.
+
+    Attributes
+    ----------
+    x, y
+        Names of the columns.
+    across, up
+        Labels of the axes.
+    logarithmic
+        The letters of the axes with a logarithmic scale.
+    title
+        Above the axes, with the numbers of the result in braces; empty for none.
+    by_channel
+        Whether x are channels: bars in their colours instead of a line.
+    """
+
+    x: str
+    y: str
+    across: str
+    up: str
+    logarithmic: str = ""
+    title: str = ""
+    by_channel: bool = False
+
+
 class Result(ReadOnlyArrays):
     """Base of dataclasses of results; their arrays are read-only."""
+
+    chart: ClassVar[Chart | None] = None
+    """The picture of a result that is a line or bars."""
 
     codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
     """The attributes that are codes, with the meaning of these."""

@@ -11,10 +11,13 @@ import numpy as np
 from engine.foundations.result import Result
 from engine.foundations.validation import checked_count
 from engine.foundations.wording import format_count
-from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, checked_labels
+from engine.measures.labels import checked_labels
 
 BOX = 5
 """Default side of a box in pixels, that is 25 starts per box, as in Daza et al. (2016)."""
+
+COUNTS_BOUNDED = True
+"""Whether bounded orbits are a label: yes, staying bounded is one of the possible outcomes of a start."""
 
 # Two labels in equal parts give exactly ln 2, and the mean over boxes can exceed it by rounding.
 _ROUNDING = 1e-12
@@ -123,7 +126,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     >>> round(entropy.s_b, 2), round(entropy.s_bb, 2), entropy.beyond_ln2
     (0.5, 1.06, True)
     """
-    labels, valid = checked_labels(labels, valid, bounded=ENTROPY_COUNTS_BOUNDED)
+    labels, valid = checked_labels(labels, valid, bounded=COUNTS_BOUNDED)
     box = checked_count("box", box, 2, min(labels.shape))
     boxes = _tile(labels, box)[_tile(valid, box).all(axis=1)]
     entropies, label_counts = _box_entropies(boxes)

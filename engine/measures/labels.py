@@ -11,15 +11,6 @@ from engine.foundations.validation import checked_array
 from engine.measures.starts import read_starts
 from engine.propagation.fates import Fate
 
-ENTROPY_COUNTS_BOUNDED = True
-"""Whether bounded orbits are a label of the basin entropy: yes, staying bounded is one of the possible outcomes of a start."""
-
-WADA_COUNTS_BOUNDED = False
-"""Whether bounded orbits are a basin of the Wada test: no, Wada is a property of the exits (Aguirre, Vallejo & Sanjuán 2001).
-
-The edge of an island of bounded orbits is far from other boundaries between exits, so maps with islands would always fail.
-"""
-
 
 def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
     """Label the basins of escape of a map and select the pixels that count.
@@ -32,8 +23,7 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
     fate
         (rows, columns) integer `Fate` codes and outcomes of a map, finished or not.
     bounded
-        Whether bounded orbits are a label of their own, 0, or do not count; see `ENTROPY_COUNTS_BOUNDED` and
-        `WADA_COUNTS_BOUNDED`.
+        Whether bounded orbits are a label of their own, 0, or do not count; each measure has its `COUNTS_BOUNDED`.
 
     Returns
     -------

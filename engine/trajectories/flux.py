@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.arrays import read_only
-from engine.foundations.result import Result
+from engine.foundations.result import Chart, Result
 from engine.foundations.root_finding import bisect
 from engine.foundations.validation import checked_number, checks_types
 from engine.slices.default_window import default_window
@@ -46,6 +46,9 @@ class EscapeFlux(Result):
     flux: np.ndarray
     area: float
     area_error: float = field(repr=False)
+    chart: ClassVar = Chart(
+        "channel", "flux", "channel", "flux", title="Flux through the exits at h = {energy:.6g}", by_channel=True
+    )
 
     def numbers(self) -> dict[str, Any]:
         """The energy, the volume, the total flux, and the decay rate and mean passage time of mixed motion."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.foundations.result import Result
+from engine.foundations.result import Chart, Result
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
 from engine.systems.compiled import kernels_of
@@ -37,6 +37,7 @@ class Separation(Result):
 
     t: np.ndarray = field(metadata=TIME)
     distance: np.ndarray = field(metadata=LENGTH)
+    chart: ClassVar = Chart("t", "distance", "t", "distance", logarithmic="y")
 
     @property
     def nbytes(self) -> int:
