@@ -23,6 +23,7 @@ from engine.sweeps.measures import MEASURES
 from engine.sweeps.points import compute_point, measure_map
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
+from engine.systems.system import TYPED
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,8 +36,10 @@ def map_job(spec: MapSpec) -> Job[EscapeMap]:
     return Job(run_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
 
 
-def members_job(axis: ParameterAxis) -> Job[None]:
-    """The job that finds the potentials along a parameter of a typed formula within limits, before a map shows them."""
+def members_job(axis: ParameterAxis | None) -> Job[None] | None:
+    """The job that finds the potentials along a parameter of a typed formula within limits, before maps need them; else None."""
+    if axis is None or axis.system.case != TYPED:
+        return None
     return Job(find_members, (axis,), queue=Queue.LIMITED)
 
 
@@ -86,9 +89,14 @@ def _compute_sweep(
     *,
     on_frame: Callable[[Sweep], None],
     execution: Execution,
-    find_result: Callable[[Job[xr.Dataset]], xr.Dataset],
+    find_result: Callable[[Job[Any]], Any],
 ) -> Sweep:
+    members = members_job(spec.along)
+    if members is not None:
+        find_result(members)
+
     def measure(point: SweepPoint) -> xr.Dataset:
-        return find_result(Job(_measure_point, (point, map_job(point.map_spec))))
+        measured: xr.Dataset = find_result(Job(_measure_point, (point, map_job(point.map_spec))))
+        return measured
 
     return compute_sweep(spec, on_frame=on_frame, execution=execution, measure=measure)

@@ -11,7 +11,6 @@ from functools import partial
 import numpy as np
 
 from app.runtime.process_state import ProcessState
-from app.views.orbits import orbit_plots
 from engine import CASES, Potential, integrate_orbit, start_states
 from engine.maps.warmup import (
     call_after_maps,
@@ -45,7 +44,6 @@ STEPS: Mapping[str, Callable[[], None]] = {
         for purpose, prepare in _PURPOSES.items()
         for name, potential in CASES.items()
     },
-    "the panes of an orbit": orbit_plots.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
 """Functions that compile kernels or load them from the disk cache, by what they prepare, in the order of need."""

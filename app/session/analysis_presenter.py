@@ -79,7 +79,7 @@ class AnalysisPresenter:
         self._notes: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(locked(self._measure), context.copy, locked(lambda: state.param.update(box=None)))
-        self.curves = CurvesView(locked(self._sweep), self._open_value)
+        self.curves = CurvesView(locked(self._sweep), self._open_value, context.latest)
         self._measuring = {
             name: LatestRequest(jobs, partial(self._show_slow, name), partial(self.measures.say, name), locked)
             for name in self.measures.buttons

@@ -21,7 +21,7 @@ from engine.measures.islands import LEAST_ISLAND, compute_islands
 from engine.measures.measure import HIGH, LOW, NO_CURVE, Bars, Curve, Measure, Quantity, Variables
 from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import compute_wada_test
-from engine.propagation.fates import Fate
+from engine.propagation.fates import Fate, renumber
 from engine.sweeps.measured_map import MeasuredMap, SweepPoint
 from engine.trajectories.flux import EscapeFlux, compute_flux
 
@@ -50,8 +50,7 @@ def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variabl
 def _describe_map(point: SweepPoint, frame: EscapeMap) -> Variables:
     """All arrays of the map, as in `EscapeMap.to_xarray`; fates have the numbers of the sweep."""
     dataset, fate = frame.to_xarray(), frame.fate
-    numbers = np.array(point.numbers, fate.dtype)
-    renumbered = np.where(fate > 0, numbers[np.maximum(fate, 0)], fate)
+    renumbered = renumber(fate, np.array(point.numbers, fate.dtype))
     attributes = {**dataset["fate"].attrs, **_describe_fates(point)}
     kept = {str(name): variable for name, variable in dataset.variables.items()}
     return kept | {"fate": (dataset["fate"].dims, renumbered, attributes)}
@@ -76,8 +75,8 @@ def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
 
 
 def _find_chaotic_share(measured: MeasuredMap) -> ChaoticShare | None:
-    """None with centres, near which deviation vectors are not computed."""
-    return None if measured.spec.potential.centres else compute_chaotic_share(measured.find_characters())
+    """None with gaps such as the discs of centres, near which deviation vectors are not computed."""
+    return None if measured.spec.potential.gaps else compute_chaotic_share(measured.find_characters())
 
 
 def _find_flux(measured: MeasuredMap) -> EscapeFlux | None:

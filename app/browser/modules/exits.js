@@ -1,9 +1,8 @@
 // @ts-check
 /**
- * Exits at one energy: over saddles, interpolated in the tables of a system, discs around centres, and the escape circle. In
- * coordinates u outward and q across (90° counterclockwise from u) an exit over a saddle is the graph u = f(s), s = (q − middle) /
- * halfWidth ∈ [−1, 1], f a Chebyshev series; straight lines continue it beyond its ends. A disc or a circle has its centre as
- * origin and its radius as half width. See `engine/integrator/kernels/events.py`.
+ * Exits at one energy: over saddles, interpolated in the tables of a system, and circles. In coordinates u outward and q across
+ * (90° counterclockwise from u) an exit over a saddle is the graph u = f(s), s = (q − middle) / halfWidth ∈ [−1, 1], f a Chebyshev
+ * series; straight lines continue it beyond its ends. A circle has its centre as origin and its radius as half width. See `engine/integrator/kernels/events.py`.
  *
  * @typedef {object} ExitCurve
  * @property {boolean} open
@@ -41,13 +40,6 @@ const CLOSED = {
   slopeHigh: 0,
   coefficients: [0],
 }
-/** @type {Record<import("./system.js").ExitData["shape"], Pick<ExitCurve, "side" | "returns">>} */
-const SHAPES = {
-  curve: {side: 0, returns: false},
-  line: {side: 0, returns: true},
-  disc: {side: -1, returns: true},
-  circle: {side: 1, returns: true},
-}
 const MOST_ITERATIONS = 80
 /** Parts of a step that are examined in turn for an orbit that passes an exit and returns. */
 const PARTS = 8
@@ -64,9 +56,10 @@ const ROOT_ACCURACY = 1e-9
 export const exitCurves = (exits, energy) => exits.map(exit => ("radius" in exit ? circleOf(exit) : exitCurve(exit, energy)))
 
 /** @type {(circle: import("./system.js").Circle) => ExitCurve} */
-const circleOf = ({shape, x, y, radius}) => ({
+const circleOf = ({side, x, y, radius}) => ({
   ...CLOSED,
-  ...SHAPES[shape],
+  side,
+  returns: true,
   open: true,
   gate: [x, y, radius],
   origin: [x, y],
@@ -85,11 +78,10 @@ function exitCurve({shape, saddle, nodes, rows}, energy) {
   const length = Math.hypot(outwardX, outwardY)
   /** @type {[number, number]} */
   const outward = [outwardX / length, outwardY / length]
-  const {side, returns} = SHAPES[shape]
   return {
     open: true,
-    side,
-    returns,
+    side: 0,
+    returns: shape === "line",
     gate: [outward[0], outward[1], gate],
     reach,
     origin: [originX, originY],

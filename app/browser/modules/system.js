@@ -10,7 +10,7 @@
  * @property {number[]} table  coefficients in the form that step and jets take
  * @property {number | null} rotation  index of 2Ω in the table; null in a frame that does not rotate
  * @property {Formula} formula  of V
- * @property {ExitData[]} exits  one for each outcome: the exits of channels, discs around centres, the escape circle
+ * @property {ExitData[]} exits  one for each outcome: the exits of channels, then circles
  * @property {number[] | null} mirror  image of each outcome's number under x → −x; null without this symmetry
  * @property {{length: number, time: number}} units
  * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
@@ -34,9 +34,9 @@
  *
  * @typedef {ExitTable | Circle} ExitData
  *
- * The edge of a disc around a centre, or the escape circle.
+ * A circle at which orbits end: within it, as at a body, or beyond it.
  *
- * @typedef {{shape: "disc" | "circle", x: number, y: number, radius: number}} Circle
+ * @typedef {{side: -1 | 1, x: number, y: number, radius: number}} Circle
  *
  * @typedef {object} ExitTable
  * @property {"curve" | "line"} shape  a line in a frame that rotates

@@ -12,8 +12,8 @@ const row = [0.4, 1, 0.5, 0, 1, 0, 0, 1, 0, 0, 0]
 const table = {saddle: 0, highest: 1, nodes: [1], rows: [row]}
 const line = /** @type {const} */ ({shape: "line", ...table})
 const curve = /** @type {const} */ ({shape: "curve", ...table})
-const disc = /** @type {const} */ ({shape: "disc", x: 1, y: 0, radius: 0.5})
-const circle = /** @type {const} */ ({shape: "circle", x: 0, y: 0, radius: 0.5})
+const disc = /** @type {const} */ ({side: -1, x: 1, y: 0, radius: 0.5})
+const circle = /** @type {const} */ ({side: 1, x: 0, y: 0, radius: 0.5})
 
 /** Series of one lane. @type {(...coefficients: number[]) => import("../../../app/browser/modules/series.js").Jet} */
 const jet = (...coefficients) => ({
@@ -23,8 +23,8 @@ const jet = (...coefficients) => ({
   order: coefficients.length - 1,
 })
 
-for (const exit of [line, disc, circle]) {
-  test(`an orbit that passes a ${exit.shape} and returns within a step has passed it where it crosses outward`, () => {
+for (const [name, exit] of Object.entries({line, disc, circle})) {
+  test(`an orbit that passes a ${name} and returns within a step has passed it where it crosses outward`, () => {
     // x = 2.2 t (1 − t) is 0.55 at t = ½ and 0.5 at (1 − √(1/11)) / 2.
     const [exits, x, y] = [exitCurves([exit], 1), jet(0, 2.2, -2.2), jet(0, 0, 0)]
     assert.equal(crossedExit(exits, 0, 0, 0, 0), 0)

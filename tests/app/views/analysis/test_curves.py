@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import pytest
+
 from app.views.analysis.curves import CurvesView
 from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.sweeps.measures import CURVES
 from plots.pictures.sweep_panels import CURVE_PANELS
 
 
-def test_there_are_no_axes_before_the_first_curves() -> None:
+def test_there_are_no_axes_before_the_first_curves(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("engine.sweeps.measures.WORK", 1e6)
     view = CurvesView(lambda: None, lambda energy: None)
     *_, plots = view.build()
     assert not plots.visible
