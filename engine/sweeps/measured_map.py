@@ -18,8 +18,8 @@ from engine.propagation.fates import Fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
 
-MOST_JUDGED = 4000
-"""Most bounded starts, drawn at random, that are judged as regular or chaotic: enough for a 95 % interval of ± 1.5 %."""
+MOST_JUDGED = 2000
+"""Most bounded starts, drawn at random, that are judged as regular or chaotic: enough for a 95 % interval of ± 2 %."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -98,7 +98,7 @@ def test_the_chaotic_share_of_all_bounded_starts_is_that_of_the_regularity(sea: 
 
 def test_drawn_starts_have_the_characters_that_they_have_among_all(sea: EscapeMap) -> None:
     whole = compute_regularity(sea).character
-    characters = MeasuredMap(sea, effort=0.05).find_characters()
+    characters = MeasuredMap(sea, effort=0.1).find_characters()
     bounded = np.flatnonzero(sea.fate == 0)
     chosen = np.random.default_rng(0).choice(bounded, 200, replace=False)
     assert bounded.size > 200
