@@ -11,6 +11,8 @@ from functools import partial
 import numpy as np
 
 from app.runtime.process_state import ProcessState
+from app.views.analysis import statistics
+from app.views.orbits import orbit_plots
 from engine import CASES, Potential, integrate_orbit, start_states
 from engine.maps.warmup import (
     call_after_maps,
@@ -44,6 +46,8 @@ STEPS: Mapping[str, Callable[[], None]] = {
         for purpose, prepare in _PURPOSES.items()
         for name, potential in CASES.items()
     },
+    "the panes of an orbit": orbit_plots.prepare,
+    "the charts of statistics": statistics.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
 """Functions that compile kernels or load them from the disk cache, by what they prepare, in the order of need."""

@@ -31,8 +31,9 @@ def test_the_charts_count_every_escape(view: StatisticsView, frame: EscapeMap) -
     assert view.table.object == ""
     view.activate(True)
     statistics = compute_statistics(frame)
-    assert view.times.data["top"].sum() == statistics.escaped
-    assert view.probabilities.data["p"][0] == pytest.approx(statistics.direct_share)
+    times, probabilities = view.sources
+    assert times.data["top"].sum() == statistics.escaped
+    assert probabilities.data["p"][0] == pytest.approx(statistics.direct_share)
 
 
 @pytest.mark.parametrize("box", [None, BOX])
