@@ -25,7 +25,6 @@ INVALID_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
 COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
 """Names of the modules in `commands`, which are imported when they are needed."""
 
-
 FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
 """Former names of options."""
 
@@ -50,10 +49,6 @@ class _Command(TyperCommand):
     @staticmethod
     def _count_values(option: Any) -> int:
         return 0 if getattr(option, "is_flag", False) else int(option.nargs)
-
-
-FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
-"""Former names of options."""
 
 
 class _Commands(TyperGroup):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -120,8 +120,9 @@ def _in_units_of(spec: MapSpec, found: EscapeMap) -> EscapeMap:
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
     if resume.batch is None:
         raise ValueError("resume: this map has no integration state; must be a map returned by compute_map, not a frame")
-    if replace(resume.spec, t_max=spec.t_max) != spec or resume.spec.t_max > spec.t_max:
-        raise ValueError(f"resume: a map of {resume.spec} cannot be continued to {spec}; must be equal but for a smaller t_max")
+    different = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
+    if different not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
+        raise ValueError(f"resume: a map with another {', '.join(different)}; must be equal but for a smaller t_max")
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:

@@ -44,7 +44,8 @@ class PixelAnalysis(MapResult):
         dims = (ordinate_name, abscissa_name)
         variables = {name: (dims, image, self._meaning(name, image)) for name, image in images.items()}
         attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(self.complete)}
-        return xr.Dataset(variables, {ordinate_name: ordinate, abscissa_name: x}, attributes)
+        coordinates = {name: (name, centres, {"units": "1"}) for name, centres in ((ordinate_name, ordinate), (abscissa_name, x))}
+        return xr.Dataset(variables, coordinates, attributes)
 
     @property
     def nbytes(self) -> int:

@@ -9,7 +9,6 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource
 from bokeh.models.dom import HTML
 
 from app.state.help_texts import title_with_help
@@ -26,9 +25,9 @@ from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
 CROSSINGS, PROBABILITY = "n", "p"
 """Columns of the second chart."""
 
-_TIMES_TEXT = "<b>@top{custom} starts</b> escape<br>from t = @left{custom} to @right{custom}"
+_TIMES_TEXT = "<b>@top{count} starts</b> escape<br>from t = @left{number} to @right{number}"
 _PROBABILITIES_TEXT = (
-    f"n = @{CROSSINGS} upward crossings:<br><b>@{PROBABILITY}{{custom}}</b> of the orbits still inside<br>"
+    f"n = @{CROSSINGS} upward crossings:<br><b>@{PROBABILITY}{{percent}}</b> of the orbits still inside<br>"
     "escape before the next one"
 )
 _NUMBERS = [str(n) for n in range(MOST_CROSSINGS + 1)]
@@ -82,17 +81,12 @@ class StatisticsView:
         """Make the content of the section."""
         prepare()
         self._times = _plot(_draw_times(), "histogram", "Escape times")
-        _describe(self._times, _TIMES_TEXT, {"@left": "number", "@right": "number", "@top": "count"})
+        _describe(self._times, _TIMES_TEXT)
         self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escapes after n crossings")
-        _describe(self._probabilities, _PROBABILITIES_TEXT, {f"@{PROBABILITY}": "percent"})
+        _describe(self._probabilities, _PROBABILITIES_TEXT)
         histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
         left = pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])
         return [left, histogram, probabilities]
-
-    @property
-    def sources(self) -> tuple[ColumnDataSource, ColumnDataSource]:
-        """Data of the charts, once they are made: the escape times, and the probabilities to escape."""
-        return self._times.handles["source"], self._probabilities.handles["source"]
 
     def _count(self) -> None:
         if self._frame is None or not self._active:
@@ -195,9 +189,9 @@ def _plot(element: hv.Element, name: str, title: str) -> Any:
     return plot
 
 
-def _describe(plot: Any, text: str, formats: dict[str, str]) -> None:
+def _describe(plot: Any, text: str) -> None:
     """Describe the bar under the mouse, even if the mouse is above a low bar."""
-    plot.state.add_tools(chart_hover(text, formats, [plot.handles["glyph_renderer"]], mode="vline"))
+    plot.state.add_tools(chart_hover(text, [plot.handles["glyph_renderer"]], mode="vline"))
 
 
 def _number(value: float) -> str:

@@ -49,12 +49,9 @@ def test_a_stack_that_waits_has_no_cause() -> None:
 
 
 @pytest.mark.parametrize("late", [SLOW_SECONDS, 3.0])
-def test_a_slow_turn_is_logged_and_counted(
-    late: float, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_slow_turn_is_logged_and_counted(late: float, caplog: pytest.LogCaptureFixture) -> None:
     clock, metrics = Clock(), ServerMetrics()
-    monkeypatch.setattr("app.runtime.load_monitor.time", clock)
-    watch = LoopWatch(LoadMonitor(), metrics.loop_delays)
+    watch = LoopWatch(LoadMonitor(clock.monotonic), metrics.loop_delays)
     watch.tick()
     with caplog.at_level(logging.INFO, "bokeh"):
         clock.now += TICK_SECONDS + late

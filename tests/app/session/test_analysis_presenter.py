@@ -156,17 +156,6 @@ def test_basins_are_measured_and_laws_are_fitted_in_the_box(begin: Callable[...,
     )
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("frame")
-def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session]) -> None:
-    session = begin(analysis=Analysis.MEASURES)
-    session.presenter.measures.buttons["uncertainty_exponent"].clicks += 1
-    assert session.presenter.measures.buttons["uncertainty_exponent"].disabled
-    session.wait_for(lambda: "α =" in session.presenter.measures.text.object)
-    assert not session.presenter.measures.buttons["uncertainty_exponent"].disabled
-    assert len(session.presenter.measures.uncertainty.pairs.data["share"]) > 5
-
-
 @pytest.mark.usefixtures("frame")
 def test_another_map_cancels_a_slow_measure(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.MEASURES)

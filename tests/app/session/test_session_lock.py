@@ -6,12 +6,10 @@ for every change of a bare model that is not held, and the click is lost.
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
 from typing import Any
 
 import pytest
-from bokeh.server.session import ServerSession
 
 from app.session.explorer import Explorer
 from app.state.view import LAYERS, Analysis
@@ -20,7 +18,7 @@ from app.views.maps.map_toolbar import Drag
 from engine import Plane
 from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
-from tests.app.session.opened_page import opened_page
+from tests.app.session.opened_page import opened_page, run_callbacks
 
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
@@ -43,13 +41,6 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     *(lambda explorer, name=name: explorer.drawers.buttons.param.update(value=[name]) for name in ("gallery", "share", "help")),
     lambda explorer: explorer.set_dark(True),
 ]
-
-
-async def run_callbacks(session: ServerSession) -> None:
-    """Run the callbacks that have been scheduled."""
-    await asyncio.sleep(0.1)
-    while session._lock.locked():
-        await asyncio.sleep(0.01)
 
 
 def with_page(change: Callable[[Explorer], Any]) -> None:

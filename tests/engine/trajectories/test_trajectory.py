@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -146,38 +144,7 @@ def test_sali_and_the_lyapunov_exponent_agree_with_scipys_variational_equations(
     assert np.isnan(orbit.lyapunov_exponent[0])
 
 
-# Along the axis x = 0 of Case III the orbit is y = A sin t, A² = 2h, and deviations from the axis obey Mathieu's equation.
-def test_the_lyapunov_exponent_of_a_straight_line_orbit_agrees_with_mathieus_equation() -> None:
-    energy = 0.6
-
-    def mathieu(t: float, d: np.ndarray) -> list[float]:
-        return [d[1], -(1 - 4 * energy * np.sin(t) ** 2) * d[0]]
-
-    columns = [solve_ivp(mathieu, (0, np.pi), column, "DOP853", rtol=1e-12, atol=1e-12).y[:, -1] for column in np.eye(2)]
-    multiplier = np.abs(np.linalg.eigvals(np.column_stack(columns))).max()
-    orbit = integrate_orbit(CASES["III"], [0.0, 0.0, 0.0, np.sqrt(2 * energy)], 2000.0)
-    assert orbit.fate == Fate.BOUNDED
-    assert multiplier > 1.5
-    assert orbit.lyapunov_exponent[-1] == pytest.approx(np.log(multiplier) / np.pi, rel=3e-3)
-
-
 # Invalid parameters.
-
-
-@pytest.mark.parametrize(
-    "state",
-    [[0.0] * 5, [[0.0, 0.0, 0.0, 0.1]], [np.nan, 0, 0, 0], None],
-)
-def test_a_state_that_is_not_four_finite_numbers_raises(state: Any) -> None:
-    with pytest.raises(ValueError, match="state=") as error:
-        integrate_orbit(CASES["I"], state, 10.0)
-    assert repr(state) in str(error.value)
-
-
-@pytest.mark.parametrize("t_max", [0.0, np.nan, 1e9])
-def test_t_max_out_of_range_raises(t_max: float) -> None:
-    with pytest.raises(ValueError, match="t_max="):
-        integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 0.1], t_max)
 
 
 def test_an_orbit_of_a_far_too_high_energy_is_followed_without_exits() -> None:

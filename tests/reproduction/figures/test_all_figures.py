@@ -191,11 +191,6 @@ def test_the_last_escape_within_the_axis_is_shown(cache: MapCache) -> None:
     assert find_shown(search_with([np.nan, np.nan], cache)) is None
 
 
-def test_a_search_without_escapes_is_stated(cache: MapCache) -> None:
-    stayed = CacheWithSearch(search_with([np.nan], cache))
-    assert "no chaotic orbit" in FIGURES["III-super-sticky"].draw(stayed).get_suptitle()
-
-
 def test_the_band_of_a_late_escape_ends_at_its_exit(cache: MapCache) -> None:
     frame = cache.map("III", Plane.X_PX, 0.26)
     row, column = np.argwhere(frame.fate >= 1)[0]
