@@ -11,6 +11,7 @@ from functools import partial
 from app.runtime.process_state import ProcessState
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential
+from engine.integrator.portable_kernels import kernel_module
 from engine.warmup import prepare_for_evidence, prepare_for_maps, prepare_kernels, reserve_catalogue
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
@@ -22,19 +23,27 @@ _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
     "orbits and analyses": prepare_kernels,
 }
 
-STEPS: Mapping[str, Callable[[], None]] = {
-    **{
-        f"the kernels of case {name} for {purpose}": partial(prepare, potential)
-        for purpose, prepare in _PURPOSES.items()
+
+def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
+    """Steps that prepare the three cases for some purposes."""
+    return {
+        f"the kernels of case {name} for {purpose}": partial(_PURPOSES[purpose], potential)
+        for purpose in purposes
         for name, potential in CASES.items()
-    },
+    }
+
+
+STEPS: Mapping[str, Callable[[], object]] = {
+    **_prepare_cases("maps"),
+    "the kernels of browsers": kernel_module,
+    **_prepare_cases("evidence", "orbits and analyses"),
     "the panes of an orbit": orbit_plots.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
 """Functions that compile kernels or load them from the disk cache, by what they prepare, in the order of need."""
 
 
-def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], None]] = STEPS) -> threading.Thread:
+def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] = STEPS) -> threading.Thread:
     """Run the steps in a thread, then set `state.kernels_ready`.
 
     A failed step ends the thread and sets `state.kernels_failed`. A shutdown ends it before the next step.
@@ -45,14 +54,14 @@ def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], None]] = 
     return thread
 
 
-def warm_up(steps: Mapping[str, Callable[[], None]] = STEPS) -> None:
+def warm_up(steps: Mapping[str, Callable[[], object]] = STEPS) -> None:
     """Run the steps in this thread, for example to fill the kernel cache of a container image."""
     for name, step in steps.items():
         log.info("preparing %s", name)
         step()
 
 
-def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], None]]) -> None:
+def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], object]]) -> None:
     for name, step in steps.items():
         if state.stopping.is_set():
             return
