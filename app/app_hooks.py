@@ -17,8 +17,8 @@ from bokeh.settings import settings as bokeh_settings
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import PeriodicCallback
 
-from app.bokeh_patches.batched_patches import batch_patches
-from app.bokeh_patches.inline_callbacks import run_callbacks_inline
+from app.browser.bokeh_patches.batched_patches import batch_patches
+from app.browser.bokeh_patches.inline_callbacks import run_callbacks_inline
 from app.runtime import disconnects, load_monitor
 from app.runtime.loop_watch import LoopWatch
 from app.runtime.memory_allocation import reduce_fragmentation

@@ -58,13 +58,8 @@ from engine.systems.outcomes import Centre, Outcome
 from engine.systems.potential import Potential
 from engine.systems.review.potential_review import PotentialReview, review_potential
 from engine.systems.system import System
-from engine.trajectories.chaos_indicators import (
-    BirkhoffDigits,
-    IndicatorVerdict,
-    Verdict,
-    compute_birkhoff_digits,
-    evaluate_indicators,
-)
+from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
+from engine.trajectories.chaos_indicators import IndicatorVerdict, Verdict, evaluate_indicators
 from engine.trajectories.entrances import sample_entrances
 from engine.trajectories.flux import EscapeFlux, compute_flux
 from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start

@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from app.notebook import Explorer as Explorer
+    from app.session.notebook import Explorer as Explorer
     from engine import *  # noqa: F403
 
 
@@ -18,7 +18,7 @@ def __getattr__(name: str) -> Any:
     """Names are imported at their first use, so that the command line starts without the compiler."""
     if name == "Explorer":
         import_module("engine.foundations.extras").require_package("panel", "page")
-        return import_module("app.notebook").Explorer
+        return import_module("app.session.notebook").Explorer
     engine = import_module("engine")
     if name == "__all__":
         return engine.__all__

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import count
 from math import isfinite
+from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
 
 from app.browser.browser_system import BrowserSystem
-from app.browser.callbacks import module_path
 from app.browser.module_files import ADDRESS
 
 
@@ -23,7 +23,7 @@ class EngineComponent(JSComponent):
     view = param.Dict(default={}, doc="see `BrowserEngine.show_view`")
     command = param.Dict(default={}, doc="name: play or stop; energy, low, high; number that makes repeats differ")
 
-    _esm = module_path("component.js")
+    _esm = Path(__file__).with_suffix(".js")
 
 
 class BrowserEngine:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
 
@@ -121,7 +122,13 @@ class MapRequests:
         self._subscription = self._jobs.request(job, on_result, on_error)
 
     def _deliver_frame(self, generation: int, frame: EscapeMap) -> None:
-        """Deliver a frame; under overload only the first and the last one."""
+        """Deliver a frame; under overload only the first and the last one, and none of an energy without an interior."""
+        try:
+            # Slow, and needed by the ranges of the maps, whose smallest window depends on it.
+            replace(frame.spec, window=None).find_window()
+        except ValueError as error:
+            self._deliver(self._show_error, generation, error)
+            return
         if self._delivered == generation and not frame.complete and self._is_overloaded():
             return
         columns = map_columns(frame, characters=self._state.judge)
@@ -173,6 +180,7 @@ class MapRequests:
 
     def _on_error(self, generation: int, error: Exception) -> None:
         if generation == self._generation:
+            self.cancel_map()
             self._listener.map_failed(sentence(error))
 
 

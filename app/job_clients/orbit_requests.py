@@ -41,6 +41,10 @@ class ChosenOrbit:
         """The verdict on the orbit, as far as known."""
         return judge_orbit(self.orbit, self.digits) if self.orbit is not None else None
 
+    def headline(self) -> str:
+        """The verdict without its reasons, or why there is none."""
+        return self.verdict.headline() if self.verdict is not None else self.problem or "Integrating …"
+
     def describe(self) -> str:
         """The verdict, or why there is none, in one sentence."""
         return self.verdict.describe() if self.verdict is not None else self.problem or "Integrating …"

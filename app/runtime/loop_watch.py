@@ -23,7 +23,7 @@ _REPORTED = SLOW_SECONDS - TICK_SECONDS
 _SAMPLE_SECONDS = 0.5 * TICK_SECONDS
 _APP = Path(__file__).parents[1]
 # Modules of the app that only pass calls on.
-_PLUMBING = ("runtime", "server", "bokeh_patches")
+_PLUMBING = ("runtime", "server", "browser/bokeh_patches")
 # Modules outside the app that run the loop; a stack of nothing else is a loop that waits for events or for a processor.
 _LOOP = (
     "asyncio",

@@ -97,7 +97,7 @@ class Settings:
     frame_ancestors
         Origins that may embed the page in a frame; empty for none.
     bokeh_patches
-        Whether two functions of Bokeh are replaced by faster ones (`app.bokeh_patches`).
+        Whether two functions of Bokeh are replaced by faster ones (`app.browser.bokeh_patches`).
     """
 
     largest_resolution: int = _setting(1024, _integer(16, 4096))

@@ -386,6 +386,9 @@ class Explorer:
     def map_requested(self, *, compiling: bool = False) -> None:
         """A map is requested."""
         self.engine.show_view(describe_view(self.state))
+        if compiling:
+            # The pictures of the former system stay for some seconds.
+            self.maps.grid.mark_stale(True)
         self._requested_at = time.monotonic()
         self.progress.start()
         self._count_down(compiling)

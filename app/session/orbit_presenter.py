@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import panel as pn
+from param.parameterized import Event
 
 from app.job_clients.divergent_start_requests import DivergentStartRequests
 from app.job_clients.indicators_requests import IndicatorsRequests
@@ -24,6 +25,8 @@ from engine import IndicatorVerdict
 from engine.slices.section import SECTION
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 from plots.pictures.palette import Palette
+
+REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
 
 Interval = tuple[float, float]
 """Begin and end of an interval of time."""
@@ -80,7 +83,7 @@ class OrbitPresenter:
         self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         self._indicators = IndicatorsRequests(state, jobs, self._show_verdicts, self.controls.say, locked)
-        state.param.watch(lambda *events: self._end_message(), ["starts", "chosen", "system", "plane", "energy", "t_max"])
+        state.param.watch(self._end_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
         state.follow(self.controls.follow_plane, "plane")
         state.param.watch(lambda event: self._show(self._shown), "chosen")
 
@@ -108,8 +111,11 @@ class OrbitPresenter:
         for requests in (self._orbits, self._divergent_start, self._separation, self._indicators):
             requests.close()
 
-    def _end_message(self) -> None:
+    def _end_message(self, *events: Event) -> None:
         self.controls.end_message(has_orbits=bool(self._state.starts))
+        changed = {event.name: event for event in events}
+        if "plane" in changed and "starts" in changed and changed["starts"].old and not changed["starts"].new:
+            self.controls.say(REMOVED)
 
     def _choose(self, place: int) -> None:
         # Orbits may have been removed since.

@@ -7,7 +7,7 @@ from typing import Any
 
 import panel as pn
 
-from app.browser.ensemble_player import EnsemblePlayer
+from app.browser.components.ensemble_player import EnsemblePlayer
 from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.help_texts import title_with_help

@@ -46,7 +46,8 @@ class Result(ReadOnlyArrays):
             Matplotlib axes; None for new ones of `matplotlib.pyplot`.
         options
             ``palette``: ``"paper"`` or ``"safe"`` for all results; ``picture`` of a map: ``"basins"``, ``"times"``,
-            ``"crossings"``, ``"characters"`` or ``"curves"``; ``show`` of an orbit: ``"path"``, ``"sali"`` or ``"r2"``.
+            ``"crossings"``, ``"characters"`` or ``"curves"``; ``show`` of an orbit: ``"path"``, ``"sali"``,
+            ``"exponent"`` or ``"r2"``.
 
         Returns
         -------

@@ -7,7 +7,6 @@ energy and exits of its own, along a parameter also a potential.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,6 +16,8 @@ from engine.foundations.arrays import read_only
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
 from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.energies import Energy
+from engine.slices.slice_rules import check_coordinates, momentum_left
+from engine.slices.slice_starts import compute_required_energy, compute_states
 from engine.systems.potential import Potential
 from engine.systems.system import System
 from engine.systems.well_units import WellUnits
@@ -64,8 +65,8 @@ class Slice:
             check_type("fixed", coordinate, Coordinate)
         used = [axis for axis in self.axes if isinstance(axis, Coordinate)] + [coordinate for coordinate, _ in self.fixed]
         if self.solved is None:
-            object.__setattr__(self, "solved", _momentum_left(self.axes, used))
-        _check_coordinates(self.axes, used, self.fixed, self.decided)
+            object.__setattr__(self, "solved", momentum_left(self.axes, used))
+        check_coordinates(self.axes, used, self.fixed, self.decided)
         if self.sign not in (1, -1) or (self.decided is Coordinate.SPEED and self.sign < 0):
             legal = "1" if self.decided is Coordinate.SPEED else "1 or -1"
             raise ValueError(f"sign={short_repr(self.sign)}: must be {legal}")
@@ -112,7 +113,7 @@ class Slice:
     def title(self) -> str:
         """The name in texts, such as "(x, px)": axes, fixed values, and the momentum decided where it is not the usual one."""
         held = [f"{coordinate.symbol} = {value:.6g}" for coordinate, value in self.fixed]
-        usual = _momentum_left(self.axes, [axis for axis in self.axes if isinstance(axis, Coordinate)])
+        usual = momentum_left(self.axes, [axis for axis in self.axes if isinstance(axis, Coordinate)])
         if self.sign < 0 or (self.decided is not usual and self.decided is not Coordinate.SPEED):
             held.append(f"{self.decided.symbol} {'>' if self.sign > 0 else '<'} 0")
         return ", ".join([f"({', '.join(self.axis_symbols)})", *held])
@@ -208,48 +209,11 @@ class Slice:
 
     def states(self, potential: Potential, energy: Any, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
         """(n, 4) the starts of points of the slice; parameters as in `start_states`."""
-        if self.parameter is not None:
-            states = np.full((*np.shape(x), len(STATE)), np.nan)
-            for here, line, each in self._lines(x, ordinate):
-                states[here] = line.states(each, energy if np.ndim(energy) == 0 else energy[here], x[here], ordinate[here])
-            return states
-        start = self._coordinates(x, ordinate)
-        with np.errstate(over="ignore", invalid="ignore"):
-            # An overflow far from the origin gives a forbidden start.
-            left = self.energies(energy, x, ordinate) - potential.value(start[Coordinate.X], start[Coordinate.Y])
-            doubled = 2.0 * left - self._square_of_others(start)
-        found = self.sign * np.sqrt(np.where(doubled >= 0, doubled, np.nan))
-        if self.decided is Coordinate.SPEED:
-            with np.errstate(invalid="ignore"):
-                # At the centre of a body the speed is infinite.
-                start[Coordinate.PX], start[Coordinate.PY] = _velocity(start, found)
-        else:
-            start[self.decided] = found
-        return np.column_stack([start[coordinate] for coordinate in STATE])
+        return compute_states(self, potential, energy, x, ordinate)
 
     def required_energy(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
         """The lowest energy at which a start exists; with an axis h, the energy missing there, positive where forbidden."""
-        if self.parameter is not None:
-            required = np.full(np.shape(x), np.inf)
-            for here, line, each in self._lines(x, ordinate):
-                required[here] = line.required_energy(each, x[here], ordinate[here])
-            return required
-        start = self._coordinates(x, ordinate)
-        kinetic = 0.5 * self._square_of_others(start) - self.energies(0.0, x, ordinate)
-        lowest: np.ndarray = kinetic + potential.value(start[Coordinate.X], start[Coordinate.Y])
-        return lowest
-
-    def _lines(self, x: np.ndarray, ordinate: np.ndarray) -> Iterator[tuple[np.ndarray, Slice, Potential]]:
-        """For each value of the parameter at which there is a system: where points have it, their slice, and their potential."""
-        axis, place = self.parameter, self.parameter_axis
-        assert axis is not None
-        assert place is not None
-        values = np.asarray((x, ordinate)[place])
-        for value in np.unique(values).tolist():
-            try:
-                yield values == value, self.line(value), axis.potential(value)
-            except ValueError:
-                continue
+        return compute_required_energy(self, potential, x, ordinate)
 
     def of_system(self, system: System) -> Slice:
         """The same slice with its parameter in another system; ValueError if this has not the parameter in its range."""
@@ -319,81 +283,7 @@ class Slice:
         images: np.ndarray = np.flip(pixels, tuple(1 - axis for axis in (0, 1) if mirrored[axis]))
         return images.ravel()
 
-    def _coordinates(self, x: np.ndarray, ordinate: np.ndarray) -> dict[Coordinate, np.ndarray]:
-        """Arrays of the coordinates of starts, where the momenta that the energy decides are not set yet."""
-        held: Mapping[Coordinate, float] = dict(self.fixed)
-        start = {coordinate: np.full_like(x, held.get(coordinate, 0.0)) for coordinate in (*STATE, *held)}
-        # Coordinates are set, directions move from there.
-        for axis, along in sorted(zip(self.axes, (x, ordinate), strict=True), key=lambda pair: isinstance(pair[0], Direction)):
-            axis.move(start, along)
-        return start
-
-    def _square_of_others(self, start: Mapping[Coordinate, np.ndarray]) -> Any:
-        """The square of the momentum that the energy does not decide; 0 if it decides both."""
-        if self.decided is Coordinate.SPEED:
-            return 0.0
-        (other,) = (start[momentum] for momentum in MOMENTA if momentum is not self.decided)
-        return other * other
-
-
-def _momentum_left(axes: tuple[Axis, Axis], used: Sequence[Coordinate]) -> Coordinate:
-    """What the energy decides by default."""
-    if any(angle in used for angle in ANGLES):
-        return Coordinate.SPEED
-    along = {c for axis in axes if isinstance(axis, Direction) for c in axis.components}
-    return Coordinate.PX if Coordinate.PY in {*used, *along} else Coordinate.PY
-
-
-def _check_coordinates(
-    axes: tuple[Axis, Axis], used: Sequence[Coordinate], fixed: Sequence[tuple[Coordinate, float]], decided: Coordinate
-) -> None:
-    """Raise ValueError unless the coordinates used and the decided one make one start for each point."""
-    if decided not in (*MOMENTA, Coordinate.SPEED):
-        raise ValueError(f"solved={decided.key}: must be px, py or v")
-    known = ", ".join(coordinate.key for coordinate in Coordinate if coordinate is not Coordinate.SPEED)
-    names = ", ".join([*(axis.key for axis in axes), *(c.key for c, _ in fixed), decided.key])
-    if Coordinate.SPEED in used:
-        raise ValueError(f"slice of {names}: must have no axis and no fixed value of v, which only the energy decides")
-    if len({*used, decided}) <= len(used) or any(c is Coordinate.H for c, _ in fixed):
-        raise ValueError(f"slice of {names}: each of {known} must be used at most once")
-    if len({axis.key for axis in axes}) < 2 or sum(isinstance(axis, ParameterAxis) for axis in axes) > 1:
-        raise ValueError(f"slice of {names}: the axes must be different ones, at most one of them a parameter")
-    moved = {c for axis in axes if isinstance(axis, Direction) for c in axis.components}
-    taken = {*used, *moved}
-    angles = sum(angle in used for angle in ANGLES)
-    if decided is Coordinate.SPEED and (any(momentum in taken for momentum in MOMENTA) or angles > 1):
-        raise ValueError(
-            f"slice of {names}: with an angle the energy decides the speed; px, py and another angle must be left out"
-        )
-    if decided is not Coordinate.SPEED and (angles or decided in taken):
-        raise ValueError(f"slice of {names}: {decided.key}, which the energy decides, must not be set by an axis or an angle")
-    if np.linalg.matrix_rank(_rows_of(axes)) < sum(_moves_state(axis) for axis in axes):
-        raise ValueError(f"slice of {names}: the directions of the axes must not be parallel")
-
-
-def _moves_state(axis: Axis) -> bool:
-    return isinstance(axis, Direction) or axis in STATE
-
-
-def _rows_of(axes: tuple[Axis, Axis]) -> np.ndarray:
-    """(2, 4) the directions of the axes in (x, y, px, py); zeros for axes of other kinds."""
-    parts = [axis.components if isinstance(axis, Direction) else {axis: 1.0} for axis in axes]
-    return np.array([[part.get(coordinate, 0.0) for coordinate in STATE] for part in parts])
-
 
 def _components(axis: Axis) -> dict[str, float]:
     """The components of a direction by name; none for a parameter, along which starts do not move."""
     return {c.key: value for c, value in axis.components.items()} if isinstance(axis, Direction) else {}
-
-
-def _velocity(start: Mapping[Coordinate, np.ndarray], speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """px and py of starts with an angle and a speed (n,)."""
-    if Coordinate.THETA in start:
-        angle = start[Coordinate.THETA]
-        return speed * np.cos(angle), speed * np.sin(angle)
-    x, y, angle = start[Coordinate.X], start[Coordinate.Y], start[Coordinate.BETA]
-    radius = np.hypot(x, y)
-    # At the origin, where no direction is radial, that of the +y axis is taken, which is its own mirror image under x → −x.
-    away_x, away_y = np.where(radius > 0, (x, y) / np.where(radius > 0, radius, 1.0), np.array([[0.0], [1.0]]))
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return speed * (cosine * away_x - sine * away_y), speed * (cosine * away_y + sine * away_x)

@@ -26,7 +26,7 @@ from engine.propagation.classification import Outcomes
 from engine.sweeps.sweep import Sweep
 from engine.systems.outcomes import read_outcomes
 from engine.systems.stored_potential import read_potential
-from engine.trajectories.chaos_indicators import BirkhoffDigits
+from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.nearest_divergent_start import DivergentStart
 from engine.trajectories.sampled_orbits import SampledOrbits
 from engine.trajectories.separation import Separation

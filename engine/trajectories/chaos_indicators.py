@@ -1,4 +1,4 @@
-"""Chaos indicators of one orbit: SALI, the finite-time Lyapunov exponent and Birkhoff digits.
+"""Chaos indicators of one orbit, the entries of `INDICATORS`: SALI, the finite-time Lyapunov exponent and Birkhoff digits.
 
 Each indicator judges a bounded orbit by its own rule. SALI and the exponent come from deviation vectors, which can show chaos.
 Where they do not, there is no sign of chaos until then: sticky orbits follow a torus for a long time before they leave it. Only
@@ -12,23 +12,17 @@ the verdicts turn out wrong later.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 
-from engine.evidence.birkhoff_averages import REGULAR_DIGITS, TORUS_DIGITS, WINDOWS, count_agreeing_digits
-from engine.exits.exit_rows import exits_of_orbit
-from engine.foundations.arrays import read_only
-from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.foundations.result import Result
-from engine.foundations.validation import checked_state, checks_types
+from engine.evidence.birkhoff_averages import REGULAR_DIGITS, TORUS_DIGITS, WINDOWS
+from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_time
-from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, describe_fate, is_chaotic, outcome_of
-from engine.systems.potential import Potential
-from engine.systems.well_units import TIME
+from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.trajectory import Orbit
 
 MIN_GROWTH_TIME = 100.0
@@ -66,30 +60,6 @@ class Verdict(StrEnum):
     CHAOTIC_INSIDE = "chaotic while inside"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class BirkhoffDigits(Result):
-    """Number of digits to which weighted averages over two consecutive windows agree, by window length; arrays are read-only.
-
-    Attributes
-    ----------
-    windows
-        (m,) increasing window lengths T, dimensionless, with the orbit bounded for 2T. Empty for a shorter orbit.
-    digits
-        (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is `TORUS_DIGITS` or more.
-    time_unit
-        Unit of time of the well before rounding, 1/ω, of which the windows are multiples.
-    """
-
-    windows: np.ndarray = field(metadata=TIME)
-    digits: np.ndarray
-    time_unit: float = field(default=1.0, metadata=TIME)
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        return self.windows.nbytes + self.digits.nbytes
-
-
 @dataclass(frozen=True)
 class IndicatorVerdict:
     """Result of one indicator at the end of an orbit.
@@ -112,79 +82,36 @@ class IndicatorVerdict:
     sentence: str
 
 
-@checks_types(potential=Potential, execution=Execution)
-def compute_birkhoff_digits(
-    potential: Potential, state: Any, t_max: float, *, execution: Execution = DEFAULT_EXECUTION
-) -> BirkhoffDigits:
-    """Compare weighted Birkhoff averages of x² and y² over two consecutive windows, for increasing window lengths.
+_Judged = tuple[Verdict | None, str]
+_Digits = BirkhoffDigits | None
 
-    The number of agreeing digits rises fast with the window length on a torus and stays at 1 to 3 along a chaotic orbit (Das,
-    Saiki, Sander & Yorke 2017, Nonlinearity 30, 4111; Sander & Meiss 2020, Physica D 411, 132569; Duignan & Meiss 2023, Physica D
-    449, 133749). `engine.evidence.birkhoff_averages` describes the weight function. The computation runs in the calling
-    thread and stops at the first window with `TORUS_DIGITS` digits.
 
-    Parameters
+@dataclass(frozen=True)
+class Indicator:
+    """An indicator of chaos.
+
+    Attributes
     ----------
-    potential
-        The `Potential`.
-    state
-        (4,) x, y, px, py at the start of the first window; finite, dimensionless.
-    t_max
-        Largest total time of two windows, 0 < t_max ≤ 1e8, dimensionless. No window uses more than 128 000.
-    execution
-        How the computation runs.
-
-    Returns
-    -------
-    The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for
-    2T ≤ t_max. They end early if the averages cannot be compared: on an orbit along an axis one coordinate is 0 throughout.
-    There are none around centres, which the fixed steps of the averages cannot pass.
-
-    Raises
-    ------
-    concurrent.futures.CancelledError
-        If cancelled.
-    ValueError
-        If `state` is not four finite numbers or `t_max` is out of range.
-
-    Examples
-    --------
-    >>> from escape_explorer import CASES, compute_birkhoff_digits
-    >>> compute_birkhoff_digits(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).digits.round(1)
-    array([8.9])
+    name
+        The name in texts.
+    value
+        Its value at the end of an orbit.
+    judge
+        The verdict on a bounded orbit, and the reason in words.
+    judge_inside
+        The verdict on an orbit that escapes; None if the indicator shows no chaos before that.
+    applies
+        Whether an orbit has this indicator.
+    of_deviations
+        Whether it follows from deviation vectors, which show chaos; other indicators recognise tori.
     """
-    start, units = checked_state("state", state), potential.units
-    t_max = potential.checked_t_max(t_max)
-    return units.restore(_compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution))
 
-
-def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:
-    """`compute_birkhoff_digits` of a state (1, 4) in units of the well."""
-    curves = exits_of_orbit(potential, float(potential.energy(start)[0]))[0][None]
-    orbit = OrbitBatch.from_starts(start, np.zeros(1, np.int64))
-    orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
-    digits: list[float] = []
-    # Not in units of the well, which are rounded: verdicts must not depend on the user's units.
-    unit = potential.well.exact_time_unit
-    windows = [window * unit for window in WINDOWS]
-    for window in windows:
-        if potential.centres or 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):
-            break
-        found = count_agreeing_digits(potential, start, window, execution=execution.in_this_thread())[0]
-        execution.raise_if_cancelled()
-        if found == 0.0:
-            break
-        digits.append(float(found))
-        if found >= TORUS_DIGITS:
-            break
-    return BirkhoffDigits(read_only(np.array(windows[: len(digits)])), read_only(np.array(digits)), unit)
-
-
-def _stays_inside(potential: Potential, curves: np.ndarray, orbit: OrbitBatch, t_end: float, execution: Execution) -> bool:
-    """Continue a batch of one orbit; whether it has not escaped by `t_end`."""
-    propagate_batch(potential, curves, orbit, np.arange(1), t_end, final=False, execution=execution.in_this_thread())
-    execution.raise_if_cancelled()
-    return bool(orbit.fate[0] == Fate.NOT_COMPUTED)
+    name: str
+    value: Callable[[Orbit, _Digits], float]
+    judge: Callable[[Orbit, _Digits], _Judged]
+    judge_inside: Callable[[Orbit], _Judged | None] = lambda orbit: None
+    applies: Callable[[Orbit, _Digits], bool] = lambda orbit, digits: True
+    of_deviations: bool = False
 
 
 @checks_types(orbit=Orbit, digits=(BirkhoffDigits, type(None)))
@@ -214,54 +141,46 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
     Lyapunov exponent no sign of chaos
     Birkhoff digits of halves regular
     """
-    values = _final_values(orbit, digits)
-    judged: list[tuple[Verdict | None, str]]
+    return tuple(_evaluate(indicator, orbit, digits) for indicator in INDICATORS if indicator.applies(orbit, digits))
+
+
+def _evaluate(indicator: Indicator, orbit: Orbit, digits: BirkhoffDigits | None) -> IndicatorVerdict:
+    judged: _Judged
     if orbit.fate == Fate.BOUNDED:
-        judged = [_judge_sali(orbit), _judge_exponent(orbit), _judge_halves(orbit)]
-        judged += [_judge_digits(orbit, digits)] if digits is not None else []
+        judged = indicator.judge(orbit, digits)
     elif orbit.fate >= 1:
-        judged = [_judge_sali_inside(orbit), _judge_growth_inside(orbit), (None, _describe_escape(orbit))][: len(values)]
+        judged = indicator.judge_inside(orbit) or (None, _describe_escape(orbit))
     else:
-        judged = [(None, describe_fate(orbit.fate, orbit.outcomes))] * len(values)
-    return tuple(IndicatorVerdict(name, value, *verdict) for (name, value), verdict in zip(values, judged, strict=True))
-
-
-def _final_values(orbit: Orbit, digits: BirkhoffDigits | None) -> list[tuple[str, float]]:
-    """Name and final value of each indicator."""
-    values = [("SALI", float(orbit.sali[-1])), ("Lyapunov exponent", float(orbit.lyapunov_exponent[-1]))]
-    if orbit.fate == Fate.BOUNDED:
-        values.append(("Birkhoff digits of halves", orbit.digits_of_halves))
-    if digits is not None:
-        values.append(("Birkhoff digits", float(digits.digits[-1]) if digits.digits.size else float("nan")))
-    return values
+        judged = (None, describe_fate(orbit.fate, orbit.outcomes))
+    return IndicatorVerdict(indicator.name, indicator.value(orbit, digits), *judged)
 
 
 def _describe_escape(orbit: Orbit) -> str:
     verb = outcome_of(orbit.fate, orbit.outcomes).present.partition(" ")[0]
-    return f"The orbit {verb} at t = {format_time(orbit.escape_time)}, so this is not a verdict."
+    return f"No sign of chaos before the orbit {verb} at t = {format_time(orbit.escape_time)}."
 
 
 def _describe_end(orbit: Orbit) -> str:
     return f"{outcome_of(orbit.fate, orbit.outcomes).event} at t = {format_time(orbit.escape_time)}"
 
 
-def _judge_sali_inside(orbit: Orbit) -> tuple[Verdict | None, str]:
-    """Verdict on an orbit that escapes, whose history ends there."""
+def _judge_sali_inside(orbit: Orbit) -> _Judged | None:
+    """Verdict on an orbit that escapes, whose history ends there; None without one."""
     least = float(np.min(orbit.sali))
     if not is_chaotic(least):
-        return None, _describe_escape(orbit)
+        return None
     return (
         Verdict.CHAOTIC_INSIDE,
         f"SALI fell to {least:.2g} before the {_describe_end(orbit)}: {CHAOS_THRESHOLD:g} or below is chaotic.",
     )
 
 
-def _judge_growth_inside(orbit: Orbit) -> tuple[Verdict | None, str]:
+def _judge_growth_inside(orbit: Orbit) -> _Judged | None:
     """The same from the growth of a deviation vector."""
     t_end = float(orbit.t[-1])
     log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
     if t_end < MIN_GROWTH_TIME * orbit.time_unit or log_growth <= _growth_limit(t_end, orbit.time_unit):
-        return None, _describe_escape(orbit)
+        return None
     power = f"t^{CHAOTIC_POWER:g}"
     return (
         Verdict.CHAOTIC_INSIDE,
@@ -274,7 +193,7 @@ def _growth_limit(t_end: float, time_unit: float) -> float:
     return CHAOTIC_POWER * float(np.log(t_end / time_unit))
 
 
-def _judge_sali(orbit: Orbit) -> tuple[Verdict, str]:
+def _judge_sali(orbit: Orbit, digits: _Digits) -> _Judged:
     value, t_end = float(orbit.sali[-1]), float(orbit.t[-1])
     if is_chaotic(value):
         verdict, reason = Verdict.CHAOTIC, f"{CHAOS_THRESHOLD:g} or below: the two deviation vectors are aligned"
@@ -287,7 +206,7 @@ def _judge_sali(orbit: Orbit) -> tuple[Verdict, str]:
     return verdict, f"SALI is {value:.2g}, {reason}."
 
 
-def _judge_exponent(orbit: Orbit) -> tuple[Verdict, str]:
+def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judged:
     t_end = float(orbit.t[-1])
     log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
     if t_end < MIN_GROWTH_TIME * orbit.time_unit:
@@ -327,7 +246,7 @@ def _fit_growth_power(orbit: Orbit) -> float:
     return float(slope)
 
 
-def _judge_halves(orbit: Orbit) -> tuple[Verdict, str]:
+def _judge_halves(orbit: Orbit, digits: _Digits) -> _Judged:
     value, t_end = orbit.digits_of_halves, float(orbit.t[-1])
     if t_end < MIN_REGULAR_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
@@ -338,8 +257,12 @@ def _judge_halves(orbit: Orbit) -> tuple[Verdict, str]:
     return verdict, f"Averages over both halves of the orbit agree to {value:.1f} digits, {reason}."
 
 
-def _judge_digits(orbit: Orbit, digits: BirkhoffDigits) -> tuple[Verdict, str]:
-    if not digits.digits.size:
+def _last_digits(orbit: Orbit, digits: _Digits) -> float:
+    return float(digits.digits[-1]) if digits is not None and digits.digits.size else float("nan")
+
+
+def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judged:
+    if digits is None or not digits.digits.size:
         return Verdict.UNDECIDED, f"No windows to compare: {_reason_without_windows(orbit)}."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])
     chaotic = CHAOTIC_DIGITS[min(WINDOWS, key=lambda known: abs(known - window / digits.time_unit))]
@@ -360,3 +283,34 @@ def _reason_without_windows(orbit: Orbit) -> str:
     if orbit.t[-1] < shortest:
         return f"t = {format_time(float(orbit.t[-1]))} is too short; the shortest two take t = {format_time(shortest)}"
     return "the orbit runs along an axis"
+
+
+INDICATORS = (
+    Indicator(
+        "SALI",
+        value=lambda orbit, digits: float(orbit.sali[-1]),
+        judge=_judge_sali,
+        judge_inside=_judge_sali_inside,
+        of_deviations=True,
+    ),
+    Indicator(
+        "Lyapunov exponent",
+        value=lambda orbit, digits: float(orbit.lyapunov_exponent[-1]),
+        judge=_judge_exponent,
+        judge_inside=_judge_growth_inside,
+        of_deviations=True,
+    ),
+    Indicator(
+        "Birkhoff digits of halves",
+        value=lambda orbit, digits: orbit.digits_of_halves,
+        judge=_judge_halves,
+        applies=lambda orbit, digits: orbit.fate == Fate.BOUNDED,
+    ),
+    Indicator(
+        "Birkhoff digits",
+        value=_last_digits,
+        judge=_judge_digits,
+        applies=lambda orbit, digits: digits is not None,
+    ),
+)
+"""The indicators, in the order of texts."""

@@ -13,8 +13,11 @@ from engine.foundations.wording import format_count, format_time
 from engine.propagation.evidence import Evidence, describe_evidence
 from engine.propagation.fates import Fate, OrbitResult, describe_fate, name_fate, outcome_of
 from engine.systems.outcomes import Outcome
-from engine.trajectories.chaos_indicators import BirkhoffDigits, IndicatorVerdict, Verdict, evaluate_indicators
+from engine.trajectories.birkhoff_digits import BirkhoffDigits
+from engine.trajectories.chaos_indicators import INDICATORS, IndicatorVerdict, Verdict, evaluate_indicators
 from engine.trajectories.trajectory import Orbit
+
+_OF_DEVIATIONS = {indicator.name for indicator in INDICATORS if indicator.of_deviations}
 
 
 @with_former_fields
@@ -93,6 +96,13 @@ class OrbitVerdict(OrbitResult):
         until = "for ever" if self.is_bounded_for_ever else f"until t = {format_time(self.t_end)}"
         return f"{self._stays} {until}, {self.character}"
 
+    def headline(self) -> str:
+        """The verdict in a short sentence without its reasons."""
+        if self.fate >= 1:
+            return f"{outcome_of(self.fate, self.outcomes).past} at t = {format_time(self.t_end)}{self._inside}"
+        words = self.summarize()
+        return words[0].upper() + words[1:]
+
     @property
     def _may_have_left(self) -> bool:
         """Whether it has not ended, but may have passed an exit that is not known."""
@@ -146,19 +156,19 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     """
     indicators = evaluate_indicators(orbit, digits)
     conclusions = [indicator.conclusion for indicator in indicators]
-    character = _combine(conclusions) if orbit.fate == Fate.BOUNDED else _character_inside(conclusions)
+    character = _combine(indicators) if orbit.fate == Fate.BOUNDED else _character_inside(conclusions)
     evidence = _find_evidence(orbit, digits, Verdict.CHAOTIC in conclusions)
     deciding = _deciding_indicators(indicators, character)
     t_end, known = float(orbit.t[-1]), (orbit.outcomes, orbit.exits_unknown)
     return OrbitVerdict(orbit.fate, t_end, orbit.crossings, evidence, character, deciding, *known)
 
 
-def _combine(conclusions: Sequence[Verdict | None]) -> Verdict:
-    decided = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(conclusions)
+def _combine(indicators: Sequence[IndicatorVerdict]) -> Verdict:
+    decided = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(one.conclusion for one in indicators)
     if len(decided) == 1:
         return decided.pop()
-    of_deviations = conclusions[:2]
-    return Verdict.NO_SIGN if not decided and set(of_deviations) == {Verdict.NO_SIGN} else Verdict.UNDECIDED
+    of_deviations = {one.conclusion for one in indicators if one.name in _OF_DEVIATIONS}
+    return Verdict.NO_SIGN if not decided and of_deviations == {Verdict.NO_SIGN} else Verdict.UNDECIDED
 
 
 def _character_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:

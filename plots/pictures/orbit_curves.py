@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,13 +10,8 @@ import numpy as np
 from engine import Orbit, Potential, Window, default_window
 from engine.foundations.extras import require_package
 from engine.slices.planes import SPACE
-from plots.pictures.histories import History, reduce_history
-
-LEAST_SALI = 1e-17
-"""Lower end of the logarithmic axis of SALI."""
-
-LEAST_EXPONENT = 1e-7
-"""Lower end of the logarithmic axis of the Lyapunov exponent."""
+from plots.pictures.histories import History
+from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 
 MOST_LINE_POINTS = 20_000
 """Paths with more points are drawn as density images."""
@@ -40,8 +36,8 @@ class OrbitCurves:
         The orbit.
     window
         Window of the (x, y) plane that contains the interior at its energy.
-    sali, exponent, r2
-        Its histories, from the first sample after t = 0 on.
+    histories
+        The history of each of `ORBIT_QUANTITIES` by name.
     section
         (n, 2) x and px of its upward crossings of y = 0.
     visits
@@ -52,9 +48,7 @@ class OrbitCurves:
 
     orbit: Orbit
     window: Window
-    sali: History
-    exponent: History
-    r2: History
+    histories: Mapping[str, History]
     section: np.ndarray
     visits: np.ndarray | None
     part: slice = slice(None)
@@ -81,7 +75,7 @@ def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: boo
     everything = slice(None)
     section = orbit.find_section_crossings()
     visits = _visits(orbit, window, everything) if with_visits else None
-    return OrbitCurves(orbit, window, *_histories(orbit, everything), section, visits)
+    return OrbitCurves(orbit, window, _histories(orbit, everything), section, visits)
 
 
 def find_well_window(potential: Potential, energy: float) -> Window:
@@ -113,21 +107,12 @@ def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurve
     """
     t = curves.orbit.t
     part = slice(int(np.searchsorted(t, begin)), int(np.searchsorted(t, end, side="right")))
-    sali, exponent, r2 = _histories(curves.orbit, part)
     visits = _visits(curves.orbit, curves.window, part)
-    return replace(curves, sali=sali, exponent=exponent, r2=r2, visits=visits, part=part)
+    return replace(curves, histories=_histories(curves.orbit, part), visits=visits, part=part)
 
 
-def _histories(orbit: Orbit, part: slice) -> tuple[History, History, History]:
-    """SALI, the Lyapunov exponent and R² over some samples, from the first one after t = 0 on."""
-    later = slice(max(part.start or 0, int(orbit.t[0] == 0.0)), part.stop)
-    sali = np.maximum(orbit.sali[later], LEAST_SALI)
-    exponent = np.maximum(orbit.lyapunov_exponent[later], LEAST_EXPONENT)
-    return (
-        reduce_history(orbit.t[later], sali, logarithmic=True),
-        reduce_history(orbit.t[later], exponent, logarithmic=True),
-        reduce_history(orbit.t[later], orbit.r2[later], logarithmic=False),
-    )
+def _histories(orbit: Orbit, part: slice) -> dict[str, History]:
+    return {quantity.name: quantity.history(orbit, part) for quantity in ORBIT_QUANTITIES}
 
 
 def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:

@@ -33,8 +33,9 @@ RENDER_LOCK = threading.Lock()
 MOST_PIXELS = 20_000_000
 """Most pixels of a PNG file: those of four maps 16 cm wide at 600 pixels per inch. Drawing takes up to 50 bytes for each."""
 
-# The STIX fonts are part of Matplotlib; they have Greek letters, fractions and mathematical symbols.
-_FAMILY, _MATHS = ["STIXGeneral", "serif"], "stix"
+# Parts of Matplotlib: STIX has Greek letters, fractions and mathematical symbols; the second font has the superscripts
+# that it lacks.
+_FAMILY, _MATHS = ["STIXGeneral", "DejaVu Serif", "serif"], "stix"
 _FILE_OPTIONS: Any = {
     # Text stays text. Programs without the STIX fonts show that of SVG files in another font of about the same width.
     "svg.fonttype": "none",

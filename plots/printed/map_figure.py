@@ -25,7 +25,6 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from engine import (
-    CASES,
     EscapeMap,
     Fate,
     Potential,
@@ -46,6 +45,7 @@ from plots.pictures.map_images import (
     picture_pixels,
 )
 from plots.pictures.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
+from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale, fitted_scale
 from plots.printed.figure_axes import (
     add_legend_below,
@@ -366,17 +366,3 @@ def picture_entries(frame: EscapeMap, picture: str, palette: Palette, analyses: 
         return [*palette.passage_entries(frame.spec.outcomes), *outcomes]
     classes = {"basins": palette.legend_entries(frame.spec.outcomes), "crossings": palette.crossing_entries}
     return [*classes.get(picture, []), *outcomes]
-
-
-def provenance_line(frame: EscapeMap) -> str:
-    """Provenance of a map in a line: potential, h, plane, window, resolution, t_max and version."""
-    facts, plane = frame.provenance(), frame.spec.plane
-    x_low, x_high, low, high = (repr(float(edge)) for edge in facts["window"])
-    name, (columns, rows) = facts["potential"], facts["resolution"]
-    energy = "" if frame.spec.common_energy is None else f"h = {facts['energy']!r}, "
-    abscissa, ordinate = plane.axis_symbols
-    return (
-        f"{'Case' if name in CASES else 'Potential'} {name}, {energy}plane {plane.title}, {abscissa} from {x_low} to {x_high}, "
-        f"{ordinate} from {low} to {high}, {columns} × {rows} starts, t_max = {facts['t_max']:g}, "
-        f"{'' if frame.complete else 'not finished, '}escape-explorer {facts['version']}"
-    )

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import count, cycle
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import CHAOS_THRESHOLD, Potential, Window
-from engine.foundations.wording import format_number
+from engine import Potential, Window
 from engine.slices.planes import SPACE
 from plots.pictures.histories import ENVELOPE_ALPHA, History
-from plots.pictures.orbit_curves import LEAST_SALI, OrbitCurves, find_well_window
-from plots.pictures.palette import LIGHT, Palette
+from plots.pictures.orbit_curves import OrbitCurves, find_well_window
+from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
+from plots.pictures.palette import THRESHOLD, Palette
 from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
@@ -28,11 +29,12 @@ from plots.printed.figure_style import SCREEN, FigureStyle
 from plots.printed.map_figure import draw_curve, draw_limits, draw_pixels, show_window
 from plots.printed.potential_figure import draw_well
 
-_DrawHistory = Callable[[Axes, OrbitCurves, str, FigureStyle], None]
-
 # Height of the figure with two columns and with one, in units of its width.
 _HEIGHT, _HEIGHT_OF_COLUMN = 0.58, 1.9
-_LARGEST_SALI, _EARLIEST_TIME = 10.0**0.5, 0.01
+_EARLIEST_TIME = 0.01
+_PATH = "path"
+# The exponent says the same as SALI.
+_PRINTED = {quantity.name: quantity for quantity in ORBIT_QUANTITIES if quantity.name != "exponent"}
 
 
 def draw_orbits_figure(
@@ -51,14 +53,15 @@ def draw_orbits_figure(
     title = f"{'Orbit' if len(orbits) == 1 else 'Orbits'} at h = {', '.join(_energies(orbits))}"
     figure = new_figure(style, style.width * (_HEIGHT_OF_COLUMN if one_column else _HEIGHT), title)
     if one_column:
-        panels = figure.subplot_mosaic([["path"], ["sali"], ["r2"]], height_ratios=[2, 1, 1])
+        column: list[list[Any]] = [[_PATH], *([name] for name in _PRINTED)]
+        panels = figure.subplot_mosaic(column, height_ratios=[2, *([1] * len(_PRINTED))])
     else:
-        panels = figure.subplot_mosaic([["path", "sali"], ["path", "r2"]])
-    draw_path(panels["path"], potential, orbits, palette, style)
-    for name, draw in (("sali", draw_sali), ("r2", draw_r2)):
-        _draw_together(panels[name], draw, orbits, palette, style)
+        panels = figure.subplot_mosaic([[_PATH, name] for name in _PRINTED])
+    draw_path(panels[_PATH], potential, orbits, palette, style)
+    for name, quantity in _PRINTED.items():
+        draw_quantity(panels[name], quantity, orbits, palette, style)
     if len(orbits) > 1:
-        add_panel_legend(panels["sali"], "lower left", style)
+        add_panel_legend(panels[next(iter(_PRINTED))], "lower left", style)
     if style.titles:
         lines = [f"{number}: {verdict}" for number, verdict in enumerate(verdicts, 1)] if len(orbits) > 1 else verdicts
         write_below(figure, lines, style)
@@ -84,17 +87,6 @@ def _energies(orbits: Sequence[OrbitCurves]) -> list[str]:
     return list(dict.fromkeys(f"{curves.orbit.energy:.6g}" for curves in orbits))
 
 
-def _draw_together(axes: Axes, draw: _DrawHistory, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle) -> None:
-    """Draw a history of several orbits; each sets the limits of the axes for itself."""
-    limits = []
-    for curves, colour, number in zip(orbits, cycle(palette.orbits), count(1), strict=False):
-        draw(axes, curves, colour, style)
-        axes.plot([], [], color=colour, label=f"orbit {number}")
-        limits.append((axes.get_xlim(), axes.get_ylim()))
-    axes.set_xlim(min(x[0] for x, _ in limits), max(x[1] for x, _ in limits))
-    axes.set_ylim(min(y[0] for _, y in limits), max(y[1] for _, y in limits))
-
-
 def draw_path(
     axes: Axes, potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
@@ -116,28 +108,29 @@ def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palet
             draw_pixels(axes, pixels.view(np.uint8).reshape(*pixels.shape, 4), curves.window, window)
 
 
-def draw_sali(axes: Axes, curves: OrbitCurves, colour: str, style: FigureStyle = SCREEN) -> None:
-    """SALI against time, both on logarithmic scales, with the threshold of chaos."""
-    _draw_history(axes, curves.sali, curves, colour, style)
-    axes.set_yscale("log")
-    axes.set_ylim(LEAST_SALI, _LARGEST_SALI)
-    axes.axhline(CHAOS_THRESHOLD, color=LIGHT.equipotential, linewidth=1.0)
-    label_axes(axes, "t", "SALI", style)
-    name_panel(axes, f"SALI (chaotic at {format_number(CHAOS_THRESHOLD)} or less)", style)
+def draw_quantity(
+    axes: Axes, quantity: OrbitQuantity, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
+) -> None:
+    """A quantity of orbits against the logarithm of time."""
+    histories = [curves.histories[quantity.name] for curves in orbits]
+    for history, colour, number in zip(histories, cycle(palette.orbits), count(1), strict=False):
+        _draw_history(axes, history, colour, f"orbit {number}")
+    axes.set_xscale("log")
+    axes.set_xlim(_EARLIEST_TIME, max(10.0 * _EARLIEST_TIME, *(float(curves.orbit.t[-1]) for curves in orbits)))
+    if quantity.logarithmic:
+        axes.set_yscale("log")
+    drawn = [history for history in histories if history.line[0].size]
+    if drawn:
+        axes.set_ylim(*quantity.limits(drawn))
+    if quantity.threshold is not None:
+        axes.axhline(quantity.threshold, color=THRESHOLD, linestyle="--", linewidth=1.0)
+    style_axes(axes, style)
+    label_axes(axes, "t", quantity.label, style)
+    name_panel(axes, quantity.title, style)
 
 
-def draw_r2(axes: Axes, curves: OrbitCurves, colour: str, style: FigureStyle = SCREEN) -> None:
-    """R² against the logarithm of time."""
-    _draw_history(axes, curves.r2, curves, colour, style)
-    axes.set_ylim(0.0, 1.05 * max(float(curves.orbit.r2.max()), 1e-3))
-    label_axes(axes, "t", "R²", style)
-    name_panel(axes, "R² = x² + y²", style)
-
-
-def _draw_history(axes: Axes, history: History, curves: OrbitCurves, colour: str, style: FigureStyle) -> None:
-    """A history, with its envelope where it is a mean, against the logarithm of time."""
+def _draw_history(axes: Axes, history: History, colour: str, label: str) -> None:
+    """A history, with its envelope where it is a mean."""
     t, low, high = history.band
     axes.fill_between(t, low, high, color=colour, alpha=ENVELOPE_ALPHA, linewidth=0.0)
-    axes.semilogx(*history.line, color=colour, linewidth=1.0)
-    axes.set_xlim(_EARLIEST_TIME, max(float(curves.orbit.t[-1]), 10.0 * _EARLIEST_TIME))
-    style_axes(axes, style)
+    axes.plot(*history.line, color=colour, linewidth=1.0, label=label)

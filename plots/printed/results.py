@@ -45,11 +45,12 @@ from plots.pictures.image_columns import passage_column
 from plots.pictures.map_analyses import MapAnalyses
 from plots.pictures.map_images import TITLES
 from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, PALETTES, Entry, Palette, rgba
 from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
 from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
 from plots.printed.map_figure import draw_limits, draw_manifolds, draw_picture, draw_pixels, picture_entries, show_window
-from plots.printed.orbit_figure import draw_path, draw_r2, draw_sali
+from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
 
 _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
@@ -191,10 +192,11 @@ def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "pat
         axes.set_box_aspect(1.0)
         draw_path(_panel(axes, curves.window), result.potential, [curves], palette)
         axes.set_box_aspect(axes.child_axes[-1].get_box_aspect())
-    elif show in ("sali", "r2"):
-        (draw_sali if show == "sali" else draw_r2)(axes, curves, palette.orbits[0])
-    else:
-        raise ValueError(f"show={show!r}: must be one of path, sali, r2")
+        return
+    quantity = next((one for one in ORBIT_QUANTITIES if one.name == show), None)
+    if quantity is None:
+        raise ValueError(f"show={show!r}: must be one of path, {', '.join(one.name for one in ORBIT_QUANTITIES)}")
+    draw_quantity(axes, quantity, [curves], palette)
 
 
 @_draw.register

@@ -171,10 +171,11 @@ def _numbers(numbers: Sequence[float]) -> str:
 def file_stem(spec: MapSpec, case: str) -> str:
     """File name for a map, without an ending: letters, digits and ``_ . + -`` only.
 
-    It has the case, plane, energy, t_max and, unless the map shows the whole plane, the window.
+    It has the case, the rotation if there is one, plane, energy, t_max and, unless the map shows the whole plane, the window.
     """
     energy = repr(spec.energy).strip("()").replace(", ", "-")
-    stem = f"escapes-{case}-{spec.plane.key}-h{energy}-t{spec.t_max:g}"
+    rotation = f"-rotation{spec.potential.rotation:g}" if spec.potential.rotation else ""
+    stem = f"escapes-{case}{rotation}-{spec.plane.key}-h{energy}-t{spec.t_max:g}"
     window = spec.given_window
     if window is not None:
         x, ordinate = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)

@@ -86,3 +86,11 @@ def test_the_equations_are_those_of_the_system(explorer: ExplorerPage) -> None:
     explorer.press("Help")
     expect(explorer.text("Equations: Case III")).to_be_visible()
     close(explorer, "Help")
+
+
+def test_escape_closes_a_drawer_from_a_box_in_it(explorer: ExplorerPage) -> None:
+    explorer.press("Other …")
+    box = explorer.page.locator(".formula-box textarea")
+    expect(box).to_be_focused()
+    explorer.page.keyboard.press("Escape")
+    expect(box).to_have_count(0)

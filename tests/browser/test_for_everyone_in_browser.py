@@ -45,10 +45,20 @@ def test_the_dark_theme_has_light_lines_and_titles_and_is_stored(open_explorer: 
     assert explorer.page.evaluate(TITLE_COLOUR) == "#1b2027"
 
 
-def test_a_dark_system_gives_a_dark_page(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_the_page_follows_the_theme_of_the_system_until_the_user_chooses_one(
+    open_explorer: Callable[..., ExplorerPage],
+) -> None:
     explorer = open_explorer(link=QUICK, theme="dark")
+    chosen = explorer.page.get_by_role("button", name="Dark theme")
     assert luminance(explorer) < 50
-    expect(explorer.page.get_by_role("button", name="Dark theme")).to_have_attribute("aria-pressed", "true")
+    expect(chosen).to_have_attribute("aria-pressed", "true")
+    explorer.page.emulate_media(color_scheme="light")
+    expect(chosen).to_have_attribute("aria-pressed", "false")
+    assert luminance(explorer) > 200
+    explorer.press("Dark theme")
+    explorer.page.emulate_media(color_scheme="dark")
+    explorer.page.emulate_media(color_scheme="light")
+    expect(chosen).to_have_attribute("aria-pressed", "true")
 
 
 NAMES = {

@@ -168,7 +168,7 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
         texts[SHARES] = [percent(share, 2) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED]
     # What is said of a bounded orbit depends on indicators that follow later.
     if shown.orbit is not None and shown.orbit.fate > Fate.BOUNDED and state.analysis is Analysis.ORBIT:
-        texts[VERDICT] = [judge_orbit(shown.orbit).describe()]
+        texts[VERDICT] = [judge_orbit(shown.orbit).headline()]
     return texts
 
 

@@ -92,3 +92,23 @@ def test_the_time_runs_backwards_until_all_are_inside_again(open_explorer: OpenE
     expect(explorer.text("t = 0.0")).to_be_visible()
     expect(play).to_be_visible()
     assert inside(explorer) == 1000
+
+
+_OVER_THE_WELL = """() => {
+    const well = [...Bokeh.index.all_views()].find(view => view.model.name == 'well')
+    const [canvas, {left, top, width, height}] = [well.canvas_view.el.getBoundingClientRect(), well.frame.bbox]
+    const all = root => [...root.querySelectorAll('*')].flatMap(node => [node, ...(node.shadowRoot ? all(node.shadowRoot) : [])])
+    const over = all(document).filter(node => node.tagName == 'CANVAS' && node.style.position == 'fixed')
+    const painted = over.map(each => each.getBoundingClientRect())
+    const near = (one, other) => Math.abs(one - other) < 1
+    return painted.some(box => near(box.left, canvas.left + left) && near(box.top, canvas.top + top)
+        && near(box.width, width) && near(box.height, height))
+}"""
+
+
+def test_the_orbits_stay_over_the_well_when_the_page_changes_its_size(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,1000,1,-2")
+    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
+    explorer.page.wait_for_function(_OVER_THE_WELL)
+    explorer.page.set_viewport_size({"width": 1100, "height": 650})
+    explorer.page.wait_for_function(_OVER_THE_WELL)

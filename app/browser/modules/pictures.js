@@ -32,6 +32,27 @@ function withBox(view) {
 }
 
 /**
+ * Call a function when a picture that is painted over has moved, or when the theme has changed.
+ *
+ * No event tells of all causes: windows, layers and panels change the layout, and Bokeh follows some frames later.
+ *
+ * @param {() => void} call
+ * @returns {() => void} ends the calls
+ */
+export function onMoved(call) {
+  let [waiting, last] = [0, ""]
+  const look = () => {
+    const boxes = [wellFrame()?.box, frames()[0]?.box]
+    const now = JSON.stringify([boxes, devicePixelRatio, document.documentElement.dataset.theme])
+    if (now !== last) call()
+    last = now
+    waiting = requestAnimationFrame(look)
+  }
+  waiting = requestAnimationFrame(look)
+  return () => cancelAnimationFrame(waiting)
+}
+
+/**
  * Make a canvas cover a box on the screen.
  *
  * @param {HTMLCanvasElement} canvas

@@ -5,7 +5,7 @@ import {Outcomes} from "./outcomes.js"
 import {Ensemble} from "./ensemble.js"
 import {drawStarts} from "./ensemble_starts.js"
 import {Integrator} from "./integrator.js"
-import {cover, frames, wellFrame} from "./pictures.js"
+import {cover, frames, onMoved, wellFrame} from "./pictures.js"
 import {onPresent, present} from "./present.js"
 import {energyAxis, energyUnit} from "./slice.js"
 import {drawSurvival} from "./survival_chart.js"
@@ -128,6 +128,7 @@ class Watch {
   #frame = 0
   #painted = 0
   #unlisten = onPresent(() => this.#follow())
+  #stay = onMoved(() => this.#draw())
 
   #listen() {
     const model = this.#model
@@ -398,6 +399,7 @@ class Watch {
     cancelAnimationFrame(this.#frame)
     cancelAnimationFrame(this.#nextSearch)
     this.#unlisten()
+    this.#stay()
     for (const canvas of [this.#well, this.#section]) canvas.remove()
   }
 }

@@ -9,8 +9,8 @@ from typing import Protocol
 
 import panel as pn
 
-from app.browser.formula_box import FormulaBox
-from app.browser.parameter_slider import ParameterSlider
+from app.browser.inputs.formula_box import FormulaBox
+from app.browser.inputs.parameter_slider import ParameterSlider
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import button, flex_row
 from engine import PotentialReview, System

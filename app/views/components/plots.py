@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -15,14 +16,17 @@ from bokeh.models import BasicTickFormatter, CustomJSHover, CustomJSTickFormatte
 from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
-from app.browser.callbacks import callback_code
+from app.browser.javascript import callback_code
 from app.state.help_texts import title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
 
-_OFFSET_LABEL = callback_code("offset_ticks.js", "offsetLabel(tick, base, unit)")
+_OFFSET_LABEL = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
-HOVER_FORMATS = {name: callback_code("hover_texts.js", f"{name}(value)") for name in ("number", "count", "percent")}
+HOVER_TEXTS = Path(__file__).with_name("hover_texts.js")
+"""The functions that write the texts of hover tools."""
+
+HOVER_FORMATS = {name: callback_code(HOVER_TEXTS, f"{name}(value)") for name in ("number", "count", "percent")}
 """JavaScript that writes a `value`: four digits, a whole number in groups of digits, a share."""
 
 HISTORY_ASPECT = 1.9

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
-from app.browser.callbacks import callback_code
+from app.browser.javascript import callback_code
+from app.views.components.plots import HOVER_TEXTS
 from engine import Evidence, Fate, Regularity, Trust
 from engine.propagation.evidence import describe_evidence
 from plots.pictures.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
@@ -26,9 +27,9 @@ CHARACTER = {
 """What is known of a bounded orbit while the layer "Regular or chaotic" is on."""
 
 _COLUMNS = "{maps: maps.data, doubts: doubts.data, compared: compared.data}"
-_DETAILS = callback_code("hover_texts.js", f"pixelDetails(special_vars.image_index.flat_index, {_COLUMNS}, codes, words)")
-_FATE = callback_code("hover_texts.js", "fateName(value, names, maps.data)")
-_PLACE = callback_code("hover_texts.js", "coordinate(value, range)")
+_DETAILS = callback_code(HOVER_TEXTS, f"pixelDetails(special_vars.image_index.flat_index, {_COLUMNS}, codes, words)")
+_FATE = callback_code(HOVER_TEXTS, "fateName(value, names, maps.data)")
+_PLACE = callback_code(HOVER_TEXTS, "coordinate(value, range)")
 
 _DETAILS_TEXT = '<div style="white-space:pre-line">@crossing_class{custom}</div>'
 _TEXT = (

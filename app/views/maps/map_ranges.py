@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import astuple
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from bokeh.events import Pinch, PinchStart
 from bokeh.models import CustomJS, Range1d
 from bokeh.plotting import figure
 
-from app.browser.callbacks import callback_code
+from app.browser.javascript import callback_code
 from engine import MapSpec, Window
 from engine.maps.spec import finest_pixel
 
@@ -23,7 +24,7 @@ GESTURE_PAUSE_MS = 500
 REST_MS = 90
 """A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
 
-_FOLLOW = callback_code("two_fingers.js", "followFingers(cb_obj, ranges, held)")
+_FOLLOW = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 
 Edges = tuple[float, float, float, float]
 """Ends of the ranges of x and of the ordinate: low, high, low, high."""

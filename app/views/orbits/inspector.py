@@ -12,17 +12,17 @@ from app.views.orbits.separation_plot import SeparationPlot
 
 
 class Inspector:
-    """A line to type a start; below it the list of the orbits, the player, the histories, and the verdicts and values."""
+    """The verdict on the chosen orbit, the player, the histories, the indicators and values; last, a line to type a start."""
 
     def __init__(self, controls: OrbitControls, playback: Playback, plots: OrbitPlots, separation: SeparationPlot) -> None:
         self._controls, self._playback, self._plots, self._separation = controls, playback, plots, separation
         self._head: list[pn.viewable.Viewable] = []
         self._details: list[pn.viewable.Viewable] = []
         self._plotted: list[pn.viewable.Viewable] = []
+        self._entry = controls.entry()
         self._grid = pn.Column(
-            *controls.entry(), sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
+            controls.note, *self._entry, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
         )
-        self._entry = [*self._grid.objects]
 
     def layout(self) -> pn.viewable.Viewable:
         """The whole inspector."""
@@ -34,6 +34,7 @@ class Inspector:
             self._head, self._details = [self._controls.head(self._playback.layout())], self._controls.details()
         if orbits >= 1 and not self._plotted:
             self._plotted = [*self._plots.build(), self._separation.build()]
-        parts = [*self._entry, *([*self._head, *(self._plotted if orbits >= 1 else []), *self._details] if starts >= 1 else [])]
+        shown = [*(self._plotted if orbits >= 1 else []), *self._details] if starts >= 1 else []
+        parts = [*(self._head if starts >= 1 else []), self._controls.note, *shown, *self._entry]
         if parts != self._grid.objects:
             self._grid.objects = parts

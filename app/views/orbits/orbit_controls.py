@@ -1,4 +1,4 @@
-"""Controls of the orbits: starts to type, the list of orbits, and the values and verdicts of the chosen one."""
+"""Controls of the orbits: their numbers, the verdict on the chosen one and its values, and starts to type."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from html import escape
 
 import panel as pn
 
-from app.browser.orbit_list import OrbitList
+from app.browser.components.orbit_list import OrbitList
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.glossary import with_terms
 from app.views.components.collapsible_section import Fold
@@ -59,8 +59,9 @@ class OrbitControls:
         self._all_times = button("Whole orbit", actions.show_all_times, margin=0, visible=False)
         self._interval_row = flex_row(self.interval, self._all_times, justify="space-between", align="center")
         self._interval_row.param.update(margin=(0, 10), css_classes=["interval"])
-        self.note = TextPane(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
         self.text = TextPane("", name="verdict", sizing_mode="stretch_width", margin=(0, 10), css_classes=["verdict"])
+        self.note = TextPane(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
+        self.reason = TextPane("", name="reason", sizing_mode="stretch_width", margin=(0, 10))
         self.values = TextPane("", name="values", sizing_mode="stretch_width", margin=(0, 10))
         self.indicators = TextPane("", name="indicators", sizing_mode="stretch_width", margin=(0, 10))
         self._verdicts: Sequence[IndicatorVerdict] = ()
@@ -69,22 +70,21 @@ class OrbitControls:
             box.param.watch(lambda event: self._submit(), "enter_pressed")
 
     def entry(self) -> list[pn.viewable.Viewable]:
-        """The hint or message, the boxes to type a start, and the list of the orbits."""
-        boxes = Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")])
-        return [self.note, *boxes.parts(), self.list]
+        """The boxes to type a start, to unfold."""
+        return Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")]).parts()
 
     def head(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
-        """Buttons, the fate of the chosen one in a line, and the player."""
+        """The numbers of the orbits, the verdict on the chosen one, buttons, and the player."""
         buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
-        buttons.margin = (5, 4)
+        buttons.margin = (5, 10)
         return pn.Column(
-            buttons, self.text, playback, self._interval_row,
+            self.list, self.text, buttons, playback, self._interval_row,
             sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT,
         )  # fmt: skip
 
     def details(self) -> list[pn.viewable.Viewable]:
-        """The values of the chosen orbit, to unfold, and the verdicts on it."""
-        return [*Fold("Values", lambda: [self.values, self.copy]).parts(), self.indicators]
+        """The verdict of each indicator on the chosen orbit, and its values, to unfold."""
+        return [self.indicators, *Fold("Values", lambda: [self.reason, self.values, self.copy]).parts()]
 
     def follow_plane(self, plane: Slice) -> None:
         """Label the boxes with the axes of the plane."""
@@ -106,11 +106,11 @@ class OrbitControls:
 
     def say(self, sentence: str) -> None:
         """Show a message about the orbits."""
-        self.note.object = escape(sentence)
+        self.note.param.update(object=escape(sentence), visible=bool(sentence))
 
     def end_message(self, *, has_orbits: bool) -> None:
         """Remove a message about an orbit that is no longer shown."""
-        self.note.object = "" if has_orbits else HINT
+        self.say("" if has_orbits else HINT)
 
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
         """Show the verdict of each chaos indicator on the chosen orbit."""
@@ -123,7 +123,7 @@ class OrbitControls:
         self.indicators.object = with_terms(f"<table aria-label='chaos indicators'>{rows}</table>") if rows else ""
 
     def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
-        """Show the list of orbits, and the values and verdict of the chosen one."""
+        """Show the numbers of the orbits, and the verdict on the chosen one with its values."""
         self._shown = (tuple(orbits), chosen)
         rows = [_row(orbits, place) for place in range(len(orbits))]
         self.list.param.update(rows=rows, chosen=chosen, visible=bool(orbits))
@@ -131,7 +131,8 @@ class OrbitControls:
             return
         one = orbits[chosen]
         self.x.value, self.ordinate.value = (f"{number!r}" for number in one.start)
-        self.text.object = escape(one.describe())
+        self.text.object = escape(one.headline())
+        self.reason.object = escape(one.describe())
         self.values.object = _values(one.orbit)
 
     def _rows(self) -> list[tuple[str, str, str]]:

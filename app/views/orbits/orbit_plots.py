@@ -1,4 +1,4 @@
-"""Histories of the chosen orbits, each in its colour: SALI(t), R²(t), Lyapunov exponent."""
+"""Histories of the chosen orbits, each in its colour: a plot for each of `ORBIT_QUANTITIES`."""
 
 from __future__ import annotations
 
@@ -19,21 +19,15 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.views.components.orbit_lines import band_columns, band_style, in_front, line_columns, line_style, lines, opacities
-from app.views.components.plots import HISTORY_ASPECT, FigurePane, set_decades, set_range, square_figure
-from engine import CASES, CHAOS_THRESHOLD, integrate_orbit, start_states
-from engine.foundations.wording import format_number
+from app.views.components.plots import HISTORY_ASPECT, FigurePane, set_range, square_figure
+from engine import CASES, integrate_orbit, start_states
 from engine.slices.section import SECTION
-from plots.pictures.histories import History
-from plots.pictures.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves
+from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
+from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
 from plots.pictures.palette import MARK_EDGE, PAPER, THRESHOLD, Palette
 
-TITLES = {
-    "sali": f"SALI (chaotic at or below {format_number(CHAOS_THRESHOLD)})",
-    "r2": "R² = x² + y²",
-    "exponent": "Lyapunov exponent until t",
-}
-_HISTORIES = ("sali", "exponent", "r2")
-_SALI_TICKS = (1e-16, 1e-12, 1e-8, 1e-4, 1.0)
+# All histories have the same times.
+_FIRST = ORBIT_QUANTITIES[0].name
 
 
 class OrbitPlots:
@@ -48,19 +42,19 @@ class OrbitPlots:
     def __init__(self, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
         self._on_brush = on_brush
         self._by_touch = False
-        self._times, self._sali = Range1d(0.1, 10.0), Range1d(LEAST_SALI, 10.0)
-        self._exponents, self._r2 = Range1d(1e-4, 10.0), Range1d(0.0, 1.0)
+        self._times = Range1d(0.1, 10.0)
+        self._ranges = {quantity.name: Range1d(0.1, 10.0) for quantity in ORBIT_QUANTITIES}
         self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
-        self._histories = {name: lines(f"{name}_histories") for name in _HISTORIES}
-        self._bands = {name: lines(f"{name}_bands") for name in _HISTORIES}
+        self._histories = {name: lines(f"{name}_histories") for name in self._ranges}
+        self._bands = {name: lines(f"{name}_bands") for name in self._ranges}
         self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._drawings: list[tuple[int, OrbitCurves]] = []
         self.set_palette(PAPER)
 
     def build(self) -> list[FigurePane]:
-        """Make the figures: SALI, R² and Lyapunov exponent."""
+        """Make a figure of each of `ORBIT_QUANTITIES`."""
         events = {SelectionGeometry: self._brushed, DoubleTap: lambda event: self._on_brush(None)}
-        return [FigurePane(plot, events) for plot in self._draw_histories()]
+        return [FigurePane(self._draw(quantity), events) for quantity in ORBIT_QUANTITIES]
 
     def begin_touch(self) -> None:
         """The page is used by touch: dragging over a history scrolls the page."""
@@ -73,8 +67,8 @@ class OrbitPlots:
         """
         self._drawings = in_front(drawings, chosen)
         alphas = opacities(self._drawings, chosen)
-        for name in _HISTORIES:
-            histories: list[History] = [getattr(drawing, name) for _, drawing in self._drawings]
+        for name in self._ranges:
+            histories = [drawing.histories[name] for _, drawing in self._drawings]
             self._histories[name].data = line_columns(self._drawings, [history.line for history in histories], alphas)
             self._bands[name].data = band_columns(self._drawings, [history.outline for history in histories], alphas)
         self._scale(interval)
@@ -87,27 +81,21 @@ class OrbitPlots:
         """Set the colours of the orbits."""
         self._mapper.palette = list(palette.orbits)
 
-    def _draw_histories(self) -> list[figure]:
-        axes: dict[str, dict[str, Any]] = {
-            "sali": {"y_axis_label": "SALI", "y_range": self._sali, "y_axis_type": "log"},
-            "exponent": {"y_axis_label": "(1/t) ln|w|", "y_range": self._exponents, "y_axis_type": "log"},
-            "r2": {"y_axis_label": "R²", "y_range": self._r2},
-        }
+    def _draw(self, quantity: OrbitQuantity) -> figure:
+        name, scale = quantity.name, "log" if quantity.logarithmic else "linear"
         time: dict[str, Any] = {"x_axis_label": "t", "x_axis_type": "log", "x_range": self._times}
-        plots = {
-            name: square_figure(name, TITLES[name], tools=[_brush()], aspect_ratio=HISTORY_ASPECT, **time, **options)
-            for name, options in axes.items()
-        }
-        for name, plot in plots.items():
-            plot.toolbar.active_drag = None if self._by_touch else plot.toolbar.tools[0]
-            plot.add_glyph(self._bands[name], Patches(**band_style(self._mapper)))
-            plot.add_glyph(self._histories[name], MultiLine(**line_style(self._mapper)))
-            plot.add_layout(self._now)
-        # A logarithmic ticker writes more labels than there is room for.
-        plots["sali"].yaxis.ticker = FixedTicker(ticks=list(_SALI_TICKS))
-        threshold = Span(location=CHAOS_THRESHOLD, dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
-        plots["sali"].add_layout(threshold)
-        return list(plots.values())
+        values: dict[str, Any] = {"y_axis_label": quantity.label, "y_axis_type": scale, "y_range": self._ranges[name]}
+        plot = square_figure(name, quantity.title, tools=[_brush()], aspect_ratio=HISTORY_ASPECT, **time, **values)
+        plot.toolbar.active_drag = None if self._by_touch else plot.toolbar.tools[0]
+        plot.add_glyph(self._bands[name], Patches(**band_style(self._mapper)))
+        plot.add_glyph(self._histories[name], MultiLine(**line_style(self._mapper)))
+        plot.add_layout(self._now)
+        if quantity.ticks:
+            plot.yaxis.ticker = FixedTicker(ticks=list(quantity.ticks))
+        if quantity.threshold is not None:
+            style = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
+            plot.add_layout(Span(location=quantity.threshold, dimension="width", **style))
+        return plot
 
     def _brushed(self, event: SelectionGeometry) -> None:
         begin, end = event.geometry["x0"], event.geometry["x1"]
@@ -116,15 +104,16 @@ class OrbitPlots:
 
     def _scale(self, interval: tuple[float, float] | None) -> None:
         """Set the axes: that of time to the interval, or to the longest orbit."""
-        everything = [drawing for _, drawing in self._drawings if drawing.sali.line[0].size]
+        everything = [drawing for _, drawing in self._drawings if drawing.histories[_FIRST].line[0].size]
         if not everything:
             return
-        earliest = min(float(drawing.sali.line[0][0]) for drawing in everything)
+        earliest = min(float(drawing.histories[_FIRST].line[0][0]) for drawing in everything)
         begin, end = interval or (earliest, max(float(drawing.orbit.t[-1]) for drawing in everything))
         if end > earliest:
             set_range(self._times, max(begin, earliest), end)
-        set_decades(self._exponents, min(float(drawing.exponent.line[1][-1]) for drawing in everything), 1.0)
-        set_range(self._r2, 0.0, 1.05 * max(drawing.r2.highest for drawing in everything))
+        for quantity in ORBIT_QUANTITIES:
+            histories = [drawing.histories[quantity.name] for drawing in everything]
+            set_range(self._ranges[quantity.name], *quantity.limits(histories))
 
 
 def prepare() -> None:

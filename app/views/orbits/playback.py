@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import panel as pn
 
-from app.browser.orbit_player import OrbitPlayer
+from app.browser.components.orbit_player import OrbitPlayer
 
 
 class Playback:

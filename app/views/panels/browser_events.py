@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from itertools import count
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -12,7 +13,6 @@ import panel as pn
 import param
 from panel.custom import JSComponent
 
-from app.browser.callbacks import module_path
 from app.state.view import PICTURES
 from plots.pictures.map_images import TITLES
 
@@ -57,7 +57,7 @@ class BrowserListener(JSComponent):
     address = param.Dict(default={}, doc="link of the view, its entry in the history, steps known; number, see `command`")
     command = param.Dict(default={}, doc="name: back, forward or copy; text to copy; number that makes repeats differ")
 
-    _esm = module_path("browser_events.js")
+    _esm = Path(__file__).with_suffix(".js")
 
 
 @dataclass(frozen=True)

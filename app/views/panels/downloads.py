@@ -8,7 +8,7 @@ from functools import partial
 
 import panel as pn
 
-from app.browser.file_saver import FileSaver
+from app.browser.components.file_saver import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.runtime.process_state import process_state
 from app.state.view_state import ViewState

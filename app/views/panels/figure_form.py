@@ -10,9 +10,9 @@ from html import escape
 
 import panel as pn
 
-from app.browser.file_saver import FileSaver
-from app.browser.image_copier import ImageCopier
-from app.browser.number_box import NumberBox
+from app.browser.components.file_saver import FileSaver
+from app.browser.components.image_copier import ImageCopier
+from app.browser.inputs.number_box import NumberBox
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane
 from app.views.components.widgets import SegmentedControl, Switches, button

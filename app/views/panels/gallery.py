@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import panel as pn
 import param
 from panel.custom import JSComponent
 
-from app.browser.callbacks import module_path
 from app.state.presets import GROUPS, PRESETS, Preset
 from plots.pictures.map_images import TITLES
 
@@ -51,7 +51,7 @@ class GalleryCards(JSComponent):
     groups = param.List(default=[])
     hint = param.String(default="", doc="stands in place of a caption; empty for cards without captions below them")
 
-    _esm = module_path("gallery.js")
+    _esm = Path(__file__).with_suffix(".js")
 
 
 class Gallery:

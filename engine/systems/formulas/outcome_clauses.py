@@ -15,7 +15,7 @@ from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.outcomes import Centre
 
 SEPARATOR = ";"
-_CENTRE = re.compile(r"\s*centre\s*(?P<name>[\w ]{0,40}?)\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)(?P<radius>[^();]*)$")
+_CENTRE = re.compile(r"\s*cent(?:re|er)\s*(?P<name>[\w ]{0,40}?)\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)(?P<radius>[^();]*)$")
 _WELL = re.compile(r"\s*well\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 _ESCAPE = re.compile(r"\s*escape(?P<radius>[^;]*)$")
 MOST_CENTRES = 8

@@ -9,14 +9,14 @@ from typing import Any
 import pytest
 from panel.custom import JSComponent
 
-from app.browser.energy_slider import EnergySlider
+from app.browser.components.image_copier import ImageCopier
+from app.browser.components.orbit_list import OrbitList
+from app.browser.components.orbit_player import OrbitPlayer
 from app.browser.engine_component import BrowserEngine
-from app.browser.formula_box import LONGEST_TYPED, FormulaBox
-from app.browser.image_copier import ImageCopier
-from app.browser.number_box import NumberBox
-from app.browser.orbit_list import OrbitList
-from app.browser.orbit_player import OrbitPlayer
-from app.browser.parameter_slider import ParameterSlider
+from app.browser.inputs.energy_slider import EnergySlider
+from app.browser.inputs.formula_box import LONGEST_TYPED, FormulaBox
+from app.browser.inputs.number_box import NumberBox
+from app.browser.inputs.parameter_slider import ParameterSlider
 from app.state.presets import PRESETS
 from app.views.panels.browser_events import BrowserActions, BrowserEvents
 from app.views.panels.gallery import Gallery

@@ -1,4 +1,4 @@
-"""The JavaScript of the engine in the browser: its own tests, run by Node.js."""
+"""The JavaScript of the page: its own tests, run by Node.js."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tests.node import SCRIPTS, needs_node
 
 @needs_node
 def test_the_tests_of_the_modules_pass() -> None:
-    tests = sorted(map(str, SCRIPTS.glob("*.test.js")))
+    tests = sorted(map(str, SCRIPTS.parent.rglob("*.test.js")))
     done = subprocess.run(["node", "--test", *tests], capture_output=True, text=True, timeout=60, check=False)
     assert tests
     assert done.returncode == 0, done.stdout

@@ -11,7 +11,7 @@ import pytest
 from app.job_clients.map_requests import MapRequests
 from app.state.system_review import review_system
 from app.state.view_state import ViewState
-from engine import CASES, EscapeMap, MapSpec, Plane, System, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, System, Window, compute_map
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
@@ -198,3 +198,12 @@ def test_an_invalid_energy_gives_a_message(session: Session) -> None:
     recorder.wait_for(lambda: "map failed" in recorder.names())
     sentence = next(value for what, value in recorder.calls if what == "map failed")
     assert sentence.startswith("h = 50: ")
+
+
+@pytest.mark.parametrize("window", [None, Window(-0.2, 0.2, -0.2, 0.2)])
+@pytest.mark.parametrize("energy", [-1.0, 1e-320, 1e9])
+def test_an_energy_without_an_interior_is_refused_in_every_window(session: Session, energy: float, window: Window | None) -> None:
+    state, _, recorder, _ = session
+    state.param.update(energy=energy, window=window)
+    recorder.wait_for(lambda: "map failed" in recorder.names())
+    assert recorder.last_frame() is None

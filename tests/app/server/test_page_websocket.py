@@ -21,8 +21,8 @@ from panel.io.application import Application
 from panel.io.state import set_curdoc
 from tornado.ioloop import IOLoop
 
-from app.bokeh_patches.batched_patches import batch_patches
-from app.bokeh_patches.inline_callbacks import call_inline
+from app.browser.bokeh_patches.batched_patches import batch_patches
+from app.browser.bokeh_patches.inline_callbacks import call_inline
 from app.runtime.fair_share import BURST_SECONDS, SHARE
 from app.runtime.process_state import ProcessState
 from app.server.page_websocket import DELAYED_NOTICE, PageWebSocket

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.browser.ensemble_player import EnsemblePlayer
+from app.browser.components.ensemble_player import EnsemblePlayer
 from app.session.watch_presenter import WatchPresenter
 from app.state.system_review import review_catalogue_entry
 from app.state.view import Analysis

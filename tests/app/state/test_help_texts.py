@@ -8,13 +8,13 @@ import pytest
 
 from app.state.help_texts import HELP_TEXTS, title_with_help
 from app.views.maps.map_plots import MAPS
-from app.views.orbits.orbit_plots import TITLES as ORBITS
+from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.sweep_panels import CURVE_PANELS
 
 
 def test_every_picture_plot_and_measure_has_a_help_text() -> None:
     plots = {
-        *ORBITS,
+        *(quantity.name for quantity in ORBIT_QUANTITIES),
         "separation",
         "histogram",
         "probabilities",

@@ -55,7 +55,7 @@ def test_v_is_the_same_at_the_same_place() -> None:
 
 
 def test_bodies_move_with_the_axes() -> None:
-    moved = parse_formula("½(x − 1)² + ½y² − 0.1/√((x − 2)² + y²); centre (2, 0) 0.01; well (1, 0); escape 5")
+    moved = parse_formula("½(x − 1)² + ½y² − 0.1/√((x − 2)² + y²); center (2, 0) 0.01; well (1, 0); escape 5")
     (centre,) = moved.centres
     assert (centre.x + moved.origin[0], centre.y) == (2.0, 0.0)
 

@@ -13,7 +13,10 @@ from engine import CASES, Orbit, Plane, Potential, classify_orbits, integrate_or
 from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS
 from engine.foundations.execution import Execution
 from engine.foundations.wording import format_time
-from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, compute_birkhoff_digits, evaluate_indicators
+from engine.trajectories import chaos_indicators
+from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
+from engine.trajectories.chaos_indicators import Verdict, evaluate_indicators
+from tests.contributing import run_example
 
 # Hénon & Heiles at or below E = 1/8, with their y as x: an orbit in an island and one in the chaotic sea.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]
@@ -156,3 +159,9 @@ def test_growth_that_turns_exponential_late_is_not_regular(island: Orbit) -> Non
 def test_digits_are_judged_at_the_longest_window(island: Orbit, window: float, digits: float, expected: Verdict) -> None:
     found = BirkhoffDigits(np.array([500.0, window]), np.array([5.0, digits]))
     assert conclusions(island, found)[3] is expected
+
+
+def test_the_indicator_that_contributing_adds_tells_the_sea_from_an_island(island: Orbit) -> None:
+    indicator = run_example("Example: add a chaos indicator", chaos_indicators)["FLI"]
+    assert indicator.judge(integrate_orbit(CASES["II"], SEA, 8000.0), None)[0] is Verdict.CHAOTIC
+    assert indicator.judge(island, None)[0] is Verdict.UNDECIDED

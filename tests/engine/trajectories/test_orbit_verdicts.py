@@ -123,3 +123,9 @@ def test_a_collision_is_named_in_the_sentence_and_in_the_list() -> None:
     verdict = judge_orbit(orbit)
     assert verdict.describe().startswith("Collided with a disc at t = ")
     assert verdict.summarize().startswith("collision with a disc at t = ")
+
+
+def test_a_headline_says_where_an_orbit_ends_or_how_long_it_stays() -> None:
+    escaping, bounded = (judge_orbit(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, py), 1e3)) for py in (0.6, 0.3))
+    assert escaping.headline() == "Escaped through channel 1 at t = 15.1781"
+    assert bounded.headline().startswith("Bounded for ever, ")

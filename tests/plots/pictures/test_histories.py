@@ -44,7 +44,7 @@ def test_each_orbit_is_reduced_over_its_own_time() -> None:
     potential, bounded, escaping = CASES["I"], (-0.46, 0.0, 0.0, 0.2), (0.1, 0.0, 0.05, 0.6)
     for state, t_max in ((bounded, 1e5), (escaping, 1e5)):
         curves = compute_orbit_curves(potential, integrate_orbit(potential, state, t_max))
-        times, values = curves.r2.line
+        times, values = curves.histories["r2"].line
         assert times[-1] == curves.orbit.t[-1]
         early = times < min(15.0, float(times[-1]))
         np.testing.assert_array_equal(values[early], curves.orbit.r2[np.searchsorted(curves.orbit.t, times[early])])

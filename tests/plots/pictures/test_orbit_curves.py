@@ -49,7 +49,7 @@ def test_the_density_image_has_the_colour_of_the_orbit(long: OrbitCurves) -> Non
 def test_an_interval_of_a_long_orbit_has_every_sample(long: OrbitCurves) -> None:
     part = restrict_curves(long, 1000.0, 1030.0)
     inside = (long.orbit.t >= 1000.0) & (long.orbit.t <= 1030.0)
-    times, values = part.r2.line
+    times, values = part.histories["r2"].line
     np.testing.assert_array_equal(times, long.orbit.t[inside])
     np.testing.assert_array_equal(values, long.orbit.r2[inside])
     assert part.visits is None

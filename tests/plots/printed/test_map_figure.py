@@ -30,10 +30,11 @@ from plots.pictures.axis_labels import label_axis
 from plots.pictures.map_analyses import MapAnalyses
 from plots.pictures.map_images import TITLES, picture_pixels
 from plots.pictures.palette import DOUBT, PALETTES, PAPER, Palette
+from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale
 from plots.printed.figure_axes import save_figure
 from plots.printed.figure_style import CM_PER_INCH, FigureFormat, FigureStyle
-from plots.printed.map_figure import draw_map_figure, provenance_line
+from plots.printed.map_figure import draw_map_figure
 
 STYLE = FigureStyle(8.0, dpi=100.0)
 
@@ -173,16 +174,24 @@ def test_ticks_of_a_deep_zoom_are_distinct(centre: float, width: float) -> None:
     np.testing.assert_allclose(values, [low + place * (high - low) for place, _ in ticks], rtol=0, atol=1e-3 * width + 1e-16)
 
 
-def test_the_font_has_every_character_of_the_texts(escape_map: EscapeMap) -> None:
+def test_the_fonts_have_every_character_of_the_texts(escape_map: EscapeMap) -> None:
     entries = [
         *PAPER.outcomes.values(),
         *PAPER.crossing_entries,
         *PAPER.character_entries,
         *PAPER.end_entries(CASES["III"].outcomes),
     ]
-    texts = [*(entry.label for entry in entries), *TITLES.values(), provenance_line(escape_map), "(x − 0.12) / 1e-11", "R²"]
-    font = ft2font.FT2Font(findfont(FontProperties(family="STIXGeneral")))
-    assert [character for character in set("".join(texts)) if not font.get_char_index(ord(character))] == []
+    texts = [
+        *(entry.label for entry in entries),
+        *TITLES.values(),
+        provenance_line(escape_map),
+        "(x − 0.12) / 1e-11",
+        "R²",
+        "0.05x⁴",
+    ]
+    fonts = [ft2font.FT2Font(findfont(FontProperties(family=family))) for family in ("STIXGeneral", "DejaVu Serif")]
+    missing = [each for each in set("".join(texts)) if not any(font.get_char_index(ord(each)) for font in fonts)]
+    assert missing == []
 
 
 def test_doubtful_pixels_are_marked_and_have_an_entry() -> None:

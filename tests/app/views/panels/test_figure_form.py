@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.browser.file_saver import FileSaver
+from app.browser.components.file_saver import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from app.views.panels.figure_choices import ALL_MAPS, FIGURES, ShownResults, figure_choices

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
-
-from app.browser.callbacks import module_path
 
 
 class ImageCopier(JSComponent):
@@ -26,7 +25,7 @@ class ImageCopier(JSComponent):
 
     label = param.String(default="Copy image")
 
-    _esm = module_path("image_copier.js")
+    _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self, on_wanted: Callable[[], None], on_copied: Callable[[bool], None], **options: Any) -> None:
         super().__init__(**options)

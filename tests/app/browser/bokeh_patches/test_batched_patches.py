@@ -14,8 +14,8 @@ from bokeh.protocol import Protocol
 from bokeh.server import session
 from bokeh.server.session import ServerSession
 
-from app.bokeh_patches.batched_patches import batch_patches, serialize_batches
-from tests.app.bokeh_patches.installed_source import missing_hunks
+from app.browser.bokeh_patches.batched_patches import batch_patches, serialize_batches
+from tests.app.browser.bokeh_patches.installed_source import missing_hunks
 
 
 class Patch(NamedTuple):

@@ -1,7 +1,7 @@
 // @ts-check
 import assert from "node:assert/strict"
 import {test} from "node:test"
-import {CountedValue} from "../../../app/browser/counted_value.js"
+import {CountedValue} from "../../../../app/browser/inputs/counted_value.js"
 
 /** An input whose server has set a value before any of the visitor. */
 function makeInput() {

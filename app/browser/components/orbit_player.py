@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
-
-from app.browser.callbacks import module_path
 
 
 class OrbitPlayer(JSComponent):
@@ -28,7 +27,7 @@ class OrbitPlayer(JSComponent):
     begin = param.Number(default=0.0, doc="start of the interval of time")
     end = param.Number(default=0.0, doc="end of the interval of time; an empty interval disables the player")
 
-    _esm = module_path("orbit_player.js")
+    _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self, on_step: Callable[[int], None], **options: Any) -> None:
         super().__init__(**options)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import param
 
-from app.browser.callbacks import component_code
-from app.browser.counted_input import CountedInput, finite_number
+from app.browser.inputs.counted_input import CountedInput, finite_number
+from app.browser.javascript import component_code
 
 
 class NumberBox(CountedInput):
@@ -27,7 +28,7 @@ class NumberBox(CountedInput):
     step = param.Number(default=0.1, doc="step of the arrow keys and buttons")
     shown_event = param.String(doc="event of the page with a number to show that is not the server's")
 
-    _esm = component_code("number_box.js")
+    _esm = component_code(Path(__file__).with_suffix(".js"))
 
     def __init__(self, on_number: Callable[[float], None], number: float, **options: Any) -> None:
         super().__init__(lambda value, done: on_number(value), number, **options)

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * Texts at the mouse, for Bokeh's hover tools; see `app/browser/callbacks.py`.
+ * Texts at the mouse, for Bokeh's hover tools; see `app/browser/javascript.py`.
  *
  * @typedef {Record<string, any>} Columns
  */

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {coordinate, count, fateName, number, percent, pixelDetails} from "../../../app/browser/hover_texts.js"
+import {coordinate, count, fateName, number, percent, pixelDetails} from "../../../../app/views/components/hover_texts.js"
 
 const CODES = {bounded: 4, first: 5, firstEvidence: 10, ends: 9, channels: 8}
 const WORDS = {

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import param
 
-from app.browser.callbacks import component_code
-from app.browser.counted_input import CountedInput
+from app.browser.inputs.counted_input import CountedInput
+from app.browser.javascript import component_code
 
 LONGEST_TYPED = 4000
 """Most characters of a text. Formulas have a lower limit, which is checked later with a message; a box would cut silently."""
@@ -19,7 +20,7 @@ class FormulaBox(CountedInput):
     placeholder = param.String(doc="shown in an empty box")
     longest = param.Integer(default=LONGEST_TYPED, doc="most characters of the text")
 
-    _esm = component_code("formula_box.js")
+    _esm = component_code(Path(__file__).with_suffix(".js"))
 
     def _checked(self, value: Any) -> str | None:
         return value if isinstance(value, str) and len(value) <= self.longest else None

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from panel.custom import JSComponent
+from pathlib import Path
 
-from app.browser.callbacks import module_path
+from panel.custom import JSComponent
 
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class FileSaver(JSComponent):
     """A component without size that must be on the page."""
 
-    _esm = module_path("file_saver.js")
+    _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self) -> None:
         super().__init__(width=0, height=0, margin=0, styles={"position": "absolute"})

@@ -1,11 +1,11 @@
 // @ts-check
 /**
- * The orbits as rows, one of which is chosen: radio buttons, each with the colour of its orbit.
+ * The numbers of the orbits in a line, one of which is chosen: radio buttons, each with the colour of its orbit.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
 export function render({model, el}) {
-  el.className = "orbit-rows"
+  el.className = "orbit-numbers"
   el.setAttribute("role", "radiogroup")
   el.setAttribute("aria-label", model.label)
   const add_row = () => {
@@ -20,9 +20,12 @@ export function render({model, el}) {
     while (el.children.length > model.rows.length) el.lastElementChild?.remove()
     while (el.children.length < model.rows.length) add_row()
     for (const [place, text] of model.rows.entries()) {
-      const [radio, label] = /** @type {any} */ (el.children[place]).children
+      const row = /** @type {HTMLElement} */ (el.children[place])
+      const [radio, label] = /** @type {any} */ (row.children)
       radio.checked = place === model.chosen
-      label.textContent = text
+      radio.setAttribute("aria-label", text)
+      row.title = text
+      label.textContent = String(place + 1)
     }
   }
   model.on(["rows", "chosen"], follow)

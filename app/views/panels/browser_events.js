@@ -25,7 +25,8 @@ function key_of(event, keys) {
   const named = event.key.length > 1
   if (named && event.shiftKey) return null
   const key = event.key === "=" ? "+" : named ? event.key : event.key.toLowerCase()
-  if (!keys.includes(key) || comes_from(event, TYPING)) return null
+  const closes = key === "Escape" && comes_from(event, ".drawer")
+  if (!keys.includes(key) || (comes_from(event, TYPING) && !closes)) return null
   // The browser closes an open help text.
   if (key === "Escape" && event.composedPath().some(opens_text)) return null
   if (key === "Enter" && comes_from(event, PRESSED)) return null

@@ -74,7 +74,7 @@ class Explorer:
     def _serve(self) -> None:
         self._loop = asyncio.new_event_loop()
         asyncio.set_event_loop(self._loop)
-        static = Path(__file__).with_name("static")
+        static = Path(__file__).parents[1] / "static"
         self._server: Any = pn.io.server.get_server(
             {"app": self._open}, port=0, start=False, show=False, title=TITLE, static_dirs={"app/static": static}
         )

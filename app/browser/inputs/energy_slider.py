@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import param
 
-from app.browser.callbacks import component_code
-from app.browser.counted_input import CountedInput, finite_number
+from app.browser.inputs.counted_input import CountedInput, finite_number
+from app.browser.javascript import component_code
 
 SHOWN = "energyshown"
 """Event of the page with the energy of the pictures while the server has not received it yet."""
@@ -32,7 +33,7 @@ class EnergySlider(CountedInput):
     high = param.Number(default=1.0, doc="right end")
     decimals = param.Integer(default=3, doc="decimals of the energies that can be chosen")
 
-    _esm = component_code("energy_slider.js")
+    _esm = component_code(Path(__file__).with_suffix(".js"))
 
     def __init__(self, on_release: Callable[[float], None], energy: float, **options: Any) -> None:
         super().__init__(lambda value, done: on_release(value), energy, label="Energy h", **options)

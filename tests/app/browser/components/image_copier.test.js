@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {render} from "../../../app/browser/image_copier.js"
+import {render} from "../../../../app/browser/components/image_copier.js"
 
 /** @param {((items: any[]) => Promise<void>) | undefined} write */
 function makeButton(write) {

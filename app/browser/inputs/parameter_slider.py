@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import param
 
-from app.browser.callbacks import component_code
-from app.browser.counted_input import CountedInput, finite_number
+from app.browser.inputs.counted_input import CountedInput, finite_number
+from app.browser.javascript import component_code
 
 
 class ParameterSlider(CountedInput):
@@ -22,7 +23,7 @@ class ParameterSlider(CountedInput):
     highest = param.Number(doc="largest number of the box")
     step = param.Number(default=0.01)
 
-    _esm = component_code("parameter_slider.js")
+    _esm = component_code(Path(__file__).with_suffix(".js"))
 
     def _checked(self, value: Any) -> float | None:
         number = finite_number(value)

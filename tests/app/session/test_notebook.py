@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.notebook import Explorer
+from app.session.notebook import Explorer
 from engine import CASES, MapSpec, Plane, Window
 
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (224, 224), Window(-0.4, 0.4, -0.3, 0.3), t_max=1e4)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
 
-from app.browser.callbacks import module_path
 from app.browser.module_files import WATCH_ADDRESS
 from app.state.watched_starts import COUNTS, EXPLANATIONS, LARGEST_RADIUS, SMALLEST_RADIUS
 
@@ -19,7 +19,7 @@ _STYLE = """
 button, select { font: inherit; color: inherit; background: var(--ui-surface); border: 1px solid var(--ui-edge);
   border-radius: var(--ui-radius); padding: 5px 10px; min-height: 2rem; cursor: pointer }
 button:disabled { opacity: 0.5; cursor: default }
-button.play { font-weight: 600 }
+button.play { min-width: 11.5rem; font-weight: 600 }
 :is(button, select, input):focus-visible { outline: none; box-shadow: var(--ui-focus) }
 input[type=range] { flex: 1 1 8rem; min-width: 6rem; accent-color: var(--ui-accent) }
 output { min-width: 4.5rem; font-variant-numeric: tabular-nums }
@@ -55,7 +55,7 @@ class EnsemblePlayer(JSComponent):
     box = param.List(default=[], doc="the four edges of the box; empty without one")
     rate = param.Number(default=0.0, doc="decay rate of mixed motion; 0 if it is not known")
 
-    _esm = module_path("ensemble_player.js")
+    _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self, on_choice: Callable[[Any], None], **options: Any) -> None:
         super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE], **options)

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import bokeh
 
-import app.bokeh_patches
+import app.browser.bokeh_patches
 
 _INSTALLED = Path(bokeh.__file__).parent
-_PATCHES = Path(app.bokeh_patches.__file__).parent
+_PATCHES = Path(app.browser.bokeh_patches.__file__).parent
 
 
 def missing_hunks(patch: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""The list of the chosen orbits.
+"""The numbers of the chosen orbits.
 
 Radio buttons of Bokeh fail when their choice changes while their view is being built, as it does when a click opens the tab.
 """
@@ -6,33 +6,32 @@ Radio buttons of Bokeh fail when their choice changes while their view is being 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
 
-from app.browser.callbacks import module_path
-
 
 class OrbitList(JSComponent):
-    """Radio buttons drawn as rows, each with the colour of an orbit, given by the CSS variables --orbit-1 and so on.
+    """Radio buttons in a line, each with the colour of an orbit, given by the CSS variables --orbit-1 and so on.
 
     Parameters
     ----------
     on_choose
-        Called with the place of the row that is chosen, without the session's lock.
+        Called with the place of the orbit that is chosen, without the session's lock.
     **options
         Parameters of the component.
     """
 
     label = param.String(default="Orbits")
-    rows = param.List(item_type=str, doc="text of each row")
-    chosen = param.Integer(default=0, bounds=(0, None), doc="place of the row that is chosen")
+    rows = param.List(item_type=str, doc="text that describes each orbit, shown under the mouse and read to screen readers")
+    chosen = param.Integer(default=0, bounds=(0, None), doc="place of the orbit that is chosen")
 
-    _esm = module_path("orbit_list.js")
+    _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self, on_choose: Callable[[int], None], **options: Any) -> None:
-        super().__init__(sizing_mode="stretch_width", margin=(0, 10), css_classes=["orbit-list"], **options)
+        super().__init__(sizing_mode="stretch_width", margin=(5, 10), css_classes=["orbit-list"], **options)
         self._on_choose = on_choose
         self.on_msg(lambda event: self._receive(event.data))
 

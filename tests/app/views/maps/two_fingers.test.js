@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {followFingers} from "../../../app/browser/two_fingers.js"
+import {followFingers} from "../../../../app/views/maps/two_fingers.js"
 
 const range = (/** @type {number} */ start, /** @type {number} */ end, /** @type {number | null} */ least = null) => ({
   start,

@@ -11,8 +11,8 @@ from bokeh.server import session
 from bokeh.server.session import ServerSession
 from bokeh.util.asyncio import _run_in_executor
 
-from app.bokeh_patches.inline_callbacks import call_inline, run_callbacks_inline
-from tests.app.bokeh_patches.installed_source import missing_hunks
+from app.browser.bokeh_patches.inline_callbacks import call_inline, run_callbacks_inline
+from tests.app.browser.bokeh_patches.installed_source import missing_hunks
 from tests.app.other_loop import run_on_new_loop
 
 

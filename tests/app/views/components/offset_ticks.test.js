@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {offsetLabel} from "../../../app/browser/offset_ticks.js"
+import {offsetLabel} from "../../../../app/views/components/offset_ticks.js"
 
 test("a label is the distance from the base in units", () => {
   assert.equal(offsetLabel(0.300643524602, 0.3006435246, 1e-12), "2")

@@ -1,0 +1,98 @@
+"""The quantities of an orbit that are drawn against time, as entries: SALI, the Lyapunov exponent and R²."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine import CHAOS_THRESHOLD, Orbit
+from engine.foundations.wording import format_number
+from plots.pictures.histories import History, reduce_history
+
+_LEAST_SALI, _LARGEST_SALI = 1e-17, 10.0
+_LEAST_EXPONENT, _LARGEST_EXPONENT = 1e-7, 1.3
+_LEAST_R2 = 1e-3
+
+
+@dataclass(frozen=True)
+class OrbitQuantity:
+    """A quantity of an orbit against time.
+
+    Attributes
+    ----------
+    name
+        The name in files and of the field of `Orbit.plot`.
+    title
+        The title of its plot.
+    label
+        The name at the axis.
+    values
+        (n,) values at all times of an orbit.
+    limits
+        The ends of the axis for histories of at least one sample.
+    least
+        The lower end of a logarithmic axis, at which smaller values are drawn; None for a linear axis.
+    threshold
+        A value to be marked; None without one.
+    ticks
+        The labels of the axis; empty for those that the plot chooses.
+    """
+
+    name: str
+    title: str
+    label: str
+    values: Callable[[Orbit], np.ndarray]
+    limits: Callable[[Sequence[History]], tuple[float, float]]
+    least: float | None = None
+    threshold: float | None = None
+    ticks: tuple[float, ...] = ()
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether the axis is logarithmic."""
+        return self.least is not None
+
+    def history(self, orbit: Orbit, part: slice) -> History:
+        """The quantity over some samples of an orbit, from the first one after t = 0 on."""
+        later = slice(max(part.start or 0, int(orbit.t[0] == 0.0)), part.stop)
+        values = self.values(orbit)[later]
+        if self.least is not None:
+            values = np.maximum(values, self.least)
+        return reduce_history(orbit.t[later], values, logarithmic=self.logarithmic)
+
+
+def _exponent_limits(histories: Sequence[History]) -> tuple[float, float]:
+    """From the power of ten below the last values."""
+    lowest = min(float(history.line[1][-1]) for history in histories)
+    return 10.0 ** math.floor(math.log10(lowest)), _LARGEST_EXPONENT
+
+
+def _r2_limits(histories: Sequence[History]) -> tuple[float, float]:
+    return 0.0, 1.05 * max(_LEAST_R2, *(history.highest for history in histories))
+
+
+ORBIT_QUANTITIES = (
+    OrbitQuantity(
+        "sali",
+        f"SALI (chaotic at or below {format_number(CHAOS_THRESHOLD)})",
+        "SALI",
+        lambda orbit: orbit.sali,
+        lambda histories: (_LEAST_SALI, _LARGEST_SALI),
+        least=_LEAST_SALI,
+        threshold=CHAOS_THRESHOLD,
+        ticks=(1e-16, 1e-12, 1e-8, 1e-4, 1.0),
+    ),
+    OrbitQuantity(
+        "exponent",
+        "Lyapunov exponent until t",
+        "(1/t) ln|w|",
+        lambda orbit: orbit.lyapunov_exponent,
+        _exponent_limits,
+        least=_LEAST_EXPONENT,
+    ),
+    OrbitQuantity("r2", "R² = x² + y²", "R²", lambda orbit: orbit.r2, _r2_limits),
+)
+"""The quantities, in the order of the page."""

@@ -1,0 +1,44 @@
+"""How a map was made, in a line of text."""
+
+from __future__ import annotations
+
+import math
+
+from engine import CASES, EscapeMap, Potential
+from engine.foundations.wording import format_number
+
+
+def provenance_line(frame: EscapeMap) -> str:
+    """Provenance of a map in a line: potential with its rotation and ends, h, plane, window, resolution, t_max and version."""
+    spec, plane, window = frame.spec, frame.spec.plane, frame.spec.find_window()
+    name, (columns, rows) = spec.potential.name, spec.resolution
+    energy = [] if spec.common_energy is None else [f"h = {spec.common_energy!r}"]
+    abscissa, ordinate = plane.axis_symbols
+    facts = [
+        f"{'Case' if name in CASES else 'Potential'} {name}",
+        *_system_facts(spec.potential),
+        *energy,
+        f"plane {plane.title}",
+        f"{abscissa} from {_write_ends(window.x_low, window.x_high)}",
+        f"{ordinate} from {_write_ends(window.ordinate_low, window.ordinate_high)}",
+        f"{columns} × {rows} starts",
+        f"t_max = {spec.t_max:g}",
+        *([] if frame.complete else ["not finished"]),
+        f"escape-explorer {frame.provenance()['version']}",
+    ]
+    return ", ".join(facts)
+
+
+def _system_facts(potential: Potential) -> list[str]:
+    """What a system has besides V."""
+    facts = [f"Ω = {format_number(potential.rotation)}"] if potential.rotation else []
+    for centre in potential.centres:
+        place = f"({format_number(centre.x)}, {format_number(centre.y)})"
+        facts.append(f"disc of radius {format_number(centre.radius)} around {place}")
+    return facts + ([f"escape radius {format_number(potential.escape_radius)}"] if potential.escape_radius else [])
+
+
+def _write_ends(low: float, high: float) -> str:
+    """Both ends of an axis, with digits that resolve a ten-thousandth of it."""
+    digits = 4 + math.ceil(math.log10(max(1.0, abs(low), abs(high)) / (high - low)))
+    return " to ".join(format_number(end, max(digits, 6)) for end in (low, high))
