@@ -19,6 +19,7 @@ from numba import types
 from engine.foundations.cache_files import SUFFIX, cache_folder, read_cached, write_cached
 from engine.integrator.jit.disk_cache import program_digest
 from engine.integrator.jit.kernel_module import SETTINGS, lower_kernels
+from engine.integrator.jit.webassembly import PAIR
 from engine.integrator.kernels import dense_output, ensemble, exit_curves, generated_calls, interior, propagate
 
 log = logging.getLogger(__name__)
@@ -41,6 +42,7 @@ KERNELS: dict[str, tuple[Any, Any]] = {
         ensemble.advance_ensemble,
         _void(_address, _address, _f1, _number, _number, _number, _f2, _f2, _ensemble),
     ),
+    "place_ensemble": (ensemble.place_ensemble, _void(_number, _ensemble, _f2, _codes)),
     "find_outside_polynomial": (interior.find_outside_polynomial, _void(_i2, _f1, _f2, _f2, *_points)),
     "find_outside": (interior.find_outside, _void(_address, _f1, _number, *_points)),
     "interpolate_exit": (exit_curves.interpolate_exit, _void(_f1, _f2, _number, _count, _f1, _f1)),
@@ -82,6 +84,8 @@ def _load_or_build() -> bytes:
 
 def _main() -> None:
     """Write the module to the standard output."""
+    for module in (propagate, ensemble):
+        vars(module)["VECTOR"] = PAIR
     sys.stdout.buffer.write(lower_kernels(KERNELS))
 
 

@@ -10,10 +10,9 @@ import numpy as np
 from engine.exits.exit_tables import ExitTable, tabulate_exits
 from engine.exits.interior import find_inner_radius, tabulate_polynomial
 from engine.integrator.jit.kernel_module import HEAP_CELL
-from engine.integrator.jit.webassembly import FUNCTIONS, webassembly_module
+from engine.integrator.jit.webassembly import FUNCTIONS, PAIR, webassembly_module
 from engine.integrator.kernels import events
-from engine.integrator.kernels.propagate import VECTOR
-from engine.integrator.source.recurrence import ROWS, SIZE_ROW, TOLERANCE, generate_code
+from engine.integrator.source.recurrence import ROWS, TOLERANCE, generate_code
 from engine.integrator.source.series import ORDER, ROTATION
 from engine.propagation.fates import Fate
 from engine.systems.forms.polynomial_form import PolynomialForm
@@ -74,8 +73,7 @@ class PortableSystem:
             "layout": {
                 "order": ORDER,
                 "rows": ROWS,
-                "size": SIZE_ROW,
-                "lanes_together": VECTOR,
+                "lanes_together": PAIR,
                 "tolerance": TOLERANCE,
                 "heap": HEAP_CELL,
                 "functions": list(FUNCTIONS),

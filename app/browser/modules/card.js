@@ -6,7 +6,7 @@
 
 import {exitLines, LimitingCurves} from "./curves.js"
 import {Integrator} from "./integrator.js"
-import {findOutside} from "./interior.js"
+import {OutsideTest} from "./interior.js"
 import {Exits} from "./exits.js"
 import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
 import {energyUnit, space, Starts} from "./slice.js"
@@ -241,7 +241,10 @@ export class Card {
 
 /** @type {(integrator: Integrator, start: import("./system.js").Start) => boolean} */
 const isOutside = (integrator, {x, y, h}) =>
-  integrator.temporarily(() => findOutside(integrator, new Exits(integrator, [h]), [x, y, 0, 0], [h])[0] > 0)
+  integrator.temporarily(() => {
+    const test = new OutsideTest(integrator, new Exits(integrator, [h]), 1)
+    return test.find([x, y, 0, 0], [h])[0] > 0
+  })
 
 /** @type {(box: DOMRect, event: PointerEvent) => boolean} */
 const contains = (box, {clientX, clientY}) =>

@@ -5,6 +5,7 @@
  */
 
 import {Exits} from "./exits.js"
+import {evaluateSeries} from "./series.js"
 
 /** Orbits are followed for this long beyond an exit that is no disc, in units of the well. */
 export const FOLLOWED_BEYOND = 1.5
@@ -17,11 +18,10 @@ export class Ensemble {
    */
   constructor(integrator, energy, states) {
     const count = states.length / 4
-    const {rows, order, size} = integrator.system.layout
+    const {rows, order} = integrator.system.layout
     this.#integrator = integrator
     this.#exits = new Exits(integrator, [energy])
     this.#starts = states
-    this.#size = size
     /** In the order of the kernel. */
     this.#arrays = {
       ends: integrator.array("float64", [rows, count]),
@@ -32,16 +32,9 @@ export class Ensemble {
       last: integrator.array("float64", [count]),
       section: integrator.array("float64", [2, count]),
     }
-    this.#own = integrator.array("int64", [count])
-    for (let i = 0; i < count; i++) this.#own.values[2 * i] = i
-    this.#tau = integrator.array("float64", [count])
-    this.#states = integrator.array("float64", [4, count])
+    this.#places = integrator.array("float64", [2, count])
+    this.#channels = integrator.array("int8", [count])
     this.count = count
-    /** Places at the present time; NaN for orbits that are far outside. */
-    this.x = new Float64Array(count)
-    this.y = new Float64Array(count)
-    /** Number of the exit at which each orbit has ended so far, 0 for orbits inside. */
-    this.channel = new Uint8Array(count)
     /** In units of the well. */
     this.time = 0
     this.restart()
@@ -50,11 +43,23 @@ export class Ensemble {
   #integrator
   #exits
   #starts
-  #size
   #arrays
-  #own
-  #tau
-  #states
+  #places
+  #channels
+
+  /** Places at the present time; NaN for orbits that are far outside. */
+  get x() {
+    return this.#places.at(0).values
+  }
+
+  get y() {
+    return this.#places.at(1).values
+  }
+
+  /** Number of the exit at which each orbit has ended so far, 0 for orbits inside. */
+  get channel() {
+    return this.#channels.values
+  }
 
   /** When each orbit leaves, as far as it is known. */
   get escapeTime() {
@@ -75,15 +80,13 @@ export class Ensemble {
   restart() {
     const {ends, begin, leaving, escapeTime, last, section} = this.#arrays
     this.time = 0
-    for (const array of [ends, begin, leaving]) array.values.fill(0)
+    for (const array of [ends, begin, leaving, this.#channels]) array.values.fill(0)
     for (const array of [escapeTime, last]) array.values.fill(Infinity)
     section.values.fill(NaN)
-    this.channel.fill(0)
-    const places = ends.values
+    const [places, states] = [this.#places.values, ends.values]
     for (let i = 0; i < this.count; i++) {
-      for (let row = 0; row < 4; row++) places[row * this.count + i] = this.#starts[4 * i + row]
-      this.x[i] = this.#starts[4 * i]
-      this.y[i] = this.#starts[4 * i + 1]
+      for (let row = 0; row < 4; row++) states[row * this.count + i] = this.#starts[4 * i + row]
+      for (let row = 0; row < 2; row++) places[row * this.count + i] = this.#starts[4 * i + row]
     }
   }
 
@@ -101,43 +104,25 @@ export class Ensemble {
     this.#integrator.call("advance_ensemble", step, jets, table, tolerance, time, FOLLOWED_BEYOND, ...exits, ...arrays)
     this.time = time
     // Orbits that have not begun are at their starts.
-    if (time > 0) this.#place(time)
+    if (time > 0) this.#integrator.call("place_ensemble", time, ...arrays, this.#places, this.#channels)
   }
 
   /** How many times as wide as at their starts the orbits are spread that are still inside. */
   growth() {
-    const inside = [...this.channel.keys()].filter(i => this.channel[i] === 0)
-    const starts = this.#starts
+    const {channel} = this
+    const inside = [...channel.keys()].filter(i => channel[i] === 0)
+    const [starts, x, y] = [this.#starts, this.x, this.y]
     const before = width(inside, i => starts[4 * i]) ** 2 + width(inside, i => starts[4 * i + 1]) ** 2
-    const now = width(inside, i => this.x[i]) ** 2 + width(inside, i => this.y[i]) ** 2
+    const now = width(inside, i => x[i]) ** 2 + width(inside, i => y[i]) ** 2
     return Math.sqrt(now / before)
   }
 
   /** Momenta at the present time, which is after the first step; those of orbits that have left mean nothing. */
   momenta() {
-    return {px: this.#states.at(2).values, py: this.#states.at(3).values}
-  }
-
-  /**
-   * Places at a time.
-   *
-   * @param {number} time
-   */
-  #place(time) {
-    const begin = this.#arrays.begin.values
-    const tau = this.#tau.values
-    for (let i = 0; i < this.count; i++) tau[i] = time - begin[i]
-    this.#integrator.call("evaluate_series", this.#arrays.jets, this.#own, this.#tau, this.#states)
-    const [x, y] = [this.#states.at(0).values, this.#states.at(1).values]
-    const sizes = this.#arrays.ends.at(this.#size).values
-    const {escapeTime, last, leaving} = this.#arrays
-    for (let i = 0; i < this.count; i++) {
-      if (time >= escapeTime.values[i]) this.channel[i] = leaving.values[i]
-      // A size that is no number is that of an orbit that has broken down far outside.
-      const far = time > last.values[i] || !(tau[i] <= sizes[i])
-      this.x[i] = far ? NaN : x[i]
-      this.y[i] = far ? NaN : y[i]
-    }
+    const {begin, jets} = this.#arrays
+    const times = Array.from(begin.values, each => this.time - each)
+    const [, , px, py] = evaluateSeries(this.#integrator, jets, [...times.keys()], times)
+    return {px, py}
   }
 }
 

@@ -3,7 +3,7 @@
 
 import {drawEntrances, drawTubes} from "./exit_starts.js"
 import {Exits} from "./exits.js"
-import {findOutside} from "./interior.js"
+import {OutsideTest} from "./interior.js"
 import {energyUnit, space, Starts} from "./slice.js"
 import {windowAt} from "./system.js"
 
@@ -45,7 +45,7 @@ function draw(request, scene, integrator) {
   const slice = isWell ? space(system.units) : scene.slice
   const window = isWell ? windowAt(system.windows.x_y, scene.energy) : request.where === "box" ? boxOf(request) : scene.window
   if (!window) return new Float64Array(0)
-  const starts = new Starts(slice, integrator, energy)
+  const [starts, test] = [new Starts(slice, integrator, energy), new OutsideTest(integrator, exits, 1)]
   const {found} = starts
   const place = request.where === "disc" ? inDisc(request, window, random) : inWindow(window, random)
   const states = new Float64Array(4 * request.count)
@@ -53,7 +53,7 @@ function draw(request, scene, integrator) {
   for (let draw = 0; draw < MOST_DRAWS * request.count && count < request.count; draw++) {
     const [abscissa, ordinate] = place()
     if (!starts.find(abscissa / slice.units[0], ordinate / slice.units[1])) continue
-    if (findOutside(integrator, exits, [found.x, found.y, 0, 0], [energy])[0] > 0) continue
+    if (test.find([found.x, found.y, 0, 0], [energy])[0] > 0) continue
     if (isWell) turn(found, 2 * Math.PI * random())
     states.set([found.x, found.y, found.px, found.py], 4 * count++)
   }

@@ -71,9 +71,9 @@ export function drawTubes(count, integrator, exits, energy, random) {
  * @param {Ensemble} ensemble
  */
 function reverse(ensemble) {
-  const [found, {px, py}] = [/** @type {number[]} */ ([]), ensemble.momenta()]
+  const [found, {x, y, channel}, {px, py}] = [/** @type {number[]} */ ([]), ensemble, ensemble.momenta()]
   for (let i = 0; i < ensemble.count; i++) {
-    if (ensemble.channel[i] === 0) found.push(ensemble.x[i], ensemble.y[i], -px[i], -py[i])
+    if (channel[i] === 0) found.push(x[i], y[i], -px[i], -py[i])
   }
   return Float64Array.from(found)
 }

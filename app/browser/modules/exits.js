@@ -55,23 +55,22 @@ export class Exits {
   /**
    * The gate is the one that is inside the exits at all energies.
    *
-   * @param {import("./system.js").ExitTable} table
+   * @param {Pick<import("./system.js").ExitTable, "shape" | "saddle">} table
    * @param {number} k
    * @param {ArrayLike<number>} energies
    */
-  #interpolate({shape, saddle, nodes, rows}, k, energies) {
+  #interpolate({shape, saddle}, k, energies) {
     const integrator = this.#integrator
     const gates = this.gates.at(k)
     gates.values[2] = Infinity
     integrator.temporarily(() => {
-      const places = integrator.array("float64", [nodes.length], nodes)
-      const numbers = integrator.array("float64", [nodes.length, rows[0]?.length ?? 0], rows.flat())
+      const table = integrator.exitTables[k] ?? []
+      const code = this.#columns.shapes[shape]
       const gate = integrator.array("float64", [3])
       for (let row = 0; row < energies.length; row++) {
         const place = Math.sqrt(Math.max(energies[row] - saddle, 0))
         gate.values.fill(0)
-        const code = this.#columns.shapes[shape]
-        integrator.call("interpolate_exit", places, numbers, place, code, this.curves.at(row).at(k), gate)
+        integrator.call("interpolate_exit", ...table, place, code, this.curves.at(row).at(k), gate)
         if (row === 0 || gate.values[2] < gates.values[2]) gates.values.set(gate.values)
       }
     })

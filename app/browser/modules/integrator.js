@@ -40,16 +40,16 @@ export class Numbers {
     this.shape = shape
     /** What a kernel takes for the array. */
     this.passed = [address, ...shape]
-    this.#view = this.#look()
   }
 
   #memory
   #kind
-  #view
+  /** @type {Views[K] | null} */
+  #view = null
 
   /** The numbers; not to be kept, because the memory moves when it grows. */
   get values() {
-    if (this.#view.buffer !== this.#memory.buffer) this.#view = this.#look()
+    if (this.#view?.buffer !== this.#memory.buffer) this.#view = this.#look()
     return this.#view
   }
 
@@ -93,7 +93,7 @@ export class Integrator {
       cos: Math.cos,
     }
     this.#memory = memory
-    this.#heap = heap / Uint32Array.BYTES_PER_ELEMENT
+    this.#heap = new Numbers(memory, "int64", heap, [1])
     this.#exports = exportsOf(modules.kernels, env)
     const own = exportsOf(modules.system, env)
     functions.forEach((name, k) => name in own && table.set(k + 1, own[name]))
@@ -103,6 +103,8 @@ export class Integrator {
     this.table = this.array("float64", [system.table.length], system.table)
     this.#point = [this.address.potential_value, ...this.table.passed]
     this.polynomial = system.polynomial && this.#polynomial(system.polynomial)
+    /** The tables of the exits over saddles. */
+    this.exitTables = system.exits.map(exit => ("radius" in exit ? null : this.#exitTable(exit)))
   }
 
   #memory
@@ -112,11 +114,11 @@ export class Integrator {
 
   /** Where memory is free. */
   get #free() {
-    return new Uint32Array(this.#memory.buffer)[this.#heap]
+    return this.#heap.values[0]
   }
 
   set #free(address) {
-    new Uint32Array(this.#memory.buffer)[this.#heap] = address
+    this.#heap.values[0] = address
   }
 
   /**
@@ -133,6 +135,14 @@ export class Integrator {
       this.array("float64", [coefficients.length], coefficients),
       this.array("float64", [side, side], bernstein.flat()),
       this.array("float64", [3, side]),
+    ]
+  }
+
+  /** @param {import("./system.js").ExitTable} table */
+  #exitTable({nodes, rows}) {
+    return [
+      this.array("float64", [nodes.length], nodes),
+      this.array("float64", [nodes.length, rows[0]?.length ?? 0], rows.flat()),
     ]
   }
 
@@ -180,8 +190,15 @@ export class Integrator {
    * @returns {number}
    */
   call(name, ...passed) {
-    const numbers = passed.flatMap(each => (each instanceof Numbers ? each.passed : each))
-    return this.temporarily(() => this.#exports[name](...numbers))
+    const numbers = []
+    for (const each of passed) {
+      if (typeof each === "number") numbers.push(each)
+      else numbers.push(...each.passed)
+    }
+    const free = this.#free
+    const result = this.#exports[name](...numbers)
+    this.#free = free
+    return result
   }
 
   /**

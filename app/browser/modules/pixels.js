@@ -2,7 +2,7 @@
 /** Fates of the starts of a view, some rows at a time. */
 
 import {Exits} from "./exits.js"
-import {findOutside} from "./interior.js"
+import {OutsideTest} from "./interior.js"
 import {propagate} from "./propagate.js"
 import {energyAxis, energyUnit, pixelCentres, Starts} from "./slice.js"
 
@@ -67,7 +67,8 @@ export function computePixels(integrator, view, part) {
     const time = new Float32Array(fate.length).fill(NaN)
     const crossings = new Uint16Array(fate.length)
     const exits = new Exits(integrator, placed.exitEnergies)
-    const outside = findOutside(integrator, exits, placed.states, placed.energies, placed.rows)
+    const test = new OutsideTest(integrator, exits, placed.energies.length)
+    const outside = test.find(placed.states, placed.energies, placed.rows)
     const {pixels, states, rows} = keepInside(placed, outside)
     placed.pixels.forEach(pixel => (fate[pixel] = fates.outside))
     const ends = propagate(integrator, states, exits, rows, view.horizon, toleranceFor(system, view))

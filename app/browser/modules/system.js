@@ -24,7 +24,6 @@
  * @typedef {object} Layout
  * @property {number} order  order of the series
  * @property {number} rows  of the state of an orbit between two steps
- * @property {number} size  the row with the size of its last step
  * @property {number} lanes_together  lanes that a step computes at least
  * @property {number} tolerance  of the steps that the server takes
  * @property {number} heap  address of the address from which on memory is free

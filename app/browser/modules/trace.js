@@ -18,7 +18,7 @@ import {evaluateSeries} from "./series.js"
 
 /** Points of the path in a step. */
 const POINTS = 6
-/** Steps that are taken at a time; an even number. */
+/** Steps that are taken at a time. */
 const PORTION = 512
 
 /**
@@ -67,12 +67,13 @@ function follow(integrator, {x, y, px, py, h}, duration) {
 function sampleSteps(integrator, steps, count, end) {
   const {address, table, system} = integrator
   return integrator.temporarily(() => {
-    const start = integrator.array("float64", [4, PORTION])
-    const series = integrator.array("float64", [2, system.layout.order + 1, PORTION])
+    const width = count + (count % 2)
+    const start = integrator.array("float64", [4, width])
+    const series = integrator.array("float64", [2, system.layout.order + 1, width])
     const [rows, times] = [/** @type {number[]} */ ([]), /** @type {number[]} */ ([])]
     for (let k = 0; k < count; k++) {
       const [x, y, px, py, begin] = steps.values.subarray(5 * k, 5 * k + 5)
-      ;[x, y, px, py].forEach((value, row) => (start.values[row * PORTION + k] = value))
+      ;[x, y, px, py].forEach((value, row) => (start.values[row * width + k] = value))
       const size = (k + 1 < count ? steps.values[5 * k + 9] : end) - begin
       for (let part = 1; part <= POINTS; part++) {
         rows.push(k)

@@ -25,7 +25,9 @@ from engine.integrator.source.straight_line import TABLE
 FUNCTIONS = ("step", "jets", "potential_value", "potential_slopes")
 """Functions of a module, if the structure has them."""
 
-_WIDTH = 2
+PAIR = 2
+"""Numbers of a vector."""
+
 _BYTES = 8
 _INT = ir.IntType(64)
 # Cached modules, some kB each.
@@ -86,25 +88,25 @@ class _Writer:
 
     def _write_loop(self) -> None:
         builder, reads = self._builder, self._generated.reads
-        table = [self._load(Place("coefficients", column=k), _WIDTH) for k in range(self._entries)]
-        same = {name: self._load(place, _WIDTH) for name, place in reads.items() if place.column is not None}
+        table = [self._load(Place("coefficients", column=k), PAIR) for k in range(self._entries)]
+        same = {name: self._load(place, PAIR) for name, place in reads.items() if place.column is not None}
         loop, end = self._function.append_basic_block(), self._function.append_basic_block()
         entry = builder.block
         builder.branch(loop)
         builder.position_at_end(loop)
         lane = builder.phi(_INT)
         lane.add_incoming(_INT(0), entry)
-        vector = ir.VectorType(ir.DoubleType(), _WIDTH)
+        vector = ir.VectorType(ir.DoubleType(), PAIR)
         own = {
             name: builder.load(self._address(place, lane, vector), align=_BYTES)
             for name, place in reads.items()
             if place.column is None
         }
-        for place, value in zip(self._generated.writes, self._run(table, same | own, _WIDTH), strict=True):
+        for place, value in zip(self._generated.writes, self._run(table, same | own, PAIR), strict=True):
             address = self._address(place, lane, value.type)
             total = builder.add(value, builder.load(address, align=_BYTES)) if place.array in ADDED else value
             builder.store(total, address, align=_BYTES)
-        following = builder.add(lane, _INT(_WIDTH))
+        following = builder.add(lane, _INT(PAIR))
         lane.add_incoming(following, loop)
         builder.cbranch(builder.icmp_signed("<", following, self._arguments["n"]), loop, end)
         builder.position_at_end(end)

@@ -22,7 +22,7 @@ from engine.integrator.kernels.events import (
     series_value,
 )
 from engine.integrator.kernels.propagate import VECTOR
-from engine.integrator.source.recurrence import LANES, ROWS
+from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import NEAR
 
@@ -97,6 +97,19 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
                 next_orbit = min(next_orbit, lane_orbit[i])
 
 
+@kernel
+def place_ensemble(time, ensemble, places, channels):
+    """Set `places` (2, n) to x and y at a time, and `channels` (n,) of orbits that have left; orbits far outside are at NaN."""
+    for orbit in range(ensemble.begin.shape[0]):
+        if time >= ensemble.escape_time[orbit]:
+            channels[orbit] = ensemble.leaving[orbit]
+        tau = time - ensemble.begin[orbit]
+        # The size of the last step of an orbit that has broken down is not a number.
+        is_far = time > ensemble.last[orbit] or not tau <= ensemble.ends[SIZE_ROW, orbit]
+        for axis in range(2):
+            places[axis, orbit] = np.nan if is_far else series_value(ensemble.jets[axis], orbit, tau)
+
+
 @subroutine
 def _is_late(ensemble, orbit, time):
     """Whether the step of an orbit that is followed ends before a time; the time of one that has broken down is NaN."""
@@ -112,7 +125,7 @@ def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble
         ensemble.jets[1, k, orbit] = y_jet[k, i]
     for row in range(ROWS):
         ensemble.ends[row, orbit] = new[row, i]
-    size = new[5, i]
+    size = new[SIZE_ROW, i]
     ensemble.begin[orbit] = now[4, i]
     if not size > 0.0:
         ensemble.ends[4, orbit] = np.nan
