@@ -31,7 +31,7 @@ POTENTIALS = {
 }
 ENERGY = 0.29
 STEPS, HORIZON = 6, 1.8
-LARGEST_BYTES, LARGEST_KERNELS = 5120, 14000
+LARGEST_BYTES, LARGEST_KERNELS = 5120, 11264
 
 
 def test_a_module_has_at_most_5_kb() -> None:
@@ -40,7 +40,7 @@ def test_a_module_has_at_most_5_kb() -> None:
     assert len(gzip.compress(module)) <= LARGEST_BYTES
 
 
-def test_the_kernels_have_at_most_14_kb() -> None:
+def test_the_kernels_have_at_most_11_kb() -> None:
     assert len(gzip.compress(kernel_module())) <= LARGEST_KERNELS
 
 
