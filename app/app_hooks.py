@@ -6,6 +6,7 @@ patterns and chooses the class of the HTTP server.
 
 from __future__ import annotations
 
+import gc
 import logging
 import sys
 import threading
@@ -57,6 +58,7 @@ def on_server_loaded(server_context: Any) -> None:
     stop_on_signals(state, context.io_loop.stop)
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
     watch = LoopWatch(state.load, state.metrics.loop_delays)
+    gc.callbacks.append(watch.on_collection)
     PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * load_monitor.TICK_SECONDS).start()
     threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
     start_warmup(state)

@@ -8,6 +8,7 @@ import importlib.util
 import itertools
 import pkgutil
 import random
+import time
 from collections.abc import AsyncIterator, Callable
 from urllib.parse import quote, urlencode
 
@@ -19,6 +20,9 @@ from tests.fuzz.random_formulas import random_link
 
 _WORST_MAP = "?case=III&h=0.3&plane=x_px&t_max=1000000&resolution=900&judge=yes&trust=yes&manifolds=yes&origins=yes"
 _REQUEST_PAUSE = 0.05
+_SLOW_PAGES = 10
+# Of each attack, if all follow one another.
+_TURN_SECONDS = 15.0
 
 Attack = Callable[[SimulatedSession, random.Random], AsyncIterator[None]]
 """The actions of a visitor; each step is one action, and the pause after it."""
@@ -62,7 +66,7 @@ async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> A
 async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
     """Pages with formulas of every kind, one after another."""
     while True:
-        await visitor.open_formula(_formula_link(choice))
+        await visitor.open_formula(formula_link(choice))
         await asyncio.sleep(_REQUEST_PAUSE if visitor.is_open else 1.0)
         yield
 
@@ -70,7 +74,7 @@ async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> Asy
 async def follow_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
     """Links with formulas of every kind, followed in one page."""
     while True:
-        await visitor.follow_formula(_formula_link(choice))
+        await visitor.follow_formula(formula_link(choice))
         yield
 
 
@@ -127,7 +131,41 @@ async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> A
         yield
 
 
-def _formula_link(choice: random.Random) -> str:
+async def drop_sessions(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Pages whose connections are closed at once."""
+    while True:
+        await visitor.drop()
+        await asyncio.sleep(_REQUEST_PAUSE)
+        yield
+
+
+async def read_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Pages that ask for maps and do not read them."""
+    pages = [visitor.another() for _ in range(_SLOW_PAGES)]
+    for page in pages:
+        await page.open()
+    opened = [page for page in pages if page.is_open]
+    for page in opened:
+        await page.stop_reading()
+    while True:
+        for page in opened:
+            page.follow_link(f"?case=III&resolution=450&h={choice.uniform(0.4, 0.9):.6f}")
+        await asyncio.sleep(2.0)
+        yield
+
+
+async def do_everything(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """All attacks in turn, without a pause."""
+    for name in itertools.cycle(name for name, attack in ATTACKS.items() if attack not in (do_nothing, do_everything)):
+        end = time.perf_counter() + _TURN_SECONDS
+        async for _ in ATTACKS[name](visitor, choice):
+            yield
+            if time.perf_counter() > end:
+                break
+
+
+def formula_link(choice: random.Random) -> str:
+    """A link with a formula of a random kind, to a small and short map."""
     return "?" + urlencode({"case": "typed", "resolution": "112", "t_max": "100", **random_link(choice)}, errors="replace")
 
 
@@ -156,4 +194,7 @@ ATTACKS: dict[str, Attack] = {
     "links to radial potentials": link_to_radial_potentials,
     "resources of any module": name_modules,
     "compressed tokens": send_zlib_bombs,
+    "sessions opened and dropped": drop_sessions,
+    "slow readers": read_nothing,
+    "everything": do_everything,
 }

@@ -3,9 +3,12 @@
 Run: uv run python -m benchmarks.hostile --seconds 60
      uv run python -m benchmarks.hostile --seconds 60 --processes 2
      uv run python -m benchmarks.hostile --seconds 60 --proxy
+     uv run python -m benchmarks.hostile --seconds 600 --attack everything
+     uv run python -m benchmarks.hostile --seconds 90 --attack "sessions opened and dropped" --attack "slow readers"
 
-Each process has a visitor of either kind. With ``--proxy`` there are two processes behind nginx with `deploy/nginx.conf`, and
-the cookies of the visitors choose the process.
+Each process has a visitor of either kind; the one whose waits are measured drags, clicks, chooses, types and opens the page
+again. With ``--proxy`` there are two processes behind nginx with `deploy/nginx.conf`, and the cookies of the visitors choose the
+process.
 """
 
 from __future__ import annotations
@@ -17,17 +20,19 @@ import random
 import sys
 import tempfile
 import time
-from collections.abc import AsyncIterator, Iterator, Sequence
+from collections.abc import AsyncIterator, Awaitable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 from urllib.parse import urlsplit
 
 from benchmarks.attacks import ATTACKS, do_nothing
 from benchmarks.load import CACHE_SENTENCE, Server, resident_megabytes, served, summary
-from benchmarks.simulated_sessions import NO_OPTIONS, Options, Record, SimulatedSession, visitor_headers
+from benchmarks.simulated_sessions import ACTIONS, ALL_ACTIONS, Record, SimulatedSession, visitor_headers
 from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, free_port, nginx, proxied
+from tests.page_channel import NO_OPTIONS, Options
 
 LONGEST_WAIT_SECONDS = 3.0
 """Longest permitted time to the first frame of the other visitor's map, and to the answer of ``/liveness``."""
@@ -93,10 +98,11 @@ class Effect:
 
 
 @asynccontextmanager
-async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[SimulatedSession]:
+async def visiting(
+    place: Place, seed: int, record: Record, actions: Mapping[str, int] = MappingProxyType(ACTIONS)
+) -> AsyncIterator[SimulatedSession]:
     """A session with its page open, of a visitor with an address of its own behind the proxy."""
-    headers = place.options.get("headers", {}) | visitor_headers(ADDRESS_HEADER, seed)
-    session = SimulatedSession(place.address, seed, record, {**place.options, "headers": headers})
+    session = new_session(place, seed, record, actions)
     await session.open()
     while not session.is_open:
         await asyncio.sleep(1.0)
@@ -107,14 +113,22 @@ async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[Sim
         await session.close()
 
 
-async def measure(servers: Sequence[Server], places: Sequence[Place], name: str, seconds: float, seed: int) -> Effect:
-    """The effect of an attack."""
+def new_session(
+    place: Place, seed: int, record: Record, actions: Mapping[str, int] = MappingProxyType(ACTIONS)
+) -> SimulatedSession:
+    """A session that is not open yet, of a visitor with an address of its own behind the proxy."""
+    headers = place.options.get("headers", {}) | visitor_headers(ADDRESS_HEADER, seed)
+    return SimulatedSession(place.address, seed, record, {**place.options, "headers": headers}, actions)
+
+
+async def observe(servers: Sequence[Server], run: Awaitable[tuple[Record, Record, int]]) -> Effect:
+    """The effect of an attack, which is awaited: waits of other visitors, those of the attackers, and number of their actions."""
     before, liveness, limited = largest_memory(servers), list[float](), [0.0]
     lines = [len(server.log_lines()) for server in servers]
     for server in servers:
         server.forget_peak()
     probes = [asyncio.create_task(_probe(server, liveness, limited)) for server in servers]
-    record, attackers, actions = await attack(places, name, seconds, seed)
+    record, attackers, actions = await run
     for probe in probes:
         probe.cancel()
     peak = max(server.peak_megabytes() for server in servers)
@@ -173,7 +187,7 @@ async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) 
 
 
 async def _visit(place: Place, seed: int, record: Record, end: float) -> None:
-    async with visiting(place, seed, record) as visitor:
+    async with visiting(place, seed, record, ALL_ACTIONS) as visitor:
         await visitor.run(end)
 
 
@@ -204,7 +218,7 @@ async def _find_places(proxy: Proxy, servers: Sequence[Server]) -> list[Place]:
 
 def waits(record: Record) -> list[float]:
     """All waits, those in vain included."""
-    return [*(wait for times in record.waits.values() for wait in times), *record.replaced, *record.opening]
+    return [*(wait for times in record.waits.values() for wait in times), *record.replaced, *record.opening, *record.reviews]
 
 
 def count_delayed_messages(servers: Sequence[Server]) -> int:
@@ -252,6 +266,26 @@ def _find_problems_of_formulas(effect: Effect) -> Iterator[str]:
     yield from (f"the visitor who types: {error}" for error in dict.fromkeys(effect.attackers.errors))
 
 
+@contextmanager
+def running(processes: int, *, proxy: bool) -> Iterator[tuple[list[Server], list[Place]]]:
+    """Run servers; with a proxy two of them behind nginx."""
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
+        servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(2 if proxy else processes)]
+        places = [Place(server.address) for server in servers]
+        if proxy:
+            places = end.enter_context(behind_proxy(servers, Path(folder)))
+        print(f"\n{CACHE_SENTENCE} Largest seconds until /liveness answers; largest memory of a process in MB.\n")
+        print(f"| {' | '.join(COLUMNS)} |\n|{'---|' * len(COLUMNS)}")
+        yield servers, places
+
+
+def end_with(servers: Sequence[Server], problems: Sequence[str]) -> int:
+    """Print the problems and those in the logs; returns the exit code."""
+    found = [*problems, *list(dict.fromkeys(line for server in servers for line in server.error_lines()))[:5]]
+    print("\nPassed." if not found else "\nFailed: " + "; ".join(found) + ".")
+    return 1 if found else 0
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--processes", type=int, default=1)
@@ -261,24 +295,15 @@ def main() -> int:
     parser.add_argument("--attack", choices=list(ATTACKS), action="append")
     options = parser.parse_args()
     problems = []
-    with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
-        processes = 2 if options.proxy else options.processes
-        servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(processes)]
-        places = [Place(server.address) for server in servers]
-        if options.proxy:
-            places = end.enter_context(behind_proxy(servers, Path(folder)))
-        print(f"\n{CACHE_SENTENCE} Largest seconds until /liveness answers; largest memory of a process in MB.\n")
-        print(f"| {' | '.join(COLUMNS)} |\n|{'---|' * len(COLUMNS)}")
+    with running(options.processes, proxy=options.proxy) as (servers, places):
         for name in options.attack or ATTACKS:
             before = count_delayed_messages(servers)
-            effect = asyncio.run(measure(servers, places, name, options.seconds, options.seed))
+            effect = asyncio.run(observe(servers, attack(places, name, options.seconds, options.seed)))
             delayed = count_delayed_messages(servers) - before
             print(row(name, effect, delayed), flush=True)
             problems += [f"{delayed} messages delayed without an attack"] if delayed and ATTACKS[name] is do_nothing else []
             problems += [f"{name}: {problem}" for problem in find_problems(effect)]
-        problems += list(dict.fromkeys(line for server in servers for line in server.error_lines()))[:5]
-    print("\nPassed." if not problems else "\nFailed: " + "; ".join(problems) + ".")
-    return 1 if problems else 0
+        return end_with(servers, problems)
 
 
 if __name__ == "__main__":

@@ -46,9 +46,9 @@ WARM_SESSIONS = 6
 _ROOT = Path(__file__).parents[1]
 # Refused pages are counted by the visitors.
 _ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^\s*Traceback|Task exception was never retrieved")
-# Turns that make a page or the figures of its first orbit are left out.
 _LATE = "event loop "
-_TURN = re.compile(_LATE + r"\d+ ms late, (\d+) ms of its own; cause: (?!main: |session/explorer: Explorer\._add_start)(.*)")
+# Turns that make a page are left out.
+_TURN = re.compile(_LATE + r"\d+ ms late, (\d+) ms of its own, with (\d+) ms of garbage collection; cause: (?!main: )(.*)")
 
 
 @dataclass
@@ -84,10 +84,10 @@ class Server:
     def longest_turn(self, first_line: int) -> tuple[float, str]:
         """Longest processor time of a late turn of the event loop in the log from a line on, in milliseconds, and its cause.
 
-        Those that make a page or the figures of its first orbit are left out.
+        Those that make a page are left out, and the time of garbage collections, which grows with the number of pages.
         """
         found = _TURN.findall("\n".join(self.log_lines()[first_line:]))
-        return max(((float(milliseconds), cause) for milliseconds, cause in found), default=(0.0, ""))
+        return max(((float(own) - float(collected), cause) for own, collected, cause in found), default=(0.0, ""))
 
     def seconds_until_live(self) -> float:
         """Seconds until ``/liveness`` answers."""

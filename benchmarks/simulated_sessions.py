@@ -7,10 +7,11 @@ import http.client
 import json
 import random
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from ipaddress import IPv4Address
+from types import MappingProxyType
 from typing import Any
 from urllib.parse import parse_qsl, urljoin
 
@@ -32,6 +33,11 @@ FRAME_TIMEOUT_SECONDS = 30.0
 
 ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
 """Actions and their weights."""
+
+ALL_ACTIONS = {"slider": 50, "case": 10, "plane": 10, "click": 10, "type": 10, "open": 10}
+"""With formulas that are typed and pages that are opened again."""
+
+_OF_MAPS = ("slider", "case", "plane")
 
 
 @dataclass
@@ -55,7 +61,7 @@ class Record:
     """
 
     opening: list[float] = field(default_factory=list)
-    waits: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in ACTIONS if name != "click"})
+    waits: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in _OF_MAPS})
     replaced: list[float] = field(default_factory=list)
     reviews: list[float] = field(default_factory=list)
     clicks: int = 0
@@ -70,12 +76,33 @@ def visitor_headers(name: str, number: int) -> dict[str, str]:
 
 
 class SimulatedSession:
-    """One session with random actions, of a visitor with an address of his or her own."""
+    """One session with random actions, of a visitor with an address of his or her own.
 
-    def __init__(self, address: str, seed: int, record: Record, options: Options = NO_OPTIONS) -> None:
+    Parameters
+    ----------
+    address
+        Of the page.
+    seed
+        Of the actions; also the number of the visitor's address.
+    record
+        Takes the measurements.
+    options
+        Of all requests.
+    actions
+        Actions and their weights.
+    """
+
+    def __init__(
+        self,
+        address: str,
+        seed: int,
+        record: Record,
+        options: Options = NO_OPTIONS,
+        actions: Mapping[str, int] = MappingProxyType(ACTIONS),
+    ) -> None:
         headers = visitor_headers("X-Forwarded-For", seed) | options.get("headers", {})
         self._address, self._options, self._record = address, {**options, "headers": headers}, record
-        self._random = random.Random(seed)
+        self._random, self._actions = random.Random(seed), actions
         self._channel: Channel | None = None
         self._models: dict[str, str] = {}
         self._case, self._plane = "I", Plane.X_PX
@@ -95,6 +122,8 @@ class SimulatedSession:
     async def open(self) -> None:
         """Load the page and wait for its first map, or count that a full server has refused it."""
         begin = time.perf_counter()
+        self._models, self._case, self._plane, self._awaited = {}, "I", Plane.X_PX, None
+        self._opened.clear()
         if not await self._load(self._address):
             return
         try:
@@ -161,7 +190,7 @@ class SimulatedSession:
                 break
             await asyncio.sleep(pause)
             self._check_timeout()
-            [action] = self._random.choices(list(ACTIONS), list(ACTIONS.values()))
+            [action] = self._random.choices(list(self._actions), list(self._actions.values()))
             await getattr(self, f"_act_{action}")()
         deadline = time.perf_counter() + FRAME_TIMEOUT_SECONDS
         while self._awaited is not None and time.perf_counter() < deadline:
@@ -173,6 +202,22 @@ class SimulatedSession:
         self._closing = True
         if self._channel is not None and self._reader is not None:
             self._channel.close()
+            self._reader.cancel()
+            await asyncio.wait([self._reader])
+
+    async def drop(self) -> None:
+        """Load another page, connect, and close the connection at once; a full server may refuse it."""
+        with suppress(HTTPClientError):
+            (await Channel.open(self._address, self._options)).close()
+
+    def another(self) -> SimulatedSession:
+        """Another page of this visitor."""
+        return SimulatedSession(self._address, self._random.randrange(2**31), self._record, self._options)
+
+    async def stop_reading(self) -> None:
+        """Keep the connection, but read nothing more from it."""
+        self._closing = True
+        if self._reader is not None:
             self._reader.cancel()
             await asyncio.wait([self._reader])
 
@@ -234,6 +279,19 @@ class SimulatedSession:
         self._plane = Plane.X_Y if self._plane is Plane.X_PX else Plane.X_PX
         self._await_map("plane", plane=self._plane.key)
         self._open_channel.set(self._models["Plane"], active=planes.index(self._plane))
+
+    async def _act_type(self) -> None:
+        # It has no exits, so that the maps do not follow it.
+        factors = (self._random.uniform(0.5, 2.0) for _ in range(2))
+        await self.type_formula("{:.6f} x² + {:.6f} y²".format(*factors))
+
+    async def _act_open(self) -> None:
+        await self.close()
+        deadline = time.perf_counter() + FRAME_TIMEOUT_SECONDS
+        await self.open()
+        while not self.is_open and time.perf_counter() < deadline:
+            await asyncio.sleep(1.0)
+            await self.open()
 
     async def _act_click(self) -> None:
         self._record.clicks += 1

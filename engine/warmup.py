@@ -20,7 +20,7 @@ from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.integrator.bound_kernels import is_generated
 from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
-from engine.integrator.source.recurrence import generate_code
+from engine.integrator.source.recurrence import code_digest
 from engine.maps.compute import run_map
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
@@ -184,7 +184,7 @@ def prepare_kernels(potential: Potential) -> None:
     prepare_for_maps(potential)
     prepare_for_evidence(potential)
     _make_in_turn(lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time))
-    if potential.channels and not potential.centres:
+    if potential.channels and not potential.gaps:
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
         _make_in_turn(
             lambda: compute_regularity(_compute_small_map(potential, potential.well.energy_at(0.5)), execution=_EXECUTION)
@@ -202,7 +202,7 @@ def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> N
         The account of compiled code; by default that of this process.
     """
     wells = [potential.in_well_units for potential in POTENTIALS.values()]
-    operations.reserve(generate_code(well.form.definition, **well.well.setting._asdict()).digest for well in wells)
+    operations.reserve(code_digest(well.form.definition, well.well.setting) for well in wells)
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:

@@ -45,7 +45,7 @@ class BrowserSystem:
 
 def system_key(potential: Potential) -> str:
     """A text that is different for each potential."""
-    contents = potential.form, potential.rotation, potential.centres, potential.escape_radius
+    contents = potential.form, potential.rotation, potential.ends
     return hashlib.sha256(repr(contents).encode()).hexdigest()[:16]
 
 

@@ -17,7 +17,6 @@ from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_jobs import map_job, members_job
 from engine.jobs.subscription import Subscription
-from engine.systems.system import TYPED
 from engine.warmup import is_ready_for_maps, prepare_for_maps
 from plots.pictures.image_columns import draw_over, map_columns
 
@@ -104,11 +103,11 @@ class MapRequests:
 
     def _request_compiled(self, generation: int, spec: MapSpec) -> None:
         """Request the frames; along a parameter of a typed formula, first the potentials, which take as long as their reviews."""
-        axis = spec.plane.parameter
-        if axis is None or axis.system.case != TYPED:
+        members = members_job(spec.plane.parameter)
+        if members is None:
             self._request_frames(generation, spec)
         else:
-            self._request(members_job(axis), generation, lambda _: self._deliver(self._show_members, generation, spec))
+            self._request(members, generation, lambda _: self._deliver(self._show_members, generation, spec))
 
     def _on_members(self, generation: int, spec: MapSpec) -> None:
         if generation == self._generation:

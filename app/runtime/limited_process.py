@@ -1,4 +1,4 @@
-"""A process for what visitors type: its time and memory are limited, and the server goes on when it ends."""
+"""Processes for what visitors type: their time and memory are limited, and the server goes on when they end."""
 
 from __future__ import annotations
 
@@ -11,11 +11,18 @@ from concurrent.futures import TimeoutError as FutureTimeoutError
 from contextlib import suppress
 from functools import partial
 from math import ceil
+from queue import LifoQueue
 
 from loky import ProcessPoolExecutor
 
 SECONDS = 5
 """Processor time of a call."""
+
+PROCESSES = 2
+"""Number of processes: while one is busy with a formula of one address, another address waits for nothing."""
+
+IDLE_SECONDS = 300
+"""A process without a call for so long ends; it has 100 MB."""
 
 MEMORY = 2**30
 """Memory of the process beside that which it has when it starts, in bytes."""
@@ -33,7 +40,7 @@ class LimitError(ValueError):
 class LimitedProcess:
     """A process that makes one call at a time; it starts with the first call, and again after it has ended.
 
-    It ends when a call exceeds a limit, and with the process that made it.
+    It ends when a call exceeds a limit, after `IDLE_SECONDS` without a call, and with the process that made it.
 
     Parameters
     ----------
@@ -79,9 +86,9 @@ class LimitedProcess:
         future = self._submit(partial(_call_limited, self._seconds, function))
         try:
             result: Result = future.result(_PATIENCE * self._seconds)
-        except (BrokenExecutor, FutureTimeoutError):
+        except (BrokenExecutor, FutureTimeoutError, MemoryError):
             self.close()
-        except (MemoryError, RecursionError):
+        except RecursionError:
             pass
         else:
             return result
@@ -95,9 +102,39 @@ class LimitedProcess:
             with suppress(BrokenExecutor):
                 waiting: Future[Result] = self._executor.submit(call)
                 return waiting
-        self._executor = ProcessPoolExecutor(max_workers=1, initializer=_begin, initargs=(self._memory, os.getpid()))
+        self._executor = ProcessPoolExecutor(
+            max_workers=1, timeout=IDLE_SECONDS, initializer=_begin, initargs=(self._memory, os.getpid())
+        )
         first: Future[Result] = self._executor.submit(call)
         return first
+
+
+class LimitedProcesses:
+    """Several limited processes; each starts when it is needed while the others are busy."""
+
+    def __init__(self, count: int = PROCESSES) -> None:
+        self._processes = [LimitedProcess() for _ in range(count)]
+        self._free: LifoQueue[LimitedProcess] = LifoQueue()
+        for process in self._processes:
+            self._free.put(process)
+
+    def __call__[Result](self, function: Callable[[], Result]) -> Result:
+        """The result of a function in a process that is free, as by `LimitedProcess`."""
+        process = self._free.get()
+        try:
+            return process(function)
+        finally:
+            self._free.put(process)
+
+    @property
+    def stopped(self) -> int:
+        """Number of calls that exceeded a limit."""
+        return sum(process.stopped for process in self._processes)
+
+    def close(self) -> None:
+        """End the processes."""
+        for process in self._processes:
+            process.close()
 
 
 def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> Result:

@@ -61,17 +61,31 @@ class LoopWatch:
         self._thread = threading.get_ident()
         self._samples: list[str] = []
         self._busy = time.thread_time()
+        self._collecting, self._collected = 0.0, 0.0
+
+    def on_collection(self, phase: str, info: dict[str, int]) -> None:
+        """Measure the garbage collections on the loop's thread, which any allocation may start; one of `gc.callbacks`."""
+        if threading.get_ident() != self._thread:
+            return
+        if phase == "start":
+            self._collecting = time.thread_time()
+        else:
+            self._collected += time.thread_time() - self._collecting
 
     def tick(self) -> None:
         """Measure the delay and report a long one; call every `TICK_SECONDS` on the event loop."""
         late = self._load.tick()
         busy, self._busy = time.thread_time() - self._busy, time.thread_time()
+        collected, self._collected = self._collected, 0.0
         samples, self._samples = self._samples, []
         if late > _REPORTED:
             cause = Counter(samples).most_common(1)[0][0] if samples else WAITING
             self._delays.labels(cause).observe(late)
             # Other threads and processes also delay the loop, so the message gives the loop's own processor time as well.
-            log.info("event loop %.0f ms late, %.0f ms of its own; cause: %s", 1000.0 * late, 1000.0 * busy, cause)
+            log.info(
+                "event loop %.0f ms late, %.0f ms of its own, with %.0f ms of garbage collection; cause: %s",
+                *(1000.0 * seconds for seconds in (late, busy, collected)), cause,
+            )  # fmt: skip
 
     def watch(self, stopping: threading.Event) -> None:
         """Look at the loop's stack whenever its tick is overdue, until the server stops; runs on a thread of its own."""

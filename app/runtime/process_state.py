@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 from bokeh.document import Document
 
 from app.runtime.fair_share import FairShare
-from app.runtime.limited_process import LimitedProcess
+from app.runtime.limited_process import PROCESSES, LimitedProcesses
 from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.overload import OverloadMonitor
@@ -40,7 +40,7 @@ class ProcessState:
     jobs
         Background jobs of all sessions.
     limited
-        The process for what visitors type.
+        The processes for what visitors type.
     load
         Delay of the event loop.
     overload
@@ -59,7 +59,7 @@ class ProcessState:
     sessions: Callable[[], Iterable[Any]] = tuple
     sockets: Counter[str] = field(default_factory=Counter, init=False)
     jobs: Jobs = field(init=False)
-    limited: LimitedProcess = field(default_factory=LimitedProcess, init=False)
+    limited: LimitedProcesses = field(default_factory=LimitedProcesses, init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
     overload: OverloadMonitor = field(init=False)
     metrics: ServerMetrics = field(default_factory=ServerMetrics, init=False)
@@ -76,6 +76,7 @@ class ProcessState:
             most_orbits=self.settings.most_orbits,
             threads=self.settings.threads,
             limited=self.limited,
+            limited_calls=PROCESSES,
         )
 
     def fair_share(self, document: Document) -> FairShare:

@@ -84,6 +84,8 @@ class _LockedCallback:
             except Exception:
                 log.exception("the changes of a callback could not be sent")
                 self._calls.clear()
+            # Each call has a turn of the loop.
+            await asyncio.sleep(0)
 
     def _open_session(self) -> SessionContext | None:
         document = self._document()

@@ -82,7 +82,7 @@ class AnalysisPresenter:
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(locked(self._measure), context.copy, locked(lambda: state.param.update(box=None)))
         state.follow(self.measures.show_box, "box")
-        self.curves = CurvesView(locked(self._sweep), self._open_value)
+        self.curves = CurvesView(locked(self._sweep), self._open_value, context.latest)
         self._exponent = LatestRequest(jobs, self._show_exponent, self.measures.say, locked)
         self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
         self._connect()

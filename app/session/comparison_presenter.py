@@ -15,7 +15,7 @@ from app.views.components.numbers import grouped, percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
 from engine.jobs.job import Job, Queue
-from engine.jobs.map_jobs import map_job
+from engine.jobs.map_jobs import map_job, members_job
 from engine.systems.review.potential_review import SystemReview
 from engine.warmup import is_ready_for_maps, prepare_for_maps
 from plots.texts.accepted_potentials import refusal
@@ -47,6 +47,9 @@ class ComparisonPresenter:
         self._frame: EscapeMap | None = None
         self._other: EscapeMap | None = None
         self._reviewed: SystemReview | None = None
+        # The last preparation of a map, and the last one that is done.
+        self._preparing: Job[None] | None = None
+        self._prepared: Job[None] | None = None
         self._review = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
         self._request = LatestRequest(context.jobs, self._take, self._fail, context.locked)
         self._state.param.watch(lambda event: self._follow(), "compared")
@@ -73,7 +76,7 @@ class ComparisonPresenter:
             self._continue()
 
     def _continue(self) -> None:
-        """Request the next of what is missing: the review of the other system, its kernels, its map."""
+        """Request the next of what is missing: the review of the other system, its kernels, its potentials, its map."""
         view = self._state.compared
         if view is None:
             return
@@ -84,7 +87,7 @@ class ComparisonPresenter:
         elif self._frame is None:
             return
         elif not is_ready_for_maps(self._reviewed.potential):
-            self._request.submit(Job(prepare_for_maps, (self._reviewed.potential,), queue=Queue.COMPILATION))
+            self._prepare(Job(prepare_for_maps, (self._reviewed.potential,), queue=Queue.COMPILATION))
         else:
             self._request_map(view, self._reviewed, self._frame)
 
@@ -95,16 +98,25 @@ class ComparisonPresenter:
             job = map_job(replace(spec, resolution=like.resolution, window=like.find_window(), t_max=like.t_max))
         except ValueError as error:
             self._fail(str(error))
+            return
+        members = members_job(spec.plane.parameter)
+        if members is not None and members != self._prepared:
+            self._prepare(members)
         else:
             self._request.submit(job)
+
+    def _prepare(self, job: Job[None]) -> None:
+        self._preparing = job
+        self._request.submit(job)
 
     def _take_review(self, reviewed: SystemReview) -> None:
         self._reviewed = reviewed
         self._continue()
 
     def _take(self, result: EscapeMap | None) -> None:
-        """Show a map, or go on when the kernels are prepared."""
+        """Show a map, or go on when it is prepared."""
         if result is None:
+            self._prepared = self._preparing
             self._continue()
         else:
             self._show(result)

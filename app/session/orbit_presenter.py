@@ -78,7 +78,7 @@ class OrbitPresenter:
         # A server under load skips times instead of falling behind the player.
         self.playback = Playback(latest(self._set_time))
         self._separation_plot: SeparationPlot = SeparationPlot()
-        self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot)
+        self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot, latest)
         self._orbits = OrbitRequests(state, jobs, self._show, latest)
         self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)

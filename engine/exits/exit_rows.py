@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.exits.brake_orbits import saddle_axes
-from engine.exits.exit_shapes import absent_channel, closed_channel, disc, escape_circle
+from engine.exits.exit_shapes import absent_channel, closed_channel
 from engine.exits.lyapunov_orbits import UndefinedExitsError, find_orbits_in_well_units
 from engine.integrator.kernels import events
 from engine.systems.potential import Potential
@@ -21,7 +21,7 @@ _GATE_MARGIN = 1e-3
 
 
 def closed_exits(potential: Potential) -> np.ndarray:
-    """(outcomes, columns) the exits below all saddles: short lines across these, discs, and the escape circle.
+    """(outcomes, columns) the exits below all saddles: short lines across these, and the other ends.
 
     Raises
     ------
@@ -35,8 +35,7 @@ def closed_exits(potential: Potential) -> np.ndarray:
         check_closed_well(potential)
     rows = [
         *(closed_channel(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)),
-        *map(disc, potential.centres),
-        *([] if potential.escape_radius is None else [escape_circle(potential.escape_radius)]),
+        *(end.row for end in potential.ends),
     ]
     return np.array(rows).reshape(len(rows), events.CURVE_COLUMNS)
 
@@ -54,7 +53,7 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
 def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
     """Return the `exit_curves` for one orbit, and why they are not known, or ""; orbits are also integrated without exits.
 
-    Where they are not defined at the energy no orbit crosses one and no start lies beyond one; discs and the escape circle stay.
+    Where they are not defined at the energy no orbit crosses one and no start lies beyond one; other ends stay.
     """
     try:
         return exit_curves(potential, energy), ""
@@ -68,13 +67,13 @@ def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str
 def exit_gates(curves: np.ndarray) -> np.ndarray:
     """(outcomes, 3) the gates of exits (…, outcomes, columns): no orbit ends before a gate, which the kernels test first.
 
-    Across a channel it is the line a x + b y = c slightly inside its exits at all energies; of a disc and of the escape circle it
-    is the centre and the radius.
+    Across a channel it is the line a x + b y = c slightly inside its exits at all energies; of a circle it is the centre and the
+    radius.
     """
     outcomes, columns = curves.shape[-2:]
     rows = curves.reshape(math.prod(curves.shape[:-2]), outcomes, columns)
     gates = np.ascontiguousarray(rows[0][:, [events.ORIGIN_X, events.ORIGIN_Y, events.HALF_WIDTH]])
-    is_line = rows[0, :, events.SHAPE] < events.DISC
+    is_line = rows[0, :, events.SHAPE] <= events.LINE
     gates[is_line] = _lines_inside(rows[:, is_line])
     return gates
 

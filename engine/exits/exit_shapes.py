@@ -1,4 +1,4 @@
-"""Exits as rows of numbers for the kernels of `integrator.kernels.events`: closed channels, curves, lines, discs, a circle."""
+"""Exits over saddles as rows of numbers for the kernels of `integrator.kernels.events`: closed channels, curves, lines."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from numpy.polynomial import chebyshev
 from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.foundations.root_finding import bisect
 from engine.integrator.kernels import events
-from engine.systems.outcomes import Centre
 from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
@@ -155,19 +154,3 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
         low, high = bisect(is_beyond, low, high, _BISECTIONS)
     walls: np.ndarray = np.where(first > 0, 0.5 * (low + high), np.nan)[..., 0]
     return walls
-
-
-def disc(centre: Centre) -> np.ndarray:
-    """(columns,) the edge of the disc of a centre."""
-    return _circle(centre.x, centre.y, centre.radius, events.DISC)
-
-
-def escape_circle(radius: float) -> np.ndarray:
-    """(columns,) the circle around the origin beyond which orbits have escaped."""
-    return _circle(0.0, 0.0, radius, events.CIRCLE)
-
-
-def _circle(x: float, y: float, radius: float, shape: int) -> np.ndarray:
-    row = np.zeros(events.CURVE_COLUMNS)
-    row[[events.ORIGIN_X, events.ORIGIN_Y, events.HALF_WIDTH, events.SHAPE]] = x, y, radius, shape
-    return row

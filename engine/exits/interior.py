@@ -1,6 +1,6 @@
 """The interior of a potential at one energy: all points connected to the origin below the energy without crossing an exit.
 
-With an escape radius, all points within it. Discs around centres belong to no interior.
+With an escape radius, all points within it. Other ends belong to no interior.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from engine.systems.potential import Potential
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """int8, shaped like x and y: 0 for points inside or forbidden, else the number of an outcome.
 
-    Beyond the exits it is the channel nearest in direction, in a disc the collision with its centre.
+    Beyond the exits it is the channel nearest in direction.
     """
     units = potential.units
     return find_outside_in_well_units(potential.in_well_units, energy / units.energy, x / units.length, y / units.length)
@@ -61,8 +61,8 @@ def find_outside_starts(
 
 
 def find_inner_radius(potential: Potential) -> float:
-    """Radius of the disc around a centre at the origin; 0.0 for a well there."""
-    return max((centre.radius for centre in potential.centres if centre.x == centre.y == 0.0), default=0.0)
+    """Radius of the gap at the origin; 0.0 for a well there."""
+    return max((gap.radius for gap in potential.gaps if gap.x == gap.y == 0.0), default=0.0)
 
 
 @functools.singledispatch

@@ -42,8 +42,7 @@ def load_kernels(
     channels: int,
     reach: float = REACH,
     *,
-    discs: int = 0,
-    ring: bool = False,
+    sides: tuple[int, ...] = (),
     rotation: float = 0.0,
 ) -> ModuleType:
     """The kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
@@ -56,10 +55,8 @@ def load_kernels(
         Number of exit channels, 0 or more.
     reach
         Radius about the origin, above 0, that contains all orbits.
-    discs
-        Number of centres, at whose discs orbits end; 0 or more.
-    ring
-        Whether orbits end at a circle around the origin.
+    sides
+        Of each circle at which orbits end, −1 if they end within it, 1 beyond it.
     rotation
         Ω of the frame, finite, dimensionless.
 
@@ -70,7 +67,7 @@ def load_kernels(
     loaded from the cache.
     """
     with _lock:
-        return _load(definition, Setting(channels, discs, ring, rotation != 0.0), rotation, reach)
+        return _load(definition, Setting(channels, sides, rotation != 0.0), rotation, reach)
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:

@@ -25,7 +25,7 @@ class Queue(Enum):
     """The function is one call of up to seconds."""
 
     LIMITED = "limited"
-    """The function is one call on what a visitor typed, in a process with limits if there is one; one at a time runs."""
+    """The function is one call on what a visitor typed, in a process with limits if there is one; an account has one at once."""
 
     COMPILATION = "compilation"
     """The function compiles kernels; one at a time runs in the process."""

@@ -102,6 +102,8 @@ class Jobs:
         Size of a thread pool of its own; None for the default pool of this process.
     limited
         Calls a function in a process with limits, for `Queue.LIMITED`; None for a thread of this process.
+    limited_calls
+        Number of such calls at a time, each of another account.
     """
 
     def __init__(
@@ -111,13 +113,14 @@ class Jobs:
         most_orbits: int = DEFAULT_ORBITS,
         threads: int | None = None,
         limited: Callable[[Callable[[], Any]], Any] | None = None,
+        limited_calls: int = 1,
     ) -> None:
         self._executor = executor
         self._limited = limited
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads))
         # Numba compiles one function at a time: more threads would only wait for each other, and orbits for all of them.
         self._compilations = FairScheduler(create_thread_pool(1))
-        self._limited_calls = FairScheduler(create_thread_pool(1))
+        self._limited_calls = FairScheduler(create_thread_pool(limited_calls), one_each=True)
         self._semaphore = OrbitSemaphore(most_orbits)
         self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
@@ -289,7 +292,7 @@ class Jobs:
             Queue.FIRST_FRAME: calls,
             Queue.BACKGROUND: calls,
             Queue.LONG_CALL: self._scheduler.executor(run.client, lambda: Priority.LONG_CALL),
-            Queue.LIMITED: self._limited_calls.executor(turn, lambda: Priority.LONG_CALL),
+            Queue.LIMITED: self._limited_calls.executor(turn, lambda: Priority.BACKGROUND),
             Queue.COMPILATION: self._compilations.executor(turn, lambda: Priority.LONG_CALL),
         }
 

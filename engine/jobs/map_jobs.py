@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from engine.foundations.execution import Execution
 from engine.jobs.cache import ResultCache
@@ -27,6 +27,7 @@ from engine.slices.window import Window
 from engine.sweeps.measures import SweepPoint, compute_point
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
+from engine.systems.system import TYPED
 from engine.trajectories.flux import EscapeFlux, compute_flux
 
 if TYPE_CHECKING:
@@ -61,8 +62,10 @@ def map_job(spec: MapSpec) -> Job[EscapeMap]:
     return Job(run_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
 
 
-def members_job(axis: ParameterAxis) -> Job[None]:
-    """The job that finds the potentials along a parameter of a typed formula within limits, before a map shows them."""
+def members_job(axis: ParameterAxis | None) -> Job[None] | None:
+    """The job that finds the potentials along a parameter of a typed formula within limits, before maps need them; else None."""
+    if axis is None or axis.system.case != TYPED:
+        return None
     return Job(find_members, (axis,), queue=Queue.LIMITED)
 
 
@@ -132,9 +135,14 @@ def _compute_sweep(
     *,
     on_frame: Callable[[Sweep], None],
     execution: Execution,
-    find_result: Callable[[Job[xr.Dataset]], xr.Dataset],
+    find_result: Callable[[Job[Any]], Any],
 ) -> Sweep:
+    members = members_job(spec.along)
+    if members is not None:
+        find_result(members)
+
     def measure(point: SweepPoint) -> xr.Dataset:
-        return find_result(Job(_measure_point, (point, map_job(point.map_spec))))
+        measured: xr.Dataset = find_result(Job(_measure_point, (point, map_job(point.map_spec))))
+        return measured
 
     return compute_sweep(spec, on_frame=on_frame, execution=execution, measure=measure)

@@ -71,10 +71,13 @@ class FairScheduler:
     ----------
     pool
         The threads; None for the default pool of this process.
+    one_each
+        Whether a client has one call at a time, so that it leaves the other threads to others.
     """
 
-    def __init__(self, pool: ThreadPoolExecutor | None = None) -> None:
+    def __init__(self, pool: ThreadPoolExecutor | None = None, *, one_each: bool = False) -> None:
         self._pool = pool or default_executor()
+        self._one_each = one_each
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
         # By client, in round-robin order, then by executor, oldest first; those without pending calls are removed.
@@ -83,6 +86,7 @@ class FairScheduler:
         # Threads of the pool that run calls.
         self._active_threads = 0
         self._running: Counter[Priority] = Counter()
+        self._served: Counter[Hashable] = Counter()
         self._background_paused = False
         self._first_frames_spared = False
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
@@ -162,11 +166,12 @@ class FairScheduler:
             call, priority = chosen
             begun = time.monotonic()
             call.run()
-            self._end_call(priority, time.monotonic() - begun)
+            self._end_call(call.executor.client, priority, time.monotonic() - begun)
 
-    def _end_call(self, priority: Priority, duration: float) -> None:
+    def _end_call(self, client: Hashable, priority: Priority, duration: float) -> None:
         with self._lock:
             self._running[priority] -= 1
+            self._served -= Counter([client])
             if priority is Priority.LONG_CALL:
                 self._next_long_call = time.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
@@ -179,6 +184,7 @@ class FairScheduler:
                 return None
             executor, priority = chosen
             self._running[priority] += 1
+            self._served[executor.client] += 1
             queues = self._pending[executor.client]
             call = queues[executor].popleft()
             if not queues[executor]:
@@ -188,7 +194,8 @@ class FairScheduler:
             return call, priority
 
     def _find_next(self) -> tuple[QueueExecutor, Priority] | None:
-        candidates = [(executor, executor.priority()) for queues in self._pending.values() for executor in queues]
+        waiting = [queues for client, queues in self._pending.items() if not (self._one_each and self._served[client])]
+        candidates = [(executor, executor.priority()) for queues in waiting for executor in queues]
         priority = min((priority for _, priority in candidates if self._may_start(priority)), default=None)
         return next((candidate for candidate in candidates if candidate[1] is priority), None)
 

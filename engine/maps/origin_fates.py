@@ -16,7 +16,7 @@ from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.propagation.fates import Fate
-from engine.systems.outcomes import OutcomeKind
+from engine.systems.outcomes import Exit
 
 # What orbits do at the outcomes of each array.
 _VERBS = {"origin": "entered", "fate": "leaves"}
@@ -59,7 +59,7 @@ class OriginFateMap(PixelAnalysis):
         """Shares of the passages in one sentence."""
         counts = self.count_passages()
         total = max(int(counts.sum()), 1)
-        only_exits = all(outcome.kind is OutcomeKind.EXIT for outcome in self.spec.outcomes)
+        only_exits = all(outcome.kind is Exit for outcome in self.spec.outcomes)
         ends, alike = ("enter and leave", "through the same channel") if only_exits else ("end in both time directions", "alike")
         through, same = int(counts[1:, 1:].sum()), int(np.trace(counts[1:, 1:]))
         return (

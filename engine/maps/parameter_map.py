@@ -23,7 +23,7 @@ from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, Staged, run_stages, run_to_frame
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate
+from engine.propagation.fates import Fate, renumber
 from engine.slices.axes import HeldParameter
 from engine.slices.energies import highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family
@@ -68,7 +68,7 @@ class Line:
         own[self.numbers] = np.arange(self.numbers.size)
         arrays: dict[str, Any] = {name: getattr(escape_map, name)[self.place] for name in PIXEL_ARRAYS}
         for name in _NUMBERED:
-            arrays[name] = renumbered(arrays[name], own)
+            arrays[name] = renumber(arrays[name], own)
         x, ordinate = self.spec.pixel_centres()
         line = replace(
             escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, trust=None, **arrays
@@ -104,12 +104,6 @@ def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k:
         place, size, part = np.s_[k : k + 1, :], (columns, 1), Window(window.x_low, window.x_high, *edges)
     line_spec = replace(spec, potential=member.potential, plane=spec.plane.line(value), resolution=size, window=part)
     return Line(line_spec, place, member.numbers_at(highest_energy(spec.energy)))
-
-
-def renumbered(codes: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """Codes of which the positive ones, numbers of outcomes, are replaced by others."""
-    changed: np.ndarray = np.where(codes > 0, numbers[np.maximum(codes, 0)], codes)
-    return changed
 
 
 class LineStack:
@@ -178,7 +172,7 @@ class LineStack:
         self._found[k] = found if self._keeps_states else replace(found, batch=None)
         for name, array in self._arrays.items():
             codes = getattr(found, name)
-            array[line.place] = renumbered(codes, line.numbers) if name in _NUMBERED else codes
+            array[line.place] = renumber(codes, line.numbers) if name in _NUMBERED else codes
         if found.spec.t_max < self.spec.t_max:
             open_ended = (found.fate == Fate.BOUNDED) & (found.evidence == Evidence.INTEGRATED)
             for name, value in (("fate", Fate.NOT_COMPUTED), ("evidence", Evidence.NONE)):

@@ -89,7 +89,7 @@ def compute_regularity(
     Raises
     ------
     ValueError
-        When the map is not complete, or its potential has centres.
+        When the map is not complete, or its potential has gaps in its interior.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def compute_regularity(
     """
     escape_map = as_map("escape_map", escape_map)
     escape_map.check_complete("escape_map")
-    escape_map.spec.potential.check_without_centres("regular and chaotic orbits of a map")
+    escape_map.spec.potential.check_without_gaps("regular and chaotic orbits of a map")
     return analyse_map(escape_map, lambda pixels, _place: _RegularityClassification(pixels), RegularityMap, on_frame, execution)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from engine.foundations.codes import name_code
 from engine.foundations.result import Result
 from engine.integrator.kernels import events
-from engine.systems.outcomes import Outcome, exit_outcome, write_outcomes
+from engine.systems.outcomes import Exit, Outcome, write_outcomes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,7 +84,7 @@ UNRESOLVED = "unresolved"
 
 def outcome_of(fate: int, outcomes: Sequence[Outcome] = ()) -> Outcome:
     """The outcome of a fate of 1 or more; a channel where the outcomes are not known, as in files of older versions."""
-    return outcomes[fate - 1] if fate <= len(outcomes) else exit_outcome(fate)
+    return outcomes[fate - 1] if fate <= len(outcomes) else Exit.outcome(fate)
 
 
 def name_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
@@ -105,6 +105,12 @@ def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
         Those of the potential, `Potential.outcomes`; where they are not known, they are channels.
     """
     return outcome_of(fate, outcomes).sentence if fate >= 1 else _SENTENCES[Fate(fate)]
+
+
+def renumber(fates: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+    """Fates (any shape) with the outcome k ≥ 1 replaced by ``numbers[k]``, numbers (outcomes + 1,); other codes stay."""
+    renumbered: np.ndarray = np.where(fates > 0, numbers[np.maximum(fates, 0)], fates)
+    return renumbered
 
 
 class OrbitResult(Result):

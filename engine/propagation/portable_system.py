@@ -99,10 +99,8 @@ class PortableSystem:
 
 
 def _circles(well: Potential) -> list[dict[str, object]]:
-    """The discs around centres and the escape circle."""
-    discs: list[dict[str, object]] = [{"shape": "disc", "x": each.x, "y": each.y, "radius": each.radius} for each in well.centres]
-    radius = well.escape_radius
-    return discs if radius is None else [*discs, {"shape": "circle", "x": 0.0, "y": 0.0, "radius": radius}]
+    """The other ends."""
+    return [{"side": end.side, "x": end.x, "y": end.y, "radius": end.radius} for end in well.ends]
 
 
 def _polynomial_data(form: Any) -> dict[str, object] | None:
@@ -118,8 +116,8 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     Takes up to a second the first time for each structure of a potential, and for exits that are not cached.
     """
     well = potential.in_well_units
-    definition, (channels, discs, ring, rotates) = well.form.definition, well.well.setting
-    code = generate_code(definition, channels, discs=discs, ring=ring, rotates=rotates)
-    table, rotation = code.tabulate(definition, well.rotation), code.entries.index(ROTATION) if rotates else None
+    definition, setting = well.form.definition, well.well.setting
+    code = generate_code(definition, **setting._asdict())
+    table, rotation = code.tabulate(definition, well.rotation), code.entries.index(ROTATION) if setting.rotates else None
     exits = tabulate_exits(well, highest / potential.units.energy)
     return PortableSystem(potential, webassembly_module(code), table, rotation, exits)

@@ -22,7 +22,7 @@ from engine.systems.well_units import WellUnits
 _MARGIN = 0.03
 # Sides of an interior in units of the well that differ by more are shown at different scales.
 _LARGEST_ASPECT = 4.0
-# Share of the points between the edges whose momenta are shown of a system with centres, near which there is no largest one.
+# Share of the points between the edges whose momenta are shown of a system with gaps, near which there is no largest one.
 _SHOWN_MOMENTA = 0.9
 _SCAN_POINTS = 801
 # The interior is searched up to the first distance from the origin, in units of that of the nearest exit saddle, and where it is
@@ -238,10 +238,10 @@ def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ra
 
 
 def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate, Range]) -> Range:
-    """The range of a momentum of the starts between these positions; near centres it would have no end."""
+    """The range of a momentum of the starts between these positions; near gaps it would have no end."""
     x, y = (np.linspace(*ranges[coordinate], _SCAN_POINTS) for coordinate in (Coordinate.X, Coordinate.Y))
     value = potential.value(x, y)
-    bottom = np.quantile(value[np.isfinite(value)], 1.0 - _SHOWN_MOMENTA) if potential.centres else np.min(value)
+    bottom = np.quantile(value[np.isfinite(value)], 1.0 - _SHOWN_MOMENTA) if potential.gaps else np.min(value)
     momentum = float(np.sqrt(2.0 * max(energy - bottom, 0.0)))
     return -momentum, momentum
 
@@ -277,10 +277,10 @@ def _interior_interval(potential: Potential, energy: float, axis: Coordinate, he
 
 
 def _is_inside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether points are allowed and not beyond an exit; the discs of centres are gaps in an interior and count as inside."""
+    """Whether points are allowed and not beyond an exit; gaps in an interior count as inside."""
     outside = find_outside_in_well_units(potential, energy, x, y)
-    in_disc = (outside > potential.channels) & (outside <= potential.channels + len(potential.centres))
-    inside: np.ndarray = ~(potential.value(x, y) > energy) & ((outside == 0) | in_disc)
+    gaps = [number for number, end in enumerate(potential.ends, potential.channels + 1) if end in potential.gaps]
+    inside: np.ndarray = ~(potential.value(x, y) > energy) & np.isin(outside, [0, *gaps])
     return inside
 
 
@@ -310,7 +310,7 @@ def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> t
 def _shown_radius(potential: Potential, escape_radius: float) -> float:
     """A radius that contains the bodies and critical points of a system with an escape radius, with some space around."""
     places = [(point.x, point.y) for point in review_potential(potential).critical_points]
-    places += [(centre.x, centre.y) for centre in potential.centres]
+    places += [(end.x, end.y) for end in potential.ends]
     outermost = max((float(np.hypot(*place)) for place in places), default=0.0)
     return min(_SEARCH_BODY_DISTANCES * outermost or escape_radius, escape_radius)
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.slices.axes import ParameterAxis
-from engine.systems.outcomes import OutcomeKind, exit_outcome
+from engine.systems.outcomes import Exit
 from engine.systems.potential import Potential
 
 # Nodes divide the range of the axis into `_PARTS`, and the distance from the system's own value to the farther end of the range
@@ -172,8 +172,8 @@ class ParameterFamily:
                 numbers[k + 1] = neighbour.numbers[channel]
         new = np.flatnonzero(numbers[1:] == 0) + 1
         numbers[new] = len(self.outcomes) + 1 + np.arange(new.size)
-        known = sum(outcome.kind is OutcomeKind.EXIT for outcome in self.outcomes)
-        self.outcomes += tuple(exit_outcome(known + k) for k in range(1, new.size + 1))
+        known = sum(outcome.kind is Exit for outcome in self.outcomes)
+        self.outcomes += tuple(Exit.outcome(known + k) for k in range(1, new.size + 1))
         return Member(potential, read_only(numbers))
 
     def _matches(self, low: float, high: float) -> list[int] | None:

@@ -22,7 +22,7 @@ from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.measures.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.measures.wada import compute_wada_test
-from engine.propagation.fates import Fate
+from engine.propagation.fates import Fate, renumber
 from engine.systems.outcomes import Outcome
 
 if TYPE_CHECKING:
@@ -219,8 +219,7 @@ def _measure_accuracy(measured: MeasuredMap) -> Variables:
 def _keep_map(measured: MeasuredMap) -> Variables:
     """All arrays of the map, as in `EscapeMap.to_xarray`; fates have the numbers of the sweep."""
     dataset, fate = measured.frame.to_xarray(), measured.frame.fate
-    numbers = np.array(measured.point.numbers, fate.dtype)
-    renumbered = np.where(fate > 0, numbers[np.maximum(fate, 0)], fate)
+    renumbered = renumber(fate, np.array(measured.point.numbers, fate.dtype))
     attributes = {**dataset["fate"].attrs, **_describe_fates(measured.point)}
     kept = {str(name): variable for name, variable in dataset.variables.items()}
     return kept | {"fate": (dataset["fate"].dims, renumbered, attributes)}

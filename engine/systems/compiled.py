@@ -13,8 +13,8 @@ _FIXED_STEP = 1.0 / 3.0
 
 def kernels_of(potential: Potential) -> ModuleType:
     """The compiled kernels of a potential in units of its well, from `load_kernels`."""
-    channels, discs, ring, _ = potential.well.setting
-    return load_kernels(potential.form.definition, channels, discs=discs, ring=ring, rotation=potential.rotation)
+    channels, sides, _ = potential.well.setting
+    return load_kernels(potential.form.definition, channels, sides=sides, rotation=potential.rotation)
 
 
 def fixed_step_size(potential: Potential) -> float:

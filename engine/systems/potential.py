@@ -19,13 +19,16 @@ from engine.foundations.validation import LONGEST_TIME, check_type, checked_numb
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
-from engine.systems.outcomes import Centre, Outcome, checked_radius
+from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
 from engine.systems.parameters import WELL_PARAMETERS, symbol_of
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
 
 Terms = tuple[tuple[int, int, float], ...]
+
+# Stands for the centres, or the escape radius, that are among the ends.
+_OF_ENDS: Any = ...
 
 
 @with_former_fields
@@ -56,6 +59,9 @@ class Potential(Result):
         (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`; it has no influence on any result.
     lineage
         How its well is found.
+    ends
+        What orbits end at besides exits, of any kind of `engine.systems.outcomes`; `centres` and `escape_radius` replace those of
+        their kinds.
 
     Raises
     ------
@@ -76,8 +82,7 @@ class Potential(Result):
     name: str = field(compare=False)
     form: Form
     rotation: float = 0.0
-    centres: tuple[Centre, ...] = ()
-    escape_radius: float | None = None
+    ends: tuple[End, ...] = ()
     origin: tuple[float, float] = (0.0, 0.0)
     lineage: Lineage = field(default=SEARCHED, repr=False)
 
@@ -86,25 +91,28 @@ class Potential(Result):
         name: str,
         form: Form | Terms | Expression,
         rotation: float = 0.0,
-        centres: Sequence[Centre] = (),
-        escape_radius: float | None = None,
+        centres: Sequence[Centre] = _OF_ENDS,
+        escape_radius: float | None = _OF_ENDS,
         origin: tuple[float, float] = (0.0, 0.0),
         lineage: Lineage = SEARCHED,
+        *,
+        ends: Sequence[End] = (),
     ) -> None:
         check_type("name", name, str)
         if isinstance(form, Expression):
             form = ExpressionForm(form)
         elif not isinstance(form, PolynomialForm | ExpressionForm):
             form = checked_form(form)
-        check_type("centres", centres, Iterable)
-        for centre in centres:
-            check_type("centres", centre, Centre)
+        if centres is not _OF_ENDS:
+            ends = [*(end for end in ends if not isinstance(end, Centre)), *_checked(centres, "centres", Centre)]
+        if escape_radius is not _OF_ENDS:
+            circles = [] if escape_radius is None else [EscapeCircle(escape_radius)]
+            ends = [*(end for end in ends if not isinstance(end, EscapeCircle)), *circles]
         values = {
             "name": name,
             "form": form,
             "rotation": checked_number("rotation", rotation),
-            "centres": tuple(centres),
-            "escape_radius": None if escape_radius is None else checked_radius("escape_radius", escape_radius),
+            "ends": tuple(sorted(_checked(ends, "ends", End), key=lambda end: list(KINDS).index(end.key))),
             "origin": (checked_number("origin", origin[0]), checked_number("origin", origin[1])),
             "lineage": lineage,
         }
@@ -114,7 +122,22 @@ class Potential(Result):
     @cached_property
     def well(self) -> Well:
         """What follows from the potential: critical points, exits, symmetries, units."""
-        return self.lineage.make_well(self.form, self.rotation, self.centres, self.escape_radius)
+        return self.lineage.make_well(self.form, self.rotation, self.ends)
+
+    @property
+    def centres(self) -> tuple[Centre, ...]:
+        """Bodies with which orbits collide."""
+        return tuple(end for end in self.ends if isinstance(end, Centre))
+
+    @property
+    def escape_radius(self) -> float | None:
+        """Distance from the origin beyond which orbits have escaped; None for exits over saddles."""
+        return self.well.escape_radius
+
+    @property
+    def gaps(self) -> tuple[End, ...]:
+        """The ends that are gaps in the interior, such as the discs of centres; V may be singular there."""
+        return tuple(end for end in self.ends if end.side < 0)
 
     @property
     def critical_points(self) -> np.ndarray:
@@ -138,7 +161,7 @@ class Potential(Result):
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """What orbits can end at: the exits in channel order, the centres, the escape radius; the first one is fate 1."""
+        """What orbits can end at: the exits in channel order, then `ends`; the first one is fate 1."""
         return self.well.outcomes
 
     def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
@@ -164,8 +187,7 @@ class Potential(Result):
             self,
             form=self.form.scaled(units.length, units.energy),
             rotation=self.rotation * units.time,
-            centres=tuple(centre.scaled(1.0 / units.length) for centre in self.centres),
-            escape_radius=None if self.escape_radius is None else self.escape_radius / units.length,
+            ends=tuple(end.scaled(1.0 / units.length) for end in self.ends),
             lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
         )
 
@@ -224,14 +246,13 @@ class Potential(Result):
         if not len(minima):
             raise ValueError(f"potential={self.name}: V must have a minimum to which its axes can be moved")
         nearest = minima[np.argmin(np.hypot(*(minima - place).T))].tolist()
-        centres = tuple(replace(each, x=each.x - nearest[0], y=each.y - nearest[1]) for each in self.centres)
+        ends = tuple(end.moved(*nearest) for end in self.ends)
         origin = self.origin[0] + nearest[0], self.origin[1] + nearest[1]
-        return self._changed(form=self.form.moved(*nearest), centres=centres, origin=origin)
+        return self._changed(form=self.form.moved(*nearest), ends=ends, origin=origin)
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
         """Return the potential with other centres and another escape radius; the parameters are those of `Potential`."""
-        check_type("centres", centres, Iterable)
-        return self._changed(centres=tuple(centres), escape_radius=escape_radius)
+        return self._changed(centres=centres, escape_radius=escape_radius)
 
     @cached_property
     def reversed_in_time(self) -> Potential:
@@ -252,20 +273,21 @@ class Potential(Result):
         if self.rotation:
             raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")
 
-    def check_without_centres(self, what: str) -> None:
-        """Raise ValueError around centres, for what is integrated with fixed steps."""
-        if self.centres:
+    def check_without_gaps(self, what: str) -> None:
+        """Raise ValueError around `gaps`, for what is integrated with fixed steps."""
+        if self.gaps:
+            bodies = f"{self.gaps[0].word}s"
             raise ValueError(
-                f"potential={self.name}: has centres; {what} are computed with fixed steps, which cannot pass close to one"
+                f"potential={self.name}: has {bodies}; {what} are computed with fixed steps, which cannot pass close to one"
             )
 
     @property
     def tori_are_evidence(self) -> bool:
         """Whether an invariant torus counts as evidence that its orbits are bounded for ever: only in a well at rest.
 
-        In a rotating frame, around centres and with an escape radius this evidence is not tested.
+        In a rotating frame and with ends besides the exits this evidence is not tested.
         """
-        return not self.rotation and not self.centres and self.escape_radius is None
+        return not self.rotation and not self.ends
 
     def numbers(self) -> dict[str, Any]:
         """The name, the escape energy and the number of channels."""
@@ -335,3 +357,11 @@ class Potential(Result):
         changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
         return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)
+
+
+def _checked[T](ends: Sequence[T], name: str, kind: type[T]) -> Sequence[T]:
+    """Ends, each of which must be of a kind."""
+    check_type(name, ends, Iterable)
+    for end in ends:
+        check_type(name, end, kind)
+    return ends

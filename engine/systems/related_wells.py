@@ -96,7 +96,7 @@ class Lineage:
         Name of the family from which the exits were continued (`ParameterFamily`), or empty. Continued exits may differ in the
         last bit from exits found from the critical points, so caches keep the results of both apart.
     make_well
-        Makes the well of form, rotation, centres and escape radius; it has no influence on any result.
+        Makes the well of form, rotation and ends; it has no influence on any result.
     """
 
     family: str = ""

@@ -5,38 +5,36 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 from engine.systems.formulas.formula_parser import parse_formula
-from engine.systems.outcomes import Centre
+from engine.systems.outcomes import end_kinds
 from engine.systems.potential import Potential
 
 _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
 def describe_potential(potential: Potential) -> dict[str, Any]:
-    """Return name, formula with all digits, rotation, centres, escape radius (0 for none) and origin of the axes."""
+    """Return name, formula with all digits, rotation, an attribute for each kind of end, and origin of the axes."""
     return {
         "potential": potential.name,
         "terms": potential.form.text,
         "rotation": potential.rotation,
-        "centres": json.dumps([asdict(centre) for centre in potential.centres]),
-        "escape_radius": potential.escape_radius or 0.0,
+        **{kind.attribute: kind.write([end for end in potential.ends if isinstance(end, kind)]) for kind in end_kinds()},
         "origin": json.dumps(potential.origin),
     }
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:
-    """Return the potential of attributes; missing attributes stand for no rotation, centres, escape radius and shift."""
+    """Return the potential of attributes; missing attributes stand for no rotation, ends of the kind and shift."""
     text, name = str(attributes["terms"]), str(attributes["potential"])
     terms = [_TERM.fullmatch(term) for term in text.split("; ")]
     if all(terms):
         potential = Potential(name, tuple((int(term[2]), int(term[3]), float(term[1])) for term in terms if term is not None))
     else:
         potential = parse_formula(text, name)
-    centres = [Centre(**centre) for centre in json.loads(attributes.get("centres", "[]"))]
-    escape_radius = float(attributes.get("escape_radius", 0.0)) or None
+    kinds = [kind for kind in end_kinds() if kind.attribute in attributes]
+    ends = [end for kind in kinds for end in kind.read(attributes[kind.attribute])]
     # The terms are those of the effective potential.
     x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
-    return Potential(name, potential.form, float(attributes.get("rotation", 0.0)), centres, escape_radius, (x, y))
+    return Potential(name, potential.form, float(attributes.get("rotation", 0.0)), origin=(x, y), ends=ends)

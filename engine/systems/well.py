@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from engine.systems.forms.exit_saddles import find_maxima_beside, leads_out_of_w
 from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.stored_points import stored_points
 from engine.systems.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
-from engine.systems.outcomes import Centre, Outcome, exit_outcome, outcomes_of
+from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_of
 from engine.systems.well_units import WellUnits, nearest_power_of_two
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
@@ -37,14 +38,18 @@ class Well(ReadOnlyArrays):
 
     Attributes
     ----------
-    form, rotation, centres, escape_radius
+    form, rotation, ends
         The data of the potential.
     """
 
     form: Form
     rotation: float
-    centres: tuple[Centre, ...]
-    escape_radius: float | None
+    ends: tuple[End, ...]
+
+    @property
+    def escape_radius(self) -> float | None:
+        """Radius of the escape circle; None for exits over saddles."""
+        return next((end.radius for end in self.ends if isinstance(end, EscapeCircle)), None)
 
     @property
     def critical_points(self) -> np.ndarray:
@@ -115,12 +120,12 @@ class Well(ReadOnlyArrays):
         )
 
     def is_closed_at(self, energy: Any) -> Any:
-        """Whether no orbit of the well ends at these energies, because they are below all saddles and there are no centres.
+        """Whether no orbit of the well ends at these energies, because they are below all saddles and there are no other ends.
 
         Always False with an escape radius. It also holds in a rotating frame, where orbits cannot pass the zero-velocity curve
         V = h.
         """
-        return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.centres)
+        return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.ends)
 
     @cached_property
     def outward_directions(self) -> np.ndarray:
@@ -138,13 +143,13 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """The possible ends of orbits: exits in channel order, centres, and the escape radius; the first one is fate 1."""
-        return outcomes_of(self.channels, self.centres, self.escape_radius is not None)
+        """The possible ends of orbits: exits in channel order, then `ends`; the first one is fate 1."""
+        return outcomes_of(self.channels, self.ends)
 
     @property
     def setting(self) -> Setting:
         """The properties besides the formula on which compiled functions depend."""
-        return Setting(self.channels, len(self.centres), self.escape_radius is not None, self.rotation != 0.0)
+        return Setting(self.channels, tuple(end.side for end in self.ends), self.rotation != 0.0)
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
@@ -183,37 +188,38 @@ class Well(ReadOnlyArrays):
         if not self.merged_exits(high):
             return self.outcomes
         lowest = self.exit_numbers(low)
+        names = [describe_channel(channel, self.channel_mergers, low, high) for channel in range(1, self.channels + 1)]
         exits = [
-            exit_outcome(describe_channel(channel, self.channel_mergers, low, high), occurs=bool(lowest[channel] == channel))
-            for channel in range(1, self.channels + 1)
+            Exit.outcome(channel, f"{Exit.word} {name}", occurs=bool(lowest[channel] == channel))
+            for channel, name in enumerate(names, 1)
         ]
         return (*exits, *self.outcomes[self.channels :])
 
     @property
     def mirror_in_x(self) -> bool:
         """Whether (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point: V is even in x in a frame at rest."""
-        return self.form.mirror_in_x and self._mirrors_centres([-1.0, 1.0])
+        return self.form.mirror_in_x and self._mirrors_ends([-1.0, 1.0])
 
     @property
     def mirror_in_y(self) -> bool:
         """Whether (y, py) → (−y, −py) maps orbits to orbits, exactly in floating point: V is even in y in a frame at rest."""
-        return self.form.mirror_in_y and self._mirrors_centres([1.0, -1.0])
+        return self.form.mirror_in_y and self._mirrors_ends([1.0, -1.0])
 
-    def _mirrors_centres(self, signs: Sequence[float]) -> bool:
-        discs = {(each.x, each.y, each.radius) for each in self.centres}
-        return not self.rotation and {(signs[0] * x, signs[1] * y, radius) for x, y, radius in discs} == discs
+    def _mirrors_ends(self, signs: Sequence[float]) -> bool:
+        circles = {(end.key, end.x, end.y, end.radius) for end in self.ends}
+        images = {(key, signs[0] * x, signs[1] * y, radius) for key, x, y, radius in circles}
+        return not self.rotation and images == circles
 
     @cached_property
     def mirror_channels(self) -> np.ndarray:
         """(outcomes + 1,) the image of each fate under x → −x; entry 0 is 0. Only valid if `mirror_in_x`."""
-        places = (self.saddles, np.array([(centre.x, centre.y) for centre in self.centres]).reshape(-1, 2))
+        of_kinds = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
         images = [np.arange(1)]
-        for points in places:
+        for points in (self.saddles, *of_kinds):
             if len(points):
                 distance = np.hypot(*(points[:, None] - points * [-1.0, 1.0]).T)
                 images.append(sum(map(len, images)) + np.argmin(distance, axis=0))
-        own = np.arange(sum(map(len, images)), len(self.outcomes) + 1)
-        return read_only(np.concatenate([*images, own]).astype(np.int8))
+        return read_only(np.concatenate(images).astype(np.int8))
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
         """(…, outcomes + 1) the image of each fate under x → −x at energies (…); entry 0 is 0. Only valid if `mirror_in_x`."""

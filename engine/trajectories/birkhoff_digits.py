@@ -69,7 +69,7 @@ def compute_birkhoff_digits(
     -------
     The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for
     2T ≤ t_max. They end early if the averages cannot be compared: on an orbit along an axis one coordinate is 0 throughout.
-    There are none around centres, which the fixed steps of the averages cannot pass.
+    There are none around bodies, which the fixed steps of the averages cannot pass.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
     unit = potential.well.exact_time_unit
     windows = [window * unit for window in WINDOWS]
     for window in windows:
-        if potential.centres or 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):
+        if potential.gaps or 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):
             break
         found = count_agreeing_digits(potential, start, window, execution=execution.in_this_thread())[0]
         execution.raise_if_cancelled()

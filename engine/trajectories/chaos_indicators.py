@@ -277,7 +277,7 @@ def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judged:
 
 def _reason_without_windows(orbit: Orbit) -> str:
     """Why a bounded orbit has no Birkhoff digits, see `compute_birkhoff_digits`."""
-    if orbit.potential is not None and orbit.potential.centres:
+    if orbit.potential is not None and orbit.potential.gaps:
         return "the fixed steps of these averages cannot pass close to a body"
     shortest = 2.0 * WINDOWS[0] * orbit.time_unit
     if orbit.t[-1] < shortest:

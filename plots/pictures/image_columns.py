@@ -124,10 +124,15 @@ def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 def end_words(outcomes: Sequence[Outcome]) -> list[str]:
     """What orbits of each of `Palette.ends` do; empty for those that the potential does not have."""
-    words = [""] * len(PAPER.ends)
-    for place, outcome in zip(end_places(outcomes), outcomes, strict=True):
-        words[place] = outcome.present
-    return words
+    return _at_places(outcomes, [outcome.present for outcome in outcomes])
+
+
+def _at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
+    """Words for each outcome at its place among `Palette.ends`."""
+    placed = [""] * len(PAPER.ends)
+    for place, word in zip(end_places(outcomes), words, strict=True):
+        placed[place] = word
+    return placed
 
 
 def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
@@ -153,12 +158,14 @@ def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, l
 
 
 def passage_column(origins: OriginFateMap) -> dict[str, list[Any]]:
-    """Column of origin and fate of each orbit."""
-    origin, fate = (_ends(codes, origins.spec.outcomes) for codes in (origins.origin, origins.fate))
+    """Columns of origin and fate of each orbit, and of the origins in words: none, then the ends."""
+    outcomes = origins.spec.outcomes
+    origin, fate = (_ends(codes, outcomes) for codes in (origins.origin, origins.fate))
     passage = origin * (len(PAPER.ends) + 1) + fate
     # If the origin or the fate is neither an end nor bounded, the pixel shows it.
     outcome = np.minimum(origins.origin, origins.fate)
-    return {"passage": [_codes(outcome, passage, bounded_too=True)]}
+    words = ["never entered: inside since −t_max", *_at_places(outcomes, [end.origin for end in outcomes])]
+    return {"passage": [_codes(outcome, passage, bounded_too=True)], "origins": [words]}
 
 
 def doubt_tones(trust: TrustMap) -> np.ndarray:
@@ -184,7 +191,7 @@ def _ends(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
     """Pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
-    codes = (_FIRST_CLASS + classes).astype(np.uint8)
+    codes = (_FIRST_CLASS + classes).astype(np.min_scalar_type(_FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):
             codes[fate == outcome] = code

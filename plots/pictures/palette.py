@@ -1,21 +1,20 @@
 """Colours of the page and their meaning: the palette of the paper and a colour-blind safe one.
 
-A colour has one meaning: channels, collisions, escape, crossing classes, escape times, characters, orbits and curves have no
-colour in common.
+A colour has one meaning: outcomes, crossing classes, escape times, characters, orbits and curves have no colour in common.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
 
 from engine import Evidence, Fate, Outcome, Regularity, StableManifolds
 from engine.propagation.fates import UNRESOLVED, outcome_of
-from engine.systems.outcomes import OutcomeKind
+from engine.systems.outcomes import KINDS, Exit
 
 
 @dataclass(frozen=True)
@@ -54,26 +53,12 @@ DIFFERENCES: tuple[tuple[str, str], ...] = (
 )
 """(label, colour) of each class of pixels of two views."""
 
-MOST_CHANNELS, MOST_COLLISIONS = 8, 4
-"""Exit channels, and centres, that have a colour."""
-
-# Places of the ends of orbits in `Palette.ends`.
-_PLACES = {
-    OutcomeKind.EXIT: range(MOST_CHANNELS),
-    OutcomeKind.COLLISION: range(MOST_CHANNELS, MOST_CHANNELS + MOST_COLLISIONS),
-    OutcomeKind.ESCAPE: range(MOST_CHANNELS + MOST_COLLISIONS, MOST_CHANNELS + MOST_COLLISIONS + 1),
-}
-
 
 def end_places(outcomes: Sequence[Outcome]) -> list[int]:
     """The place of each outcome in `Palette.ends`, the same in all systems; those beyond share the last of a kind."""
-    counts: Counter[OutcomeKind] = Counter()
-    places = []
-    for outcome in outcomes:
-        of_kind = _PLACES[outcome.kind]
-        places.append(of_kind[min(counts[outcome.kind], len(of_kind) - 1)])
-        counts[outcome.kind] += 1
-    return places
+    counts = {key: len(PAPER.of_kinds[key]) for key in KINDS}
+    firsts = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
+    return [firsts[each.kind.key] + min(each.number, counts[each.kind.key]) - 1 for each in outcomes]
 
 
 MOST_ORBITS = 5
@@ -100,12 +85,8 @@ class Palette:
     ----------
     name
         Displayed name.
-    channels
-        Of the exit channels 1 to 8.
-    collisions
-        Of collisions with the centres 1 to 4.
-    escape
-        Of escapes beyond the escape radius.
+    of_kinds
+        Of the outcomes of each of `engine.systems.outcomes.KINDS`, such as those of the exit channels 1 to 8.
     bounded
         Of bounded orbits.
     classes
@@ -119,9 +100,7 @@ class Palette:
     """
 
     name: str
-    channels: tuple[str, ...]
-    collisions: tuple[str, ...]
-    escape: str
+    of_kinds: Mapping[str, tuple[str, ...]] = field(hash=False)
     bounded: str
     classes: tuple[str, ...]
     times: tuple[str, ...]
@@ -138,10 +117,15 @@ class Palette:
         scale = LinearSegmentedColormap.from_list("times", self.times) if self.times else colormaps["cividis_r"]
         return tuple(to_hex(scale(place)) for place in range(256))
 
-    @cached_property
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Colours of the exit channels."""
+        return self.of_kinds[Exit.key]
+
+    @property
     def ends(self) -> tuple[str, ...]:
         """Colours of all that orbits can end at."""
-        return (*self.channels, *self.collisions, self.escape)
+        return tuple(colour for key in KINDS for colour in self.of_kinds[key])
 
     @cached_property
     def outcomes(self) -> dict[Fate, Entry]:
@@ -169,15 +153,15 @@ class Palette:
         colour = self.ends[fate - 1] if fate else self.bounded
         if origin == 0:
             return _mixed(colour, self.bounded, _BOUNDED_ORIGIN)
-        tone = _ORIGIN_TONES[origin - 1]
+        tone = _ORIGIN_TONES[(origin - 1) % len(_ORIGIN_TONES)]
         return _mixed(colour, "#ffffff" if tone > 0 else "#000000", abs(tone))
 
     def entry(self, fate: int, outcomes: Sequence[Outcome]) -> Entry:
         """Label and colour of a fate; `outcomes` are those of the potential, channels where they are not known."""
         if fate < 1:
             return self.outcomes[Fate(fate)]
-        ends = [outcome_of(k, outcomes) for k in range(1, fate + 1)]
-        return Entry(ends[-1].label, self.ends[end_places(ends)[-1]])
+        outcome = outcome_of(fate, outcomes)
+        return Entry(outcome.label, self.ends[end_places([outcome])[0]])
 
     def end_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
         """Labels and colours of a potential's outcomes."""
@@ -260,9 +244,11 @@ def _mixed(colour: str, other: str, share: float) -> str:
 
 PAPER = Palette(
     name="as in the paper",
-    channels=("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf"),
-    collisions=("#783060", "#a8a878", "#780000", "#483030"),
-    escape="#d8c0c0",
+    of_kinds={
+        "exit": ("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf"),
+        "collision": ("#783060", "#a8a878", "#780000", "#483030"),
+        "escape": ("#d8c0c0",),
+    },
     bounded="#8f8f8f",
     classes=("#e2e3fe", "#7db3f4", "#0787b6", "#005769", "#002a2d"),
     times=("#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"),
@@ -273,9 +259,11 @@ PAPER = Palette(
 
 COLOUR_BLIND_SAFE = Palette(
     name="colour-blind safe",
-    channels=("#009e73", "#d55e00", "#0072b2", "#f0e442", "#cc79a7", "#56b4e9", "#e69f00", "#3b3b3b"),
-    collisions=("#3000d8", "#a83000", "#607878", "#606048"),
-    escape="#90d8a8",
+    of_kinds={
+        "exit": ("#009e73", "#d55e00", "#0072b2", "#f0e442", "#cc79a7", "#56b4e9", "#e69f00", "#3b3b3b"),
+        "collision": ("#3000d8", "#a83000", "#607878", "#606048"),
+        "escape": ("#90d8a8",),
+    },
     bounded="#a6a6a6",
     classes=("#f8e1ff", "#dc9af4", "#93759c", "#703783", "#381543"),
     times=(),
@@ -286,6 +274,9 @@ COLOUR_BLIND_SAFE = Palette(
 
 PALETTES = {"paper": PAPER, "safe": COLOUR_BLIND_SAFE}
 """Palettes by their names in links."""
+
+MOST_CHANNELS = len(PAPER.channels)
+"""Exit channels that have a colour."""
 
 
 @dataclass(frozen=True)

@@ -32,10 +32,7 @@ def provenance_line(frame: EscapeMap) -> str:
 def _system_facts(potential: Potential) -> list[str]:
     """What a system has besides V."""
     facts = [f"Ω = {format_number(potential.rotation)}"] if potential.rotation else []
-    for centre in potential.centres:
-        place = f"({format_number(centre.x)}, {format_number(centre.y)})"
-        facts.append(f"disc of radius {format_number(centre.radius)} around {place}")
-    return facts + ([f"escape radius {format_number(potential.escape_radius)}"] if potential.escape_radius else [])
+    return [*facts, *(end.geometry for end in potential.ends)]
 
 
 def _write_ends(low: float, high: float) -> str:

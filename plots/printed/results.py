@@ -187,7 +187,7 @@ def _draw_origins(result: OriginFateMap, axes: Axes, palette: Palette) -> None:
 def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
     if result.potential is None:
         raise TypeError("this orbit has no potential, so its exits are unknown")
-    curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
+    curves = compute_orbit_curves(result.potential, result)
     if show == "path":
         axes.set_box_aspect(1.0)
         draw_path(_panel(axes, curves.window), result.potential, [curves], palette)

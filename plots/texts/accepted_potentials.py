@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from engine import PotentialReview
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.systems.review.energy_ranges import HIGHEST_SHOWN
-from plots.pictures.palette import MOST_CHANNELS, MOST_COLLISIONS
+from plots.pictures.palette import PAPER
 
 
 def refusal(found: PotentialReview) -> str | None:
@@ -13,10 +15,9 @@ def refusal(found: PotentialReview) -> str | None:
     if found.refusal is not None:
         return found.refusal
     potential = found.potential
-    if found.channels > MOST_CHANNELS:
-        return f"It has {found.channels} channels; the page has colours for {MOST_CHANNELS}."
-    if len(potential.centres) > MOST_COLLISIONS:
-        return f"It has {len(potential.centres)} centres; the page has colours for {MOST_COLLISIONS}."
+    for kind, count in Counter(outcome.kind for outcome in potential.outcomes).items():
+        if count > (most := len(PAPER.of_kinds[kind.key])):
+            return f"It has {count} {kind.word}s; the page has colours for {most}."
     if potential.escape_radius is None and abs(potential.well.energy_at(HIGHEST_SHOWN)) > LARGEST_NUMBER:
         return f"Its escape energy is {found.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
     return None

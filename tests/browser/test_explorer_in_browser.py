@@ -16,7 +16,7 @@ from tests.browser.explorer_page import ExplorerPage
 
 MAPS = ("basins", "times", "crossings")
 _AXIS_NAMES = """names => [...Bokeh.index.all_views()].filter(view => names.includes(view.model.name))
-    .map(view => view.shadow_el.querySelector(".axis-names").textContent)"""
+    .map(view => [...view.shadow_el.querySelectorAll(".axis-name")].map(name => name.textContent).join(" "))"""
 
 
 def quick_map(energy: float, **options: object) -> EscapeMap:
@@ -49,7 +49,7 @@ def test_the_controls_choose_the_map(explorer: ExplorerPage) -> None:
     explorer.pick(Plane.X_Y.title)
     explorer.wait_for_view("plane=x_y")
     labels = explorer.page.evaluate(_AXIS_NAMES, list(MAPS))
-    assert set(labels) == {"y ↑ x →"}
+    assert set(labels) == {"x → y ↑"}
     explorer.choose("Resolution", "224 × 224")
     explorer.choose("t_max", "1 000")
     explorer.type_number("Exact h", "0.4567")

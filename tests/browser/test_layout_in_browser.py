@@ -98,7 +98,7 @@ def test_nothing_idle_is_shown(wide: ExplorerPage) -> None:
     assert set(figures(wide)) == set(PICTURES)
 
 
-@pytest.mark.parametrize(("page", "height", "least"), [("wide", 1000, 390), ("middling", 720, 290)])
+@pytest.mark.parametrize(("page", "height", "least"), [("wide", 1000, 390), ("middling", 720, 275)])
 def test_two_by_two_pictures_fill_the_height_beside_the_orbits(
     page: str, height: int, least: int, request: pytest.FixtureRequest
 ) -> None:
@@ -111,6 +111,25 @@ def test_two_by_two_pictures_fill_the_height_beside_the_orbits(
     assert hint is not None
     assert hint["x"] >= max(place[2] for place in places)
     assert hint["y"] < places[2][1]
+
+
+_COVERED = """() => {
+    const shown = [...Bokeh.index.all_views()].filter(view => view.model.type == "Figure" && view.canvas_view.el.clientWidth
+        && ["picked", "equal"].includes(view.model.css_classes[1]))
+    return shown.map(view => {
+        const [canvas, {left, top, right, bottom}] = [view.canvas_view.el.getBoundingClientRect(), view.frame.bbox]
+        const [x0, y0, x1, y1] = [canvas.left + left, canvas.top + top, canvas.left + right, canvas.top + bottom]
+        const covers = box => Math.min(box.right, x1) > Math.max(box.left, x0) + 1
+            && Math.min(box.bottom, y1) > Math.max(box.top, y0) + 1
+        const parts = [...view.shadow_el.querySelectorAll("h2, .enlarge, .foot, .axis-name")]
+        return parts.filter(part => covers(part.getBoundingClientRect())).map(part => part.className || part.tagName)
+    })
+}"""
+
+
+@pytest.mark.parametrize(("page", "count"), [("wide", 4), ("middling", 4), ("phone", 1)])
+def test_titles_legends_and_names_cover_no_picture(page: str, count: int, request: pytest.FixtureRequest) -> None:
+    assert request.getfixturevalue(page).page.evaluate(_COVERED) == [[]] * count
 
 
 def test_the_maps_do_not_move_when_an_orbit_is_clicked(wide: ExplorerPage) -> None:
@@ -132,6 +151,21 @@ def test_on_a_phone_the_map_comes_first_with_the_energy_below_it(phone: Explorer
     assert play is not None
     assert bottom <= slider["y"] < bottom + 60
     assert play["y"] <= slider["y"] <= play["y"] + play["height"]
+
+
+_SHIFTS = """() => new Promise(done => {
+    let sum = 0
+    new PerformanceObserver(list => list.getEntries().forEach(entry => sum += entry.value)).observe({
+        type: "layout-shift", buffered: true,
+    })
+    requestAnimationFrame(() => requestAnimationFrame(() => done(sum)))
+})"""
+
+
+@pytest.mark.parametrize(("width", "touch"), [(420, True), (768, True), (1280, False)])
+def test_the_parts_of_the_page_stay_in_their_places_while_it_opens(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
+    # Below this, browsers call the layout of a page stable.
+    assert open_explorer(width, 900, QUICK, touch=touch).page.evaluate(_SHIFTS) < 0.1
 
 
 def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:

@@ -7,7 +7,7 @@
  * @typedef {object} Exit
  * @property {number} number
  * @property {boolean} isOpen
- * @property {boolean} isCircle  a disc or the escape circle
+ * @property {boolean} isCircle  within or beyond which orbits end
  * @property {boolean} returns  whether an orbit can pass it and return
  * @property {[number, number]} outward  of an exit over a saddle
  * @property {number} halfWidth
@@ -40,14 +40,14 @@ export class Exits {
    * @param {import("./system.js").Circle} circle
    * @param {number} k
    */
-  #placeCircle({shape, x, y, radius}, k) {
-    const {originX, originY, halfWidth, shape: place, shapes} = this.#columns
+  #placeCircle({side, x, y, radius}, k) {
+    const {originX, originY, halfWidth, shape, shapes} = this.#columns
     for (let row = 0; row < this.curves.shape[0]; row++) {
       const curve = this.curves.at(row).at(k).values
       curve[originX] = x
       curve[originY] = y
       curve[halfWidth] = radius
-      curve[place] = shapes[shape]
+      curve[shape] = side < 0 ? shapes.disc : shapes.circle
     }
     this.gates.at(k).values.set([x, y, radius])
   }

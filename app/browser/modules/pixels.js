@@ -47,7 +47,7 @@ const LARGEST_TOLERANCE = 1e-9
 export function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
   const width = (window.xHigh - window.xLow) / columns / slice.units[0]
   const height = (window.ordinateHigh - window.ordinateLow) / rows / slice.units[1]
-  const smallest = Math.min(1, ...exits.flatMap(exit => (exit.shape === "disc" ? [exit.radius] : [])))
+  const smallest = Math.min(1, ...exits.flatMap(exit => ("radius" in exit && exit.side < 0 ? [exit.radius] : [])))
   const tolerance = Math.min(ERROR_IN_PIXELS * Math.min(width, height), LARGEST_TOLERANCE) * smallest
   return Math.max(tolerance, layout.tolerance)
 }

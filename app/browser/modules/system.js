@@ -9,8 +9,8 @@
  * @property {number[]} table  coefficients in the form that the functions of a structure take
  * @property {number | null} rotation  index of 2Ω in the table; null in a frame that does not rotate
  * @property {PolynomialTable | null} polynomial  V; null for an expression
- * @property {number} innerRadius  radius of the disc around a centre at the origin; 0 for a well there
- * @property {ExitData[]} exits  one for each outcome: the exits of channels, discs around centres, the escape circle
+ * @property {number} innerRadius  radius of the gap at the origin; 0 for a well there
+ * @property {ExitData[]} exits  one for each outcome: the exits of channels, then circles
  * @property {number[] | null} mirror  image of each outcome's number under x → −x; null without this symmetry
  * @property {{length: number, time: number}} units
  * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
@@ -42,9 +42,9 @@
  *
  * @typedef {ExitTable | Circle} ExitData
  *
- * The edge of a disc around a centre, or the escape circle.
+ * A circle at which orbits end: within it, as at a body, or beyond it.
  *
- * @typedef {{shape: "disc" | "circle", x: number, y: number, radius: number}} Circle
+ * @typedef {{side: -1 | 1, x: number, y: number, radius: number}} Circle
  *
  * @typedef {object} ExitTable
  * @property {"curve" | "line"} shape  a line in a frame that rotates

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from html import escape
 from typing import Any
 
@@ -12,6 +13,7 @@ from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, Line, MultiLine, Range1d, Scatter, Segment, Span
 from bokeh.plotting import figure
 
+from app.views.components.in_turns import InTurns, Later
 from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
@@ -49,9 +51,11 @@ class CurvesView:
         Called when the button is pressed.
     on_value
         Called with the energy, or the value of the parameter, of the point clicked.
+    later
+        Of the session, for the figures.
     """
 
-    def __init__(self, on_sweep: Callable[[], None], on_value: Callable[[float], None]) -> None:
+    def __init__(self, on_sweep: Callable[[], None], on_value: Callable[[float], None], later: Later = lambda call: call) -> None:
         self._palette = PAPER
         self._on_value = on_value
         self.shown: Sweep | None = None
@@ -70,6 +74,9 @@ class CurvesView:
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
         self._legend = TextPane(margin=(0, 10))
         self._figures: list[figure] = []
+        self._unbuilt = InTurns(
+            [self._build_shares, *(partial(self._build_panel, each) for each in CURVE_PANELS)], self._add, later
+        )
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
 
     def follow_system(self, system: System) -> None:
@@ -95,8 +102,8 @@ class CurvesView:
     def show(self, curves: Sweep | None) -> None:
         """Draw the curves of the system that is followed; None removes them."""
         self.shown = curves
-        if curves is not None and not self._plots.objects:
-            self._plots.objects = self._build_plots()
+        if curves is not None:
+            self._unbuilt.begin()
         self._plots.visible = curves is not None
         if curves is None:
             self.points.data, self._shares.data = _NO_POINTS, _NO_SHARES
@@ -121,8 +128,7 @@ class CurvesView:
         swept = curves.dataset.attrs["requested"]
         if len(swept) > 1:
             set_range(self._axis, swept[0], swept[-1])
-        for plot in self._figures:
-            plot.xaxis.axis_label = curves.symbol
+        self._name_axes()
         self._mark()
         self._scale_values(curves)
         self.text.object = _progress(curves)
@@ -162,15 +168,26 @@ class CurvesView:
         row.css_classes = ["whole-row"]
         return [row, self.text, self._plots]
 
-    def _build_plots(self) -> list[pn.viewable.Viewable]:
-        below = [self._legend, *(_make_key(panel) for panel in CURVE_PANELS)]
-        self._figures = [self._draw_shares(), *(self._draw_panel(panel) for panel in CURVE_PANELS)]
-        for plot in self._figures:
-            plot.add_layout(self._here)
-        return [
-            pn.Column(FigurePane(plot, {Tap: lambda event: self.open_near(event.x)}), key, margin=0, sizing_mode="stretch_width")
-            for plot, key in zip(self._figures, below, strict=True)
-        ]
+    def _build_shares(self) -> list[pn.viewable.Viewable]:
+        return self._with_key(self._draw_shares(), self._legend)
+
+    def _build_panel(self, panel: CurvePanel) -> list[pn.viewable.Viewable]:
+        return self._with_key(self._draw_panel(panel), _make_key(panel))
+
+    def _with_key(self, plot: figure, key: pn.viewable.Viewable) -> list[pn.viewable.Viewable]:
+        plot.add_layout(self._here)
+        self._figures.append(plot)
+        self._name_axes()
+        pane = FigurePane(plot, {Tap: lambda event: self.open_near(event.x)})
+        return [pn.Column(pane, key, margin=0, sizing_mode="stretch_width")]
+
+    def _add(self, plots: Sequence[pn.viewable.Viewable]) -> None:
+        self._plots.objects = [*self._plots.objects, *plots]
+
+    def _name_axes(self) -> None:
+        if self.shown is not None:
+            for plot in self._figures:
+                plot.xaxis.axis_label = self.shown.symbol
 
     def _draw_shares(self) -> figure:
         plot = square_figure(_SHARES, SHARES_TITLE, x_axis_label=" ", x_range=self._axis, y_range=Range1d(0.0, 1.0))

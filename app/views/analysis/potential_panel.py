@@ -239,7 +239,7 @@ def _alert(sentence: str) -> str:
 
 
 def _channels(review: PotentialReview) -> str:
-    if review.potential.escape_radius is not None or review.potential.centres:
+    if review.potential.ends:
         labels = ", ".join(outcome.label for outcome in review.potential.outcomes)
         opened = f"; channels open above h = {review.escape_energy:.6g}" if review.channels else ""
         return f"Orbits end at: {labels}{opened}"

@@ -22,8 +22,7 @@ export function fateName(code, names, {ends}) {
  *
  * @param {number} pixel
  * @param {{maps: Columns, doubts: Columns, compared: Columns}} columns  of the pictures, of the layer of trust, and of the other view
- * @param {{bounded: number, first: number, firstEvidence: number, ends: number, channels: number}} codes  the first of each kind, and
- *   the numbers of ends and of channels
+ * @param {{bounded: number, first: number, firstEvidence: number, ends: number}} codes  the first of each kind, and the number of ends
  * @param {{evidence: string[], characters: string[], trusts: string[], fates: string[]}} words  by code
  */
 export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
@@ -41,19 +40,13 @@ export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
       : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
     words.characters[known(maps.character[0]) - codes.first],
-    passage >= 0 && describeOrigin(origin, codes.channels, maps),
+    passage >= 0 && maps.origins[0][origin],
     words.trusts[known(doubts.trust[0])],
     known(maps.difference[0]) >= codes.first &&
       isSamePlace(maps, compared) &&
       `other view: ${fateName(known(compared.fate[0]), words.fates, compared)}`,
   ]
   return lines.filter(line => line).join("\n")
-}
-
-/** Where an orbit was before. @type {(origin: number, channels: number, columns: Columns) => string} */
-function describeOrigin(origin, channels, {ends}) {
-  if (origin > channels) return `backward in time it ${ends[0][origin - 1]}`
-  return origin > 0 ? `entered through channel ${origin}` : "never entered: inside since −t_max"
 }
 
 /** Whether two images have the same window. @type {(one: Columns, other: Columns) => boolean} */

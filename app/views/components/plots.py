@@ -35,36 +35,39 @@ HISTORY_ASPECT = 1.9
 # Left and right, above and below of the frame together take the same space, so that a square figure has a square frame.
 _CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
 
-# The title, the legend and the names of the axes of a picture stand in its frame.
-_PICTURE_BORDERS = {"min_border_left": 44, "min_border_right": 1, "min_border_top": 17, "min_border_bottom": 28}
+# The title of a picture stands above its frame, the legend below the labels of the axis.
+_PICTURE_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 22, "min_border_bottom": 36}
 
 # Labels of two decimals fit into the left border; longer ones would make the frame narrower than it is high.
 _FINEST_LABEL = -2
 
-# A small picture has no axes.
-_THUMBNAIL_BORDERS = dict.fromkeys(_PICTURE_BORDERS, 2)
+# A compact picture has a title, but no axes; a small one has nothing around its frame.
+_COMPACT_BORDERS = {"min_border_left": 12, "min_border_right": 12, "min_border_top": 22, "min_border_bottom": 2}
+_SMALL_BORDERS = dict.fromkeys(_PICTURE_BORDERS, 2)
+_BORDERS = {"compact": _COMPACT_BORDERS, "small": _SMALL_BORDERS}
 
 
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
-    """A square figure of a picture, as `square_figure`; `annotate_picture` writes into its frame."""
+    """A square figure of a picture, as `square_figure`; `annotate_picture` writes around its frame."""
     # Frames that are aligned with those of larger pictures would not be square.
     return square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
 
 
-def set_thumbnail(plot: figure, small: bool) -> None:
-    """Draw a picture without its axes, or with them again."""
+def set_borders(plot: figure, kind: str) -> None:
+    """Leave the room around the frame of a picture that its kind needs: "compact" and "small" ones have no axes."""
     for axis in (*plot.below, *plot.left):
-        axis.visible = not small
-    plot.update(**(_THUMBNAIL_BORDERS if small else _PICTURE_BORDERS))
+        axis.visible = kind not in _BORDERS
+    plot.update(**_BORDERS.get(kind, _PICTURE_BORDERS))
 
 
 def annotate_picture(plot: figure, title: str, names: tuple[str, str], legend: str, notes: Sequence[str] = ()) -> None:
-    """Write the title of a picture, its legend (HTML) and notes into its frame, and the names of its axes above it."""
+    """Write the title of a picture above its frame, legend (HTML) and notes below it, and the names of the axes beside them."""
     enlarge = f"Enlarge, or show all: {title}"
     html = (
         f"{title_with_help(title, plot.name)}"
         f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
-        f"<i class='axis-names'>{names[1]} ↑ {names[0]} →</i><div class='foot' data-picture='{plot.name}'>{legend}"
+        f"<i class='axis-name abscissa'>{names[0]} →</i><i class='axis-name ordinate'>{names[1]} ↑</i>"
+        f"<div class='foot' data-picture='{plot.name}'>{legend}"
         f"{''.join(f'<span>{note}</span>' for note in notes)}</div>"
     )
     # Not a new model: for each one Bokeh searches all models of the page.

@@ -18,7 +18,7 @@ from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number
 from engine.propagation.fates import UNRESOLVED
-from engine.systems.outcomes import OutcomeKind
+from engine.systems.outcomes import Exit
 
 STOP, CONTINUE, TEST = "Stop", "Continue", LAYER_LABELS["trust"]
 
@@ -115,7 +115,7 @@ def _result(frame: EscapeMap) -> str:
     part = {fate: percent(share).replace(" ", "\N{NO-BREAK SPACE}") for fate, share in shares.items()}
     ends = [(fate, end) for fate, end in enumerate(frame.spec.outcomes, 1) if end.occurs]
     # Exits of several channels have longer names.
-    exits = [(fate, end.label) for fate, end in ends if end.kind is OutcomeKind.EXIT]
+    exits = [(fate, end.label) for fate, end in ends if end.kind is Exit]
     numbered = [fate for fate, _ in exits] if all(label == f"channel {fate}" for fate, label in exits) else []
     numbers = f"s 1 to {len(numbered)}" if len(numbered) > 1 else " 1"
     parts = [f"channel{numbers}: {', '.join(part[fate] for fate in numbered)}"] if numbered else []

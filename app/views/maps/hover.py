@@ -8,7 +8,7 @@ from app.browser.javascript import callback_code
 from app.views.components.plots import HOVER_TEXTS
 from engine import Evidence, Fate, Regularity, Trust
 from engine.propagation.evidence import describe_evidence
-from plots.pictures.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
+from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER
 
 TRUST = {
     Trust.LIKE_NEIGHBOURS: "not tested: like all its neighbours",
@@ -84,7 +84,6 @@ def pixel_hover(
         "first": len(OUTCOMES),
         "firstEvidence": len(OUTCOMES) + len(CROSSING_CLASSES),
         "ends": len(PAPER.ends) + 1,
-        "channels": MOST_CHANNELS,
     }
     words = {
         "evidence": [describe_evidence(code) for code in Evidence],

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import panel as pn
 from bokeh.plotting import figure
 
-from app.views.components.plots import FigurePane, set_thumbnail
+from app.views.components.plots import FigurePane, set_borders
 from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
 from plots.pictures.map_images import ON_DEMAND
 
@@ -110,7 +110,7 @@ class PictureGrid:
                 kinds = ["well" if name == "well" else "map", "picked" if name == picked else other]
                 if plot.css_classes != kinds:
                     plot.css_classes = kinds
-                    set_thumbnail(plot, "small" in kinds or "compact" in kinds)
+                    set_borders(plot, kinds[1])
             self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=picked)
             parts = [*([self.picker] if self.picker.visible else []), *self._panes.values()]
             if parts != self._column.objects:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import panel as pn
 
+from app.views.components.in_turns import InTurns, Later
 from app.views.components.widgets import FULL_HEIGHT
 from app.views.orbits.orbit_controls import OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
@@ -14,11 +17,15 @@ from app.views.orbits.separation_plot import SeparationPlot
 class Inspector:
     """The verdict on the chosen orbit, the player, the histories, the indicators and values; last, a line to type a start."""
 
-    def __init__(self, controls: OrbitControls, playback: Playback, plots: OrbitPlots, separation: SeparationPlot) -> None:
-        self._controls, self._playback, self._plots, self._separation = controls, playback, plots, separation
+    def __init__(
+        self, controls: OrbitControls, playback: Playback, plots: OrbitPlots, separation: SeparationPlot, later: Later
+    ) -> None:
+        self._controls, self._playback = controls, playback
+        self._starts = self._orbits = 0
         self._head: list[pn.viewable.Viewable] = []
         self._details: list[pn.viewable.Viewable] = []
         self._plotted: list[pn.viewable.Viewable] = []
+        self._figures = InTurns([plots.build, separation.build], self._add_figures, later)
         self._entry = controls.entry()
         self._grid = pn.Column(
             controls.note, *self._entry, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
@@ -30,10 +37,19 @@ class Inspector:
 
     def follow(self, starts: int, orbits: int) -> None:
         """Show the panes for a number of starts, some of which may have no orbit."""
+        self._starts, self._orbits = starts, orbits
         if starts >= 1 and not self._head:
             self._head, self._details = [self._controls.head(self._playback.layout())], self._controls.details()
-        if orbits >= 1 and not self._plotted:
-            self._plotted = [*self._plots.build(), self._separation.build()]
+        if orbits >= 1:
+            self._figures.begin()
+        self._arrange()
+
+    def _add_figures(self, figures: Sequence[pn.viewable.Viewable]) -> None:
+        self._plotted += figures
+        self._arrange()
+
+    def _arrange(self) -> None:
+        starts, orbits = self._starts, self._orbits
         shown = [*(self._plotted if orbits >= 1 else []), *self._details] if starts >= 1 else []
         parts = [*(self._head if starts >= 1 else []), self._controls.note, *shown, *self._entry]
         if parts != self._grid.objects:

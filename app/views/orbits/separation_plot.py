@@ -25,14 +25,14 @@ class SeparationPlot:
         self._pair = TextPane(_ALONE, name="pair", margin=(0, 10), css_classes=["quiet"])
         self._line = Line(x="t", y="distance", line_width=1.5, line_color=PAPER.orbits[1])
 
-    def build(self) -> pn.viewable.Viewable:
+    def build(self) -> list[pn.viewable.Viewable]:
         """Make the figure, and the line that names the orbits."""
         plot = square_figure(
             "separation", TITLE, y_axis_type="log", x_axis_label="t", y_axis_label="distance",
             x_range=self._times, y_range=self._distances, aspect_ratio=HISTORY_ASPECT,
         )  # fmt: skip
         plot.add_glyph(self._source, self._line)
-        return pn.Column(pn.pane.Bokeh(plot, margin=0), self._pair, margin=0, sizing_mode="stretch_width")
+        return [pn.Column(pn.pane.Bokeh(plot, margin=0), self._pair, margin=0, sizing_mode="stretch_width")]
 
     def show(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
         """Draw the distance of two orbits, given by their places in the list; None removes it."""

@@ -73,16 +73,22 @@ class Controls:
         self.state = state
         self._actions = actions
         self.case = SegmentedControl(
-            label="Case", options=list(CASES), value=self._case(), css_classes=["segmented", "half"], margin=(0, 0, 0, 10)
+            label="Case",
+            options=list(CASES),
+            value=self._case(),
+            css_classes=["segmented", "half", "choice"],
+            margin=(0, 0, 0, 10),
         )
-        self.other = button("Other …", actions.choose_potential, kind="light", css_classes=["half"], margin=(0, 10, 0, 4))
+        self.other = button(
+            "Other …", actions.choose_potential, kind="light", css_classes=["half", "choice"], margin=(0, 10, 0, 4)
+        )
         self.plane = SegmentedControl(
             label="Plane", options={plane.title: plane for plane in _PLANES}, margin=(8, 0, 8, 10),
-            css_classes=["segmented", "narrow", "half"],
+            css_classes=["segmented", "narrow", "half", "choice"],
         )  # fmt: skip
         # Panel chooses the first option in place of none when it makes a widget.
         self.plane.value = self._plane()
-        self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half"], margin=(8, 10, 8, 4))
+        self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4))
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.energy = EnergySlider(
             self._take_energy, state.energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
@@ -217,7 +223,7 @@ class Controls:
 def _outcomes(potential: Potential) -> str:
     """What orbits end at, and from which energy on."""
     frame = f"rotates at Ω = {potential.rotation:.6g}; " if potential.rotation else ""
-    if not potential.centres and potential.escape_radius is None:
+    if not potential.ends:
         return f"{frame}{potential.channels} exit channels above h = {potential.escape_energy:.6g}"
     labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
     opened = f"; channels open above h = {potential.escape_energy:.6g}" if potential.channels else ""

@@ -14,7 +14,17 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_potential_slopes
-from engine.integrator.kernels.events import BEARING_X, BEARING_Y, CLOSED, DISC, REACH, SHAPE, exit_distance, position_across
+from engine.integrator.kernels.events import (
+    BEARING_X,
+    BEARING_Y,
+    CIRCLE,
+    CLOSED,
+    DISC,
+    REACH,
+    SHAPE,
+    exit_distance,
+    position_across,
+)
 
 # Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
 _LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
@@ -168,7 +178,7 @@ def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
 def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, bottom, outside):
     """Set `outside` (n,) int8 to the number of an exit for each point beyond one; others, and forbidden ones, keep 0.
 
-    Within a disc or beyond the escape circle it is that exit, else the one whose saddle is nearest in direction.
+    Beyond a circle it is that exit, else the one whose saddle is nearest in direction.
     """
     for i in range(x.shape[0]):
         row = curves[curve_row[i]]
@@ -192,11 +202,13 @@ def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, 
 
 @subroutine
 def _find_circle(x, y, curves):
-    """The number of the disc that contains a point, or of the escape circle that does not, else 0."""
-    for k in range(curves.shape[0]):
-        if curves[k, SHAPE] >= DISC and exit_distance(x, y, curves[k]) > 0.0:
-            return k + 1
-    return 0
+    """The number of the circle beyond which a point is, 0 for none; one within which orbits end may lie beyond another."""
+    found = 0
+    for shape in (CIRCLE, DISC):
+        for k in range(curves.shape[0]):
+            if curves[k, SHAPE] == shape and exit_distance(x, y, curves[k]) > 0.0:
+                found = k + 1
+    return found
 
 
 @subroutine

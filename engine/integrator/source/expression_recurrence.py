@@ -73,7 +73,7 @@ class ExpressionStructure(NamedTuple):
     @property
     def carries_remainders(self) -> bool:
         """Return whether there are centres, around which rounding errors of x and y matter."""
-        return self.setting.discs > 0
+        return min(self.setting.sides, default=0) < 0
 
     def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
         """The recurrence of the gradient."""

@@ -355,8 +355,7 @@ def generate_code(
     channels: int,
     reach: float = REACH,
     *,
-    discs: int = 0,
-    ring: bool = False,
+    sides: tuple[int, ...] = (),
     rotates: bool = False,
 ) -> GeneratedCode:
     """The generated functions for a potential, the same object for all potentials of the same structure.
@@ -369,14 +368,17 @@ def generate_code(
         How many lines ``step`` tests, 0 or more.
     reach
         Radius about the origin, above 0, that contains all orbits.
-    discs
-        How many discs around centres ``step`` tests, 0 or more.
-    ring
-        Whether it tests a circle around the origin.
+    sides
+        Of each circle that ``step`` tests, see `Setting`.
     rotates
         Whether the frame rotates.
     """
-    return _generate(_find_structure(definition, Setting(channels, discs, ring, rotates), reach))
+    return _generate(_find_structure(definition, Setting(channels, sides, rotates), reach))
+
+
+def code_digest(definition: Definition, setting: Setting) -> str:
+    """`GeneratedCode.digest` of a potential; keeps nothing of the code, which takes megabytes."""
+    return _write_code(_find_structure(definition, setting, REACH)).digest
 
 
 @functools.singledispatch
@@ -396,6 +398,10 @@ def _of_expression(expression: Expression, setting: Setting, _reach: float) -> S
 
 @functools.lru_cache(maxsize=_STRUCTURES)
 def _generate(structure: Structure) -> GeneratedCode:
+    return _write_code(structure)
+
+
+def _write_code(structure: Structure) -> GeneratedCode:
     table: dict[Any, int] = {}
     functions = [
         *(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent)),

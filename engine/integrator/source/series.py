@@ -42,23 +42,20 @@ class Setting(NamedTuple):
     ----------
     channels
         How many exits over saddles there are.
-    discs
-        How many centres there are, at whose discs orbits end.
-    ring
-        Whether orbits end at a circle around the origin.
+    sides
+        Of each circle at which orbits end, the side where they have ended: −1 within, 1 beyond it.
     rotates
         Whether the frame rotates.
     """
 
     channels: int = 0
-    discs: int = 0
-    ring: bool = False
+    sides: tuple[int, ...] = ()
     rotates: bool = False
 
     @property
     def needs_whole_steps(self) -> bool:
         """Whether an orbit can pass an exit and return within a step; out of a well that does not rotate none returns."""
-        return self.discs > 0 or self.ring or self.rotates
+        return bool(self.sides) or self.rotates
 
 
 class Structure(Hashable, Protocol):

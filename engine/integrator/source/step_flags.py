@@ -47,10 +47,9 @@ def flag_gates(
 ) -> tuple[dict[str, tuple[int, int]], Value]:
     """The inputs of the gates with their rows and columns of `gates`, and GATE, NEAR or 0.
 
-    A row of `gates` is g_x, g_y, g: for a channel the line g_x x + g_y y = g, for a centre its place and the radius of its disc,
-    for the escape circle 0, 0 and its radius.
+    A row of `gates` is g_x, g_y, g: for a channel the line g_x x + g_y y = g, for a circle its centre and its radius.
     """
-    count = setting.channels + setting.discs + setting.ring
+    count = setting.channels + len(setting.sides)
     columns = {"x": 0, "y": 1, "": 2}
     sources = {f"g{k}{name}": (k, column) for k in range(count) for name, column in columns.items()}
     flag = program.constant(0)
@@ -67,10 +66,9 @@ def flag_gates(
     for g_x, g_y, g in lines:
         for x, y in (start, end):
             flag = where(g_x * x + g_y * y + bend > g, NEAR, flag)
-    for k, (c_x, c_y, radius) in enumerate(circles):
+    for side, (c_x, c_y, radius) in zip(setting.sides, circles, strict=True):
         squares = [(x - c_x) * (x - c_x) + (y - c_y) * (y - c_y) for x, y in (start, end)]
-        is_disc = k < setting.discs
-        edge = radius + (bend + half_chord) if is_disc else where(radius > bend, radius - bend, 0.0)
+        edge = radius + (bend + half_chord) if side < 0 else where(radius > bend, radius - bend, 0.0)
         for square in squares:
-            flag = where(square < edge * edge if is_disc else square > edge * edge, NEAR, flag)
+            flag = where(square < edge * edge if side < 0 else square > edge * edge, NEAR, flag)
     return sources, flag

@@ -124,8 +124,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree))
         potential = Potential(name or "", terms)
     number_of = partial(_number_of, values=values)
-    centres, escape_radius = clauses.evaluate(number_of)
-    found = Potential(name or write_formula(potential), potential.form, centres=centres, escape_radius=escape_radius)
+    ends = [clause.evaluate(number_of) for clause in clauses.ends]
+    found = Potential(name or write_formula(potential), potential.form, ends=ends)
     return found if clauses.well is None else found.at_minimum(*map(number_of, clauses.well))
 
 

@@ -1,4 +1,4 @@
-"""Whether V is defined wherever orbits can go: singular points must lie in discs of centres, or beyond the exits."""
+"""Whether V is defined wherever orbits can go: singular points must lie beyond the ends of orbits."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def singularity_refusal(potential: Potential) -> str | None:
     if potential.escape_radius is None:
         return _origin_refusal(potential)
     for x, y in potential.form.singular_points.tolist():
-        if np.hypot(x, y) <= potential.escape_radius and not _in_disc(potential, np.array([x]), np.array([y]))[0]:
+        if not _is_beyond(potential, np.array([x]), np.array([y]))[0]:
             return f"V is not defined at ({x:.6g}, {y:.6g}): there must be a centre with a radius of collision."
     radius, angle = np.meshgrid(potential.escape_radius * _SCANNED_RADII, _SCANNED_ANGLES)
     x, y = radius * np.cos(angle), radius * np.sin(angle)
-    missing = ~np.isfinite([potential.value(x, y), *potential.gradient(x, y)]).all(axis=0) & ~_in_disc(potential, x, y)
+    missing = ~np.isfinite([potential.value(x, y), *potential.gradient(x, y)]).all(axis=0) & ~_is_beyond(potential, x, y)
     if potential.form.is_singular_on_curve(x, y):
         return "V is not defined along a curve within the escape radius, where what is divided by changes its sign."
     if not missing.any():
@@ -43,7 +43,7 @@ def singularity_refusal(potential: Potential) -> str | None:
 def _origin_refusal(potential: Potential) -> str | None:
     """Without an escape radius there must be a smooth well or a centre at the origin."""
     values = [potential.value(0.0, 0.0), *potential.gradient(0.0, 0.0), *potential.hessian(0.0, 0.0)]
-    if np.isfinite(values).all() or _in_disc(potential, np.zeros(1), np.zeros(1))[0]:
+    if np.isfinite(values).all() or _is_beyond(potential, np.zeros(1), np.zeros(1))[0]:
         return None
     return (
         "V, its slope or its curvature is not defined at the origin, where there must be a well, or a centre with a radius of "
@@ -51,8 +51,7 @@ def _origin_refusal(potential: Potential) -> str | None:
     )
 
 
-def _in_disc(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether points lie in the disc of a centre."""
-    discs = [centre.contains(x, y) for centre in potential.centres]
-    inside: np.ndarray = np.any([np.zeros(x.shape, bool), *discs], axis=0)
-    return inside
+def _is_beyond(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether points lie beyond an end besides the exits."""
+    beyond: np.ndarray = np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)
+    return beyond

@@ -53,6 +53,6 @@ def test_windows_of_a_system_with_an_escape_radius_are_tabulated_up_to_the_highe
 def test_an_outcome_of_a_rotating_system_has_its_exit_and_no_mirror_image() -> None:
     potential = CASES["III"].in_rotating_frame(0.1).with_outcomes([Centre(0.0, 0.0, 0.01)], 3.0)
     data = make_portable_system(potential, 0.3).to_dict()
-    assert [each["shape"] for each in data["exits"]] == ["disc", "circle"]
+    assert [each["side"] for each in data["exits"]] == [-1, 1]
     assert data["mirror"] is None
     assert CASES["III"].well.mirror_in_x

@@ -5,14 +5,16 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from multiprocessing.connection import Connection
+from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
 
-from app.runtime.limited_process import LimitedProcess, LimitError
+from app.runtime.limited_process import LimitedProcess, LimitedProcesses, LimitError
 from engine import System, parse_formula
 from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.review.potential_review import review_system
@@ -37,6 +39,11 @@ def fill_memory() -> None:
         parts.append(np.ones(2**22))
 
 
+def read_pipe(pipe: Path) -> str:
+    """Waits for what is written."""
+    return pipe.read_text()
+
+
 def recurse() -> None:
     recurse()
 
@@ -56,6 +63,18 @@ def test_calls_share_a_process_which_is_replaced_when_it_ends(limited: LimitedPr
     with pytest.raises(LimitError):
         limited(partial(os._exit, 1))
     assert limited(os.getpid) != first
+
+
+def test_a_call_does_not_wait_for_one_in_another_process(tmp_path: Path) -> None:
+    processes, pipe = LimitedProcesses(2), tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with ThreadPoolExecutor(1) as thread:
+        waiting = thread.submit(processes, partial(read_pipe, pipe))
+        assert processes(partial(divmod, 7, 2)) == (3, 1)
+        assert not waiting.done()
+        pipe.write_text("released")
+        assert waiting.result() == "released"
+    processes.close()
 
 
 def test_errors_are_those_of_the_function(limited: LimitedProcess) -> None:

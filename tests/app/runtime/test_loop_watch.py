@@ -64,7 +64,27 @@ def test_a_slow_turn_is_logged_and_counted(
     assert counted(metrics) == {WAITING: 1.0}
     [message] = [record.message for record in caplog.records]
     assert message.startswith(f"event loop {1000 * late:.0f} ms late, ")
-    assert message.endswith(f" ms of its own; cause: {WAITING}")
+    assert message.endswith(f" ms of its own, with 0 ms of garbage collection; cause: {WAITING}")
+
+
+def test_garbage_collections_on_the_thread_of_the_loop_are_measured(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    clock, metrics = Clock(), ServerMetrics()
+    monkeypatch.setattr("app.runtime.load_monitor.time", clock)
+    monkeypatch.setattr("app.runtime.loop_watch.time", clock)
+    watch = LoopWatch(LoadMonitor(), metrics.loop_delays)
+    elsewhere = threading.Thread(target=watch.on_collection, args=["start", {}])
+    watch.tick()
+    with caplog.at_level(logging.INFO, "bokeh"):
+        watch.on_collection("start", {})
+        clock.compute(1)
+        elsewhere.start()
+        elsewhere.join()
+        watch.on_collection("stop", {})
+        clock.compute(1)
+        watch.tick()
+    assert " 2000 ms of its own, with 1000 ms of garbage collection" in caplog.records[0].message
 
 
 def test_the_thread_names_the_function_that_delays_the_tick() -> None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from app.state.view import View
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, System, compute_map
 from engine.jobs.manager import Jobs
+from engine.slices.parameter_family import find_members
+from engine.slices.slice_text import read_slice
 from engine.systems.system import TYPED
 from plots.pictures.image_columns import map_columns
 from tests.app.map_actions import make_maps
@@ -92,6 +95,20 @@ def test_a_view_of_a_refused_system_ends_the_comparison(session: Session) -> Non
     session.state.compared = View(System(TYPED, "x² + y²"), Plane.X_PX, 0.2)
     session.wait_for_refusal("No saddle")
     assert session.state.compared is None
+
+
+def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits(frame: EscapeMap) -> None:
+    def limit(call: Callable[[], Any]) -> Any:
+        # The review passes.
+        if call.func is find_members:  # type: ignore[attr-defined]
+            raise ValueError("it takes too long.")
+        return call()
+
+    session, system = Session(Jobs(limited=limit)), System(TYPED, "½(x² + y²) − a x²y + y³/3")
+    session.state.compared = View(system, read_slice("x,a=0.5:1.5", "", system), 0.1)
+    session.show(frame)
+    session.wait_for("There is no other view to compare with: it takes too long.")
+    session.presenter.close()
 
 
 def test_a_view_that_has_no_map_is_refused_in_a_sentence(session: Session, frame: EscapeMap) -> None:

@@ -14,6 +14,10 @@ from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 SECONDS = 10.0
 
 
+def background() -> Priority:
+    return Priority.BACKGROUND
+
+
 class Recorder:
     """A scheduler whose threads are blocked until `run`, so that the order of the queued calls can be recorded."""
 
@@ -25,7 +29,7 @@ class Recorder:
         for _ in range(threads):
             blocker.submit(self.released.wait, SECONDS)
 
-    def executor(self, client: str, priority: Callable[[], Priority] = lambda: Priority.BACKGROUND) -> QueueExecutor:
+    def executor(self, client: str, priority: Callable[[], Priority] = background) -> QueueExecutor:
         return self.scheduler.executor(client, priority)
 
     def submit(self, executor: QueueExecutor, *names: str) -> list[Future[None]]:
@@ -69,6 +73,15 @@ def test_long_calls_leave_one_thread_free() -> None:
     assert not any(call.done() for call in long_calls)
     release.set()
     assert not wait(long_calls, SECONDS).not_done
+
+
+def test_a_client_with_one_call_at_a_time_leaves_the_other_threads_to_others() -> None:
+    scheduler, release = FairScheduler(ThreadPoolExecutor(2), one_each=True), threading.Event()
+    hostile = [scheduler.executor("a", background).submit(release.wait, SECONDS) for _ in range(2)]
+    assert scheduler.executor("b", background).submit(divmod, 7, 2).result(SECONDS) == (3, 1)
+    assert scheduler.pending_calls == 1
+    release.set()
+    assert not wait(hostile, SECONDS).not_done
 
 
 def test_exception_is_stored_in_the_future_and_the_pool_continues() -> None:

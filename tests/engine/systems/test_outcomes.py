@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from engine.systems.outcomes import Centre, OutcomeKind, outcomes_of, read_outcomes, write_outcomes
+from engine.systems.outcomes import Centre, EscapeCircle, Exit, outcomes_of, read_outcomes, write_outcomes
 
-ALL = outcomes_of(2, (Centre(0.0, 0.0, 0.1, "the Moon"), Centre(1.0, 0.0, 0.1)), has_escape_radius=True)
+ALL = outcomes_of(2, (Centre(0.0, 0.0, 0.1, "the Moon"), Centre(1.0, 0.0, 0.1), EscapeCircle(10.0)))
 
 
 def test_exits_come_first_then_centres_then_the_escape_radius() -> None:
@@ -15,8 +15,7 @@ def test_exits_come_first_then_centres_then_the_escape_radius() -> None:
         "collision with centre 2",
         "escape",
     ]
-    kinds = [OutcomeKind.EXIT, OutcomeKind.EXIT, OutcomeKind.COLLISION, OutcomeKind.COLLISION, OutcomeKind.ESCAPE]
-    assert [outcome.kind for outcome in ALL] == kinds
+    assert [outcome.kind for outcome in ALL] == [Exit, Exit, Centre, Centre, EscapeCircle]
 
 
 def test_each_has_a_sentence_and_what_an_orbit_does() -> None:
@@ -26,6 +25,10 @@ def test_each_has_a_sentence_and_what_an_orbit_does() -> None:
     ]  # fmt: skip
     assert [each.present for each in (channel, moon)] == ["escapes through channel 1", "collides with the Moon"]
     assert [each.event for each in (channel, moon, escape)] == ["escape", "collision", "escape"]
+    assert [each.origin for each in (channel, moon)] == [
+        "entered through channel 1",
+        "backward in time it collides with the Moon",
+    ]
 
 
 def test_files_keep_them() -> None:

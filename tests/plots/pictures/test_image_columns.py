@@ -48,7 +48,7 @@ def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
 
 def test_a_collision_has_a_colour_and_words_of_its_own() -> None:
     columns, fate = map_columns(frame := disc_map()), frame.fate
-    assert set(np.array(PAPER.fate_colours)[columns["fate"][0]][fate == 3]) == {PAPER.collisions[0]}
+    assert set(np.array(PAPER.fate_colours)[columns["fate"][0]][fate == 3]) == {PAPER.of_kinds["collision"][0]}
     (code,) = set(columns["fate"][0][fate == 3].tolist())
     assert columns["ends"][0][code - len(OUTCOMES)] == "collides with a disc"
 
@@ -105,7 +105,8 @@ def test_a_coarse_frame_fills_the_window() -> None:
 
 def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:
     origins = compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.3, (45, 45), t_max=200.0))
-    colours = np.array(PAPER.passage_colours)[passage_column(origins)["passage"][0]]
+    columns = passage_column(origins)
+    colours = np.array(PAPER.passage_colours)[columns["passage"][0]]
     seen = 0
     for origin in range(5):
         for fate in range(5):
@@ -114,6 +115,11 @@ def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:
             seen += int(where.sum())
     assert seen == np.sum(origins.fate >= 0)
     assert set(colours[origins.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
+    assert columns["origins"][0][:3] == [
+        "never entered: inside since −t_max",
+        "entered through channel 1",
+        "entered through channel 2",
+    ]
 
 
 def columns_of(

@@ -33,7 +33,7 @@ def closest(colours: list[str] | tuple[str, ...], vision: str = "normal") -> flo
 def test_channels_crossing_classes_characters_and_orbits_have_no_colour_in_common(palette: Palette) -> None:
     kinds = (
         palette.channels,
-        (*palette.collisions, palette.escape),
+        palette.ends[len(palette.channels) :],
         palette.classes,
         palette.characters[1:],
         palette.orbits,
@@ -59,7 +59,7 @@ def test_channels_of_the_safe_palette_are_distinguishable(vision: str) -> None:
 @of_each_palette
 @for_each_vision
 def test_collisions_and_escape_differ_from_each_other_and_from_exits_and_bounded_orbits(palette: Palette, vision: str) -> None:
-    others = (*palette.collisions, palette.escape)
+    others = palette.ends[len(palette.channels) :]
     assert closest(others, vision) > CLEAR
     assert differences(others, [*palette.channels, palette.bounded], vision).min() > CLEAR
 
@@ -68,7 +68,7 @@ def test_collisions_and_escape_differ_from_each_other_and_from_exits_and_bounded
 @pytest.mark.parametrize("page", PAGES)
 def test_orbits_collisions_and_escape_are_visible_on_the_page(palette: Palette, page: str) -> None:
     assert min(contrast(colour, PAGES[page]) for colour in palette.orbits) > 2.0
-    assert min(contrast(colour, PAGES[page]) for colour in (*palette.collisions, palette.escape)) > 1.5
+    assert min(contrast(colour, PAGES[page]) for colour in palette.ends[len(palette.channels) :]) > 1.5
 
 
 @of_each_palette

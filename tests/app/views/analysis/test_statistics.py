@@ -31,8 +31,8 @@ def test_the_charts_count_every_escape(view: StatisticsView, frame: EscapeMap) -
     assert view.table.object == ""
     view.activate(True)
     statistics = compute_statistics(frame)
-    assert view._times.handles["source"].data["top"].sum() == statistics.escaped
-    assert view._probabilities.handles["source"].data["p"][0] == pytest.approx(statistics.direct_share)
+    assert view.times.data["top"].sum() == statistics.escaped
+    assert view.probabilities.data["p"][0] == pytest.approx(statistics.direct_share)
 
 
 @pytest.mark.parametrize("box", [None, BOX])

@@ -4,7 +4,7 @@ import {test} from "node:test"
 
 import {coordinate, count, fateName, number, percent, pixelDetails} from "../../../../app/views/components/hover_texts.js"
 
-const CODES = {bounded: 4, first: 5, firstEvidence: 10, ends: 9, channels: 8}
+const CODES = {bounded: 4, first: 5, firstEvidence: 10, ends: 9}
 const WORDS = {
   evidence: ["integrated", "enclosed"],
   characters: ["regular", "chaotic"],
@@ -21,6 +21,7 @@ const maps = {
   crossing_class: [Uint8Array.of(11, 6)],
   character: none,
   passage: none,
+  origins: [["never entered: inside since −t_max", "entered through channel 1", "entered through channel 2"]],
   difference: none,
   x: [-1],
   y: [-1],
@@ -60,15 +61,12 @@ test("a pixel that is compared has its end in the other view", () => {
   assert.deepEqual(details(0, layers, {trust: []}, {...other, x: [-2]}), ["enclosed"])
 })
 
-test("an end has the words of its map, also in the other view and backward in time", () => {
+test("an end has the words of its map, also in the other view", () => {
   const ends = [["", "escapes through channel 2", "", "", "", "", "", "", "collides with a disc"]]
   const names = WORDS.fates.slice(0, 5)
   assert.equal(fateName(6, names, {ends}), "escapes through channel 2")
   assert.equal(fateName(13, names, {ends}), "collides with a disc")
   assert.equal(fateName(7, names, {ends}), "undecided")
-  const codes = {...CODES, ends: 14}
-  const columns = {maps: {...maps, ends, passage: [Uint8Array.of(0, 5 + 14 * 9 + 1)]}, doubts: {trust: []}, compared: other}
-  assert.ok(pixelDetails(1, columns, codes, WORDS).includes("backward in time it collides with a disc"))
 })
 
 test("an outcome that is no orbit has no details", () => {

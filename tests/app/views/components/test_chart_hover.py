@@ -18,9 +18,8 @@ def chart_hovers() -> list[HoverTool]:
     """The hover tools of all charts."""
     statistics = StatisticsView(lambda: None, lambda text: None)
     measures = BasinMeasuresView(lambda: None, lambda text: None, lambda: None)
-    statistics.build()
     curves = CurvesView(lambda: None, lambda energy: None)
-    plots = [statistics._times.state, statistics._probabilities.state, measures._draw_survival(), measures._draw_uncertainty()]
+    plots = [*(pane.object for pane in statistics.build()[1:]), measures._draw_survival(), measures._draw_uncertainty()]
     plots += [curves._draw_shares(), *map(curves._draw_panel, CURVE_PANELS)]
     return [tool for plot in plots for tool in plot.tools if isinstance(tool, HoverTool)]
 

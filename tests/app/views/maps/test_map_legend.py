@@ -70,7 +70,7 @@ def test_layers_have_legends_of_their_own() -> None:
 
 def test_a_collision_has_its_label_and_colour() -> None:
     of_disc = LegendContents(MapSpec(DISC, Plane.X_PX, 0.19), PAPER, TimeScale(2.5, 100.0), False, "", ALL)
-    assert ("collision with a disc", PAPER.collisions[0]) in entries(map_legend("basins", of_disc, []))
+    assert ("collision with a disc", PAPER.of_kinds["collision"][0]) in entries(map_legend("basins", of_disc, []))
     assert "<th scope=col>collision with a disc</th>" in map_legend("origins", of_disc, [])
 
 

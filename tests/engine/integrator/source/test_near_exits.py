@@ -28,8 +28,8 @@ class Shape(NamedTuple):
 
 SHAPES = {
     "line": Shape({"channels": 1}, lambda x, y: 0.6 * x + 0.8 * y, lambda place: (0.6, 0.8, place)),
-    "disc": Shape({"channels": 0, "discs": 1}, lambda x, y: -np.hypot(x - 0.1, y - 0.2), lambda place: (0.1, 0.2, -place)),
-    "circle": Shape({"channels": 0, "ring": True}, np.hypot, lambda place: (0.0, 0.0, place)),
+    "disc": Shape({"channels": 0, "sides": (-1,)}, lambda x, y: -np.hypot(x - 0.1, y - 0.2), lambda place: (0.1, 0.2, -place)),
+    "circle": Shape({"channels": 0, "sides": (1,)}, np.hypot, lambda place: (0.0, 0.0, place)),
 }
 
 

@@ -1,0 +1,112 @@
+"""Thousands of random formulas in links and typed, from several addresses: answers, the event loop, memory, the log.
+
+Run: uv run python -m benchmarks.formulas --count 20000
+     uv run python -m benchmarks.formulas --count 20000 --proxy
+
+Options as of `benchmarks.hostile`, whose table it prints; there is no other visitor.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import random
+import sys
+import time
+from collections.abc import Awaitable, Callable, Iterator, Sequence
+from urllib.parse import urljoin
+
+from benchmarks.attacks import formula_link
+from benchmarks.hostile import (
+    Place,
+    count_delayed_messages,
+    end_with,
+    find_problems,
+    new_session,
+    observe,
+    row,
+    running,
+    visiting,
+)
+from benchmarks.simulated_sessions import Record, SimulatedSession
+from tests.fuzz.random_formulas import random_link
+
+FIRST_ADDRESS = 1000
+"""Number of the first address of pages that are opened for one formula: a proxy limits the pages of an address."""
+
+REOPEN_SECONDS = 1.0
+"""Until a page that was closed is opened again."""
+
+PROGRESS = 1000
+"""Number of formulas after which a line says how many have been sent."""
+
+
+async def open_page(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
+    """A page of another address, with its connection, until its formula is reviewed."""
+    await other.open_formula(formula_link(choice))
+    await other.close()
+
+
+async def request_page(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
+    """A page of another address without a connection."""
+    await other.fetch(urljoin("/app", formula_link(choice)))
+
+
+async def follow_link(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
+    """A link in the open page."""
+    await visitor.follow_formula(formula_link(choice))
+
+
+async def type_formula(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
+    """A formula in the box of the open page."""
+    await visitor.type_formula(random_link(choice)["V"])
+
+
+Way = Callable[[SimulatedSession, SimulatedSession, random.Random], Awaitable[None]]
+
+WAYS: dict[Way, int] = {open_page: 4, request_page: 6, follow_link: 45, type_formula: 45}
+"""How a formula reaches the server, and how often; a page takes the server as long as five formulas in an open one."""
+
+
+async def send_formulas(places: Sequence[Place], visitors: int, count: int, seed: int) -> tuple[Record, Record, int]:
+    """Send formulas by visitors of each place; returns no waits of other visitors, those of these, and the number of formulas."""
+    numbers, record = iter(range(count)), Record()
+    senders = [(place, seed + number) for number, place in enumerate([*places] * visitors)]
+    await asyncio.gather(*(_send(place, address, numbers, record) for place, address in senders))
+    return Record(), record, count
+
+
+async def _send(place: Place, address: int, numbers: Iterator[int], record: Record) -> None:
+    async with visiting(place, address, record) as visitor:
+        for number in numbers:
+            if number and not number % PROGRESS:
+                print(f"{number} formulas", file=sys.stderr, flush=True)
+            choice = random.Random(number)
+            [way] = choice.choices(list(WAYS), list(WAYS.values()))
+            begin = time.perf_counter()
+            await way(visitor, new_session(place, FIRST_ADDRESS + number, record), choice)
+            if way is request_page:
+                record.reviews.append(time.perf_counter() - begin)
+            while not visitor.is_open:
+                await asyncio.sleep(REOPEN_SECONDS)
+                await visitor.open()
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument("--proxy", action="store_true", help="two processes behind nginx")
+    parser.add_argument("--count", type=int, default=20_000, help="formulas")
+    parser.add_argument("--visitors", type=int, default=3, help="addresses for each process")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    with running(options.processes, proxy=options.proxy) as (servers, places):
+        begin, before = time.perf_counter(), count_delayed_messages(servers)
+        effect = asyncio.run(observe(servers, send_formulas(places, options.visitors, options.count, options.seed)))
+        print(row("formulas", effect, count_delayed_messages(servers) - before))
+        print(f"\n{options.count} formulas in {time.perf_counter() - begin:.0f} s, {effect.attackers.refused} pages refused.")
+        return end_with(servers, list(find_problems(effect)))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

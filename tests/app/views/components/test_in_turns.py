@@ -1,0 +1,33 @@
+"""Parts of the page are made one in each turn of the event loop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import panel as pn
+
+from app.views.components.in_turns import InTurns
+
+
+def make(name: str) -> list[pn.viewable.Viewable]:
+    return [pn.pane.HTML(name)]
+
+
+def test_each_part_has_a_turn_of_its_own_and_is_made_once() -> None:
+    turns: list[Callable[[], None]] = []
+    made: list[str] = []
+
+    def later(call: Callable[[], None]) -> Callable[[], None]:
+        return lambda: turns.append(call)
+
+    parts = InTurns([partial(make, name) for name in "abc"], lambda added: made.extend(part.object for part in added), later)
+    assert not turns
+    parts.begin()
+    parts.begin()
+    counts = []
+    while turns:
+        turns.pop(0)()
+        counts.append(len(made))
+    assert made == ["a", "b", "c"]
+    assert counts[:3] == [1, 2, 3]

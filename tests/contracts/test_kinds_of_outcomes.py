@@ -1,0 +1,69 @@
+"""Every kind of outcome is typed, kept in files, told in words and coloured; so is the one that CONTRIBUTING.md adds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import Centre, MapSpec, Plane, Potential, compute_map, compute_origin_fates, parse_formula, write_formula
+from engine.systems import outcomes
+from engine.systems.outcomes import KINDS, EscapeCircle
+from engine.systems.stored_potential import describe_potential, read_potential
+from plots.pictures.image_columns import passage_column
+from plots.pictures.palette import OUTCOMES, PALETTES, end_places
+from tests.contributing import run_example
+
+WELL = "½(x² + y²) − xy²"
+DOCK = (0.2, 0.3, 0.05, "the dock")
+
+
+@pytest.fixture
+def station(monkeypatch: pytest.MonkeyPatch) -> type[outcomes.End]:
+    """The kind of the example, with some colours."""
+    kind: type[outcomes.End] = run_example("Example: add a kind of outcome", outcomes)["Station"]
+    monkeypatch.setitem(KINDS, kind.key, kind)
+    for palette in PALETTES.values():
+        monkeypatch.setitem(palette.of_kinds, kind.key, ("#005f73", "#0a9396", "#94d2bd", "#e9d8a6"))
+    return kind
+
+
+def test_each_kind_has_colours_of_its_own_in_each_palette() -> None:
+    counts = {tuple((key, len(palette.of_kinds[key])) for key in KINDS) for palette in PALETTES.values()}
+    assert len(counts) == 1
+    for palette in PALETTES.values():
+        assert len(set(palette.ends)) == len(palette.ends)
+
+
+def test_formulas_and_files_keep_ends_of_all_kinds(station: type[outcomes.End]) -> None:
+    ends = (Centre(0.1, -0.2, 0.01, "a body"), Centre(0.5, 0.0, 0.02), EscapeCircle(3.0), station(*DOCK))
+    potential = parse_formula(
+        WELL + "; station the dock (0.2, 0.3) 0.05; centre a body (0.1, −0.2) 0.01; escape 3; centre (½, 0) 0.02"
+    )
+    assert potential.ends == ends
+    assert parse_formula(write_formula(potential)) == potential
+    assert read_potential(describe_potential(potential)) == potential
+
+
+def test_orbits_end_at_a_station_as_at_a_body_and_in_its_words_and_colour(station: type[outcomes.End]) -> None:
+    def map_of(end: outcomes.End) -> tuple[np.ndarray, np.ndarray]:
+        potential = Potential("a well", parse_formula(WELL).form, ends=[end])
+        found = compute_map(MapSpec(potential, Plane.X_PX, 0.19, (20, 20), t_max=50.0))
+        return found.fate, found.escape_time
+
+    of_station, of_body = map_of(station(*DOCK)), map_of(Centre(*DOCK))
+    assert (of_station[0] == 3).any()
+    np.testing.assert_array_equal(of_station, of_body)
+    arrival = parse_formula(WELL + "; station the dock (0.2, 0.3) 0.05").outcomes
+    assert arrival[2].sentence == "Arrived at the dock."
+    palette = PALETTES["paper"]
+    assert palette.entry(3, arrival).label == "arrival at the dock"
+    assert palette.entry(3, arrival).colour == palette.ends[end_places(arrival)[2]] == "#005f73"
+
+
+def test_passages_from_a_station_have_codes_of_their_own(station: type[outcomes.End]) -> None:
+    potential = parse_formula(WELL + "; station the dock (0.2, 0.3) 0.05")
+    found = compute_origin_fates(MapSpec(potential, Plane.X_PX, 0.19, (20, 20), t_max=50.0))
+    columns = passage_column(found)
+    origins = (columns["passage"][0].astype(int) - len(OUTCOMES)) // (len(PALETTES["paper"].ends) + 1)
+    words = np.array(columns["origins"][0])[origins[(found.origin == 3) & (found.fate > 0)]]
+    assert set(words) == {"backward in time it arrives at the dock"}

@@ -1,0 +1,37 @@
+"""What the jobs of maps and sweeps compute within limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from engine import ParameterAxis, Plane, SweepSpec, System
+from engine.jobs.manager import Jobs
+from engine.jobs.map_jobs import sweep_job
+from engine.systems.system import TYPED
+from tests.engine.jobs.inbox import Inbox
+
+LETTER = System(TYPED, "½(x² + y²) − a x²y + y³/3")
+KNOWN = System("I")
+
+
+def sweep_along(system: System, name: str) -> SweepSpec:
+    axis = ParameterAxis(name, 0.8, 1.2, system)
+    return SweepSpec(system.potential, Plane.X_PX, (0.9, 1.1), (16, 16), t_max=50.0, measures=("shares",), along=axis, energy=0.2)
+
+
+def refuse(call: Callable[[], Any]) -> Any:
+    raise ValueError("beyond its limits")
+
+
+@pytest.mark.parametrize(("system", "name", "limited"), [(LETTER, "a", True), (KNOWN, "epsilon", False)])
+def test_a_sweep_along_a_parameter_of_a_typed_formula_first_finds_the_potentials_within_limits(
+    system: System, name: str, limited: bool
+) -> None:
+    inbox = Inbox()
+    Jobs(limited=refuse).request(sweep_job(sweep_along(system, name)), inbox.result, inbox.error)
+    assert inbox.done.wait(60.0)
+    assert [str(error) for error in inbox.errors] == (["beyond its limits"] if limited else [])
+    assert bool(inbox.results) is not limited
