@@ -31,7 +31,8 @@ from urllib.parse import urlsplit
 from benchmarks.attacks import ATTACKS, do_nothing
 from benchmarks.load import CACHE_SENTENCE, Server, resident_megabytes, served, summary
 from benchmarks.simulated_sessions import ACTIONS, ALL_ACTIONS, Record, SimulatedSession, visitor_headers
-from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, free_port, nginx, proxied
+from tests.browser.served_app import free_port
+from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, nginx, proxied
 from tests.page_channel import NO_OPTIONS, Options
 
 LONGEST_WAIT_SECONDS = 3.0

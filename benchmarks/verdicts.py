@@ -16,14 +16,12 @@ import numpy as np
 
 from engine import (
     CASES,
-    CHAOS_THRESHOLD,
     Fate,
     MapSpec,
     Orbit,
     Plane,
     Potential,
     Regularity,
-    Verdict,
     classify_orbits,
     compute_map,
     compute_regularity,
@@ -31,7 +29,9 @@ from engine import (
     judge_orbit,
     sample_starts,
 )
+from engine.propagation.fates import CHAOS_THRESHOLD
 from engine.systems.known_potentials import channel_family
+from engine.trajectories.chaos_indicators import Verdict
 
 FIVE = channel_family(5)
 SEAS = (

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from cli.layer_options import LayerOptions, read_layers
 from cli.option_marks import Of
 from engine import POTENTIALS, Plane, Potential, Slice, System, review_potential
 from engine.foundations.validation import checked_count
@@ -128,11 +129,15 @@ def choose_energy(
     """
     if plane.energy_axis is not None:
         if energies is None or energy is not None:
-            raise ValueError(f"energies: the plane {plane.key} needs --energies LOW HIGH, not --energy")
+            raise ValueError(f"energies: the plane {plane.key} needs --energies LOW HIGH{_not_given('--energy', energy)}")
         return energies
     if energy is None or energies is not None:
-        raise ValueError(f"energy: the plane {plane.key} needs --energy H, not --energies")
+        raise ValueError(f"energy: the plane {plane.key} needs --energy H{_not_given('--energies', energies)}")
     return energy
+
+
+def _not_given(option: str, value: object) -> str:
+    return "" if value is None else f", not {option}"
 
 
 def find_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = next(iter(PALETTES))) -> Palette:
@@ -184,6 +189,7 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Slice | None: find_plane,
     Energy: choose_energy,
     Palette: find_palette,
+    LayerOptions: read_layers,
 }
 """Functions that make a value of a type of words; a parameter of theirs that has one of these types is made first."""
 

@@ -25,7 +25,6 @@ INVALID_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
 COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
 """Names of the modules in `commands`, which are imported when they are needed."""
 
-
 FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
 """Former names of options."""
 
@@ -47,13 +46,17 @@ class _Command(TyperCommand):
             rest.extend(words.popleft() for _ in range(min(values.get(word, 0), len(words))))
         return super().parse_args(ctx, [*rest, "--", *arguments, *list(words)[1:]])
 
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Return the parameters; help shows those without a value without the type of one."""
+        params: list[Any] = super().get_params(ctx)
+        for option in params:
+            if self._count_values(option) == 0:
+                option.metavar = ""
+        return params
+
     @staticmethod
     def _count_values(option: Any) -> int:
         return 0 if getattr(option, "is_flag", False) else int(option.nargs)
-
-
-FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
-"""Former names of options."""
 
 
 class _Commands(TyperGroup):

@@ -23,15 +23,15 @@ from engine import (
 )
 from engine.slices.planes import SPACE
 from engine.slices.section import SECTION
-from plots.pictures.manifold_strokes import select_image
+from plots.layers.manifolds import manifold_strokes, select_image
 from plots.pictures.orbit_curves import compute_orbit_curves, find_well_window
 from plots.pictures.palette import PAPER
 from plots.printed.figure_axes import (
     add_figure_legend,
+    legend_handles,
     name_panel,
-    patches,
 )
-from plots.printed.map_figure import draw_curve, draw_limits, draw_manifolds, draw_map_figure, draw_picture, show_window
+from plots.printed.map_figure import draw_curve, draw_limits, draw_map_figure, draw_picture, draw_strokes, show_window
 from plots.printed.orbit_figure import draw_path
 from plots.printed.potential_figure import draw_well
 
@@ -78,7 +78,7 @@ def tubes() -> Figure:
     manifolds = find_stable_manifolds(CASE, ENERGY, images=2)
     for axes, image in zip(panels, (1, 2), strict=False):
         draw_limits(axes, CASE, SECTION.plane, ENERGY, window)
-        draw_manifolds(axes, select_image(manifolds, image), window, PAPER)
+        draw_strokes(axes, manifold_strokes(select_image(manifolds, image)), window, PAPER)
         show_window(axes, window, "x", "px")
         name_panel(axes, f"Image {image} of the tubes")
     draw_picture(panels[2], compute_map(MapSpec(CASE, SECTION.plane, ENERGY, (SIDE, SIDE), t_max=1e4)), "basins", PAPER)
@@ -92,7 +92,7 @@ def energies() -> Figure:
         frame = compute_map(MapSpec(CASE, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
         draw_picture(axes, frame, "basins", PAPER)
         name_panel(axes, f"h = {energy}: {100.0 * frame.fractions()[Fate.BOUNDED]:.1f} % bounded")
-    add_figure_legend(figure, patches([*PAPER.end_entries(CASES["I"].outcomes), PAPER.outcomes[Fate.BOUNDED]]))
+    add_figure_legend(figure, legend_handles([*PAPER.end_entries(CASES["I"].outcomes), PAPER.outcomes[Fate.BOUNDED]]))
     return figure
 
 

@@ -54,8 +54,8 @@ from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
     label_axes,
+    legend_handles,
     name_panel,
-    patches,
     save_figure,
     style_axes,
 )
@@ -223,7 +223,7 @@ def evidence() -> Figure:
         draw_limits(axes, case, SECTION.plane, energy, window)
         show_window(axes, window, "x", "px")
     names = {code: code.name.lower().replace("_", "-") for code in _EVIDENCE_COLOURS if (frame.evidence == code).any()}
-    add_figure_legend(figure, patches(Entry(name, _EVIDENCE_COLOURS[code]) for code, name in names.items() if code))
+    add_figure_legend(figure, legend_handles(Entry(name, _EVIDENCE_COLOURS[code]) for code, name in names.items() if code))
     return figure
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -19,20 +20,20 @@ from app.state.system_review import review_catalogue_entry
 from app.state.view import View
 from engine import (
     EscapeMap,
-    StableManifolds,
+    Window,
     compute_map,
-    compute_origin_fates,
-    compute_regularity,
-    compute_trust,
     find_lyapunov_orbits,
-    find_stable_manifolds,
     integrate_orbit,
     start_states,
 )
+from engine.foundations.execution import DEFAULT_EXECUTION
+from engine.jobs.job import run_job
+from engine.jobs.map_jobs import map_job
 from engine.slices.limiting_curves import trace_equipotentials
-from plots.pictures.manifold_strokes import manifold_strokes
-from plots.pictures.map_analyses import MapAnalyses
-from plots.pictures.map_images import picture_pixels
+from plots.layers.layer import Stroke
+from plots.layers.map_analyses import MapAnalyses
+from plots.layers.map_images import picture_pixels
+from plots.layers.table import LAYERS
 from plots.pictures.palette import LIGHT, PAPER, PATCH_EDGE
 from plots.printed.map_figure import draw_curve, draw_pixels
 
@@ -64,8 +65,14 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     draw_pixels(axes, pixels, frame.spec.find_window(), frame.spec.find_window())
-    if analyses.manifolds is not None:
-        _draw_manifolds(axes, frame, analyses.manifolds)
+    strokes = [
+        stroke
+        for name, result in analyses.items()
+        if (over := LAYERS[name].over) is not None and over.strokes is not None
+        for stroke in over.strokes(result)
+    ]
+    if strokes:
+        _draw_strokes(axes, strokes, frame.spec.find_window())
     else:
         _draw_curves(axes, frame, preset.view)
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
@@ -75,19 +82,14 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
 
 
 def _analyse(frame: EscapeMap, view: View) -> MapAnalyses:
-    spec = frame.spec
-    return MapAnalyses(
-        regularity=compute_regularity(frame) if view.judge else None,
-        trust=compute_trust(frame) if view.trust else None,
-        origins=compute_origin_fates(spec) if view.origins else None,
-        manifolds=find_stable_manifolds(spec.potential, view.energy, images=2) if view.manifolds else None,
-    )
+    known = {map_job(frame.spec): frame}
+    layers = (layer for name, layer in LAYERS.items() if name in view.layers)
+    return MapAnalyses({layer.name: run_job(layer.job(frame.spec, view.settings), DEFAULT_EXECUTION, known) for layer in layers})
 
 
-def _draw_manifolds(axes: Axes, frame: EscapeMap, manifolds: StableManifolds) -> None:
-    for stroke in manifold_strokes(manifolds):
-        points, colour = [np.column_stack([arc.x, arc.px]) for arc in stroke.arcs], PAPER.channels[stroke.channel - 1]
-        draw_curve(axes, points, frame.spec.find_window(), colors=colour, linewidths=0.4 * stroke.width)
+def _draw_strokes(axes: Axes, strokes: Sequence[Stroke], window: Window) -> None:
+    for stroke in strokes:
+        draw_curve(axes, stroke.lines, window, colors=PAPER.channels[stroke.channel - 1], linewidths=0.4 * stroke.width)
 
 
 def _draw_curves(axes: Axes, frame: EscapeMap, view: View) -> None:

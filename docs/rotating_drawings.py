@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from engine import Fate, compute_map
 from plots.pictures.palette import PAPER
-from plots.printed.figure_axes import add_figure_legend, name_panel, patches
+from plots.printed.figure_axes import add_figure_legend, legend_handles, name_panel
 from plots.printed.map_figure import draw_picture
 from reproduction.rotating.paper_maps import PAPER_MAPS, PaperMap
 
@@ -52,5 +52,5 @@ def _draw(paper_maps: tuple[PaperMap, ...], renamed: Mapping[str, str] = Mapping
     entries = [PAPER.entry(int(fate), paper_maps[0].spec.outcomes) for fate in ends if fate >= Fate.BOUNDED]
     for old, new in renamed.items():
         entries = [replace(entry, label=entry.label.replace(old, new)) for entry in entries]
-    add_figure_legend(figure, patches(entries))
+    add_figure_legend(figure, legend_handles(entries))
     return figure

@@ -3,81 +3,77 @@
 These are the public names of the library. All results show themselves in notebooks and have `plot`, `to_pandas`, `to_xarray` and
 `to_holoviews`, see `Result`. Names of other modules are for the programs of this repository, and may change with any version.
 
-- systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `channel_family`, `parse_formula`, `write_formula`,
-  `review_potential`
-- starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `default_window`, `start_states`,
-  `sample_starts`, `trace_zero_velocity_curve`
-- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `compute_birkhoff_digits`, `judge_orbit`,
-  `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
+- systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `write_formula`, `review_potential`
+- starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `start_states`, `sample_starts`
+- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `judge_orbit`, `compute_separation`,
+  `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`,
-  `compute_origin_fates`, `find_stable_manifolds`
+  `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
-- files: `Result.to_xarray`, `open_result`
+- files: `Result.save`, `open_result`
 - sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
 """
 
 from typing import TYPE_CHECKING
 
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits, find_multipliers
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.foundations.execution import Execution
 from engine.foundations.former_names import FORMER_NAMES as FORMER_NAMES
 from engine.foundations.former_names import find_former_name as find_former_name
 from engine.foundations.result import Result
 from engine.maps.compute import compute_map
+from engine.maps.descriptors import DescriptorMap, TimeDirection, compute_lagrangian_descriptor
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
 from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.maps.trust import TrustMap, compute_trust
+from engine.maps.trust import Trust, TrustMap, compute_trust
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
-from engine.measures.decay_laws import DecayLaws
+from engine.measures.decay_laws import DecayLaws, LawFit
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.propagation.classification import Outcomes, classify_orbits
 from engine.propagation.evidence import Evidence
-from engine.propagation.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
+from engine.propagation.fates import Fate, Regularity
 from engine.slices.axes import Coordinate, Direction, ParameterAxis
-from engine.slices.default_window import default_window
-from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.planes import Plane, start_states
 from engine.slices.sampling import sample_starts
 from engine.slices.slice import Slice
 from engine.slices.window import Window
 from engine.sweeps.opened_results import open_result
-from engine.sweeps.plan import SweepPlan, plan_sweep
+from engine.sweeps.plan import plan_sweep
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
 from engine.systems.formulas.formula_parser import parse_formula
+from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.formulas.formula_writer import write_formula
-from engine.systems.known_potentials import CASES, POTENTIALS, channel_family
+from engine.systems.known_potentials import CASES, POTENTIALS
 from engine.systems.outcomes import Centre, Outcome
 from engine.systems.potential import Potential
 from engine.systems.review.potential_review import PotentialReview, review_potential
 from engine.systems.system import System
-from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
-from engine.trajectories.chaos_indicators import IndicatorVerdict, Verdict, evaluate_indicators
+from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.entrances import sample_entrances
 from engine.trajectories.flux import EscapeFlux, compute_flux
 from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
 from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
 from engine.trajectories.sampled_orbits import SampledOrbits, sample_orbits
-from engine.trajectories.section_crossings import find_section_crossings
 from engine.trajectories.separation import Separation, compute_separation
 from engine.trajectories.trajectory import Orbit, integrate_orbit
 
 __all__ = [
     "CASES",
-    "CHAOS_THRESHOLD",
     "POTENTIALS",
     "BasinEntropy",
     "BirkhoffDigits",
     "Centre",
     "Coordinate",
     "DecayLaws",
+    "DescriptorMap",
     "Direction",
     "DivergentStart",
     "EscapeFlux",
@@ -86,7 +82,8 @@ __all__ = [
     "Evidence",
     "Execution",
     "Fate",
-    "IndicatorVerdict",
+    "FormulaError",
+    "LawFit",
     "LyapunovOrbit",
     "MapSpec",
     "Orbit",
@@ -106,20 +103,18 @@ __all__ = [
     "Slice",
     "StableManifolds",
     "Sweep",
-    "SweepPlan",
     "SweepSpec",
     "System",
+    "TimeDirection",
     "Trust",
     "TrustMap",
     "UncertaintyExponent",
-    "Verdict",
     "WadaTest",
     "Window",
-    "channel_family",
     "classify_orbits",
     "compute_basin_entropy",
-    "compute_birkhoff_digits",
     "compute_flux",
+    "compute_lagrangian_descriptor",
     "compute_map",
     "compute_origin_fates",
     "compute_regularity",
@@ -129,12 +124,8 @@ __all__ = [
     "compute_trust",
     "compute_uncertainty_exponent",
     "compute_wada_test",
-    "default_window",
-    "evaluate_indicators",
     "find_divergent_start",
     "find_lyapunov_orbits",
-    "find_multipliers",
-    "find_section_crossings",
     "find_stable_manifolds",
     "fit_decay_laws",
     "integrate_orbit",
@@ -147,7 +138,6 @@ __all__ = [
     "sample_orbits",
     "sample_starts",
     "start_states",
-    "trace_zero_velocity_curve",
     "write_formula",
 ]
 

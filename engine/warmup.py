@@ -21,7 +21,8 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.integrator.bound_kernels import is_generated
 from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
 from engine.integrator.source.recurrence import code_digest
-from engine.maps.compute import run_map
+from engine.maps.compute import compute_map
+from engine.maps.descriptors import compute_lagrangian_descriptor
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
@@ -183,7 +184,10 @@ def prepare_kernels(potential: Potential) -> None:
     """
     prepare_for_maps(potential)
     prepare_for_evidence(potential)
-    _make_in_turn(lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time))
+    _make_in_turn(
+        lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time),
+        lambda: compute_lagrangian_descriptor(_compute_small_map(potential, _open_energy(potential)), execution=_EXECUTION),
+    )
     if potential.channels and not potential.gaps:
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
         _make_in_turn(
@@ -206,7 +210,8 @@ def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> N
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
-    return run_map(MapSpec(potential, SECTION.plane, energy, (2, 2), t_max=_T_MAX * potential.units.time), _EXECUTION)
+    spec = MapSpec(potential, SECTION.plane, energy, (2, 2), t_max=_T_MAX * potential.units.time)
+    return compute_map(spec, execution=_EXECUTION)
 
 
 def _open_energy(potential: Potential) -> float:

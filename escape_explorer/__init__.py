@@ -1,27 +1,34 @@
-"""Escapes in open Hamiltonian systems: the public names of `engine`, and `Explorer`, the page in a notebook.
+"""Escapes in open Hamiltonian systems with two degrees of freedom.
 
-In the repository this package has three files only, two of them entry points; the wheel contains the other packages of the
-repository below it.
+The public names of the library are here: `compute_map`, `integrate_orbit`, `CASES`, ... and, where the page is installed (extra
+`page`), `Explorer`, the page in a notebook. `dir(escape_explorer)` lists them. The modules `escape_explorer.engine`, `plots`,
+`app` and `cli` may change with any version.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from app.session.notebook import Explorer as Explorer
     from engine import *  # noqa: F403
 
+    __version__: str
+
 
 def __getattr__(name: str) -> Any:
     """Names are imported at their first use, so that the command line starts without the compiler."""
+    if name == "__version__":
+        return import_module("importlib.metadata").version("escape-explorer")
     if name == "Explorer":
         import_module("engine.foundations.extras").require_package("panel", "page")
         return import_module("app.session.notebook").Explorer
     engine = import_module("engine")
     if name == "__all__":
-        return engine.__all__
+        # With `import *` all of these are imported.
+        return [*engine.__all__, *(["Explorer"] if find_spec("panel") else [])]
     if name in engine.FORMER_NAMES:
         return engine.find_former_name(name, stacklevel=3)
     if name not in engine.__all__:
@@ -30,4 +37,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__getattr__("__all__"), "Explorer"])
+    return sorted({*import_module("engine").__all__, "Explorer", "__version__"})

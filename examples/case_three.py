@@ -155,13 +155,13 @@ plt.close(figure)
 # %% [markdown]
 # ## Save and load
 #
-# `to_xarray` returns a dataset with named axes and the provenance of the map: potential, window, integrator and version. Reading
-# the file needs xarray only; `open_result` makes the map of it again.
+# `save` writes a NetCDF file with named axes and the provenance of the map: potential, window, integrator and version. xarray
+# reads it; `open_result` makes the map of it again.
 
 # %%
-escape_map.to_xarray().to_netcdf("case-three.nc", engine="h5netcdf")
+escape_map.save("case-three.nc")
 
-with xr.open_dataset("case-three.nc", engine="h5netcdf") as loaded:
+with xr.open_dataset("case-three.nc") as loaded:
     dataset = loaded.load()
 print(f"loaded: h = {dataset.attrs['energy']}, {dict(dataset.sizes)}, {dataset.attrs['integrator']}")
 
@@ -185,6 +185,6 @@ plt.close(figure)
 #
 # - `find_divergent_start`: the nearest start with another fate; `compute_separation`: the distance of two orbits against time.
 # - `find_stable_manifolds`: the curves that bound the basins; `compute_wada_test`: whether the boundaries are Wada.
-# - `fit_decay_laws`: exponential or algebraic decay; `evaluate_indicators`: several chaos indicators of one orbit.
+# - `fit_decay_laws`: exponential or algebraic decay; `judge_orbit`: several chaos indicators of one orbit.
 # - `open_result`: results from files.
 # - `compute_sweep` with a store: maps at hundreds of energies, resumable (`docs/long-runs.md`).

@@ -19,12 +19,12 @@ from engine import (
     SweepSpec,
     UncertaintyExponent,
     Window,
+    compute_map,
     compute_regularity,
     compute_sweep,
     compute_uncertainty_exponent,
 )
 from engine.foundations.execution import DEFAULT_EXECUTION
-from engine.maps.compute import run_map
 from engine.sweeps.measures import compute_point
 from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
@@ -121,7 +121,7 @@ class MapCache:
         return self._once(spec, lambda: self._compute(spec))
 
     def _compute(self, spec: MapSpec) -> EscapeMap:
-        computed = run_map(spec, self.execution)
+        computed = compute_map(spec, execution=self.execution)
         if not computed.complete:
             raise CancelledError
         self._on_map(computed)

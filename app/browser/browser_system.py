@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from engine import Execution, Plane, Potential, Slice, default_window
+from engine import Execution, Plane, Potential, Slice
 from engine.propagation.portable_system import PortableSystem, make_portable_system
+from engine.slices.default_window import default_window
 
 # Energies at which default windows are tabulated: below the escape energy, where they change slowly, and above it.
 _ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13

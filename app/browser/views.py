@@ -7,6 +7,7 @@ from typing import Any
 from app.browser.browser_system import system_key
 from app.state.view_state import ViewState
 from engine.slices.slice_text import write_slice
+from plots.layers.map_images import LAYER_COLUMNS
 from plots.pictures.image_columns import pixel_coding
 
 
@@ -23,5 +24,5 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "resolution": state.resolution,
         "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],
         "labels": [end.label.replace("channel", "exit", 1) for end in outcomes],
-        "coding": pixel_coding(outcomes),
+        "coding": {**pixel_coding(outcomes), "layers": list(LAYER_COLUMNS)},
     }

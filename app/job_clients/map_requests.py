@@ -18,6 +18,7 @@ from engine.jobs.job import Job, Queue
 from engine.jobs.map_jobs import map_job, members_job
 from engine.jobs.subscription import Subscription
 from engine.warmup import is_ready_for_maps, prepare_for_maps
+from plots.layers.map_images import layer_columns
 from plots.pictures.image_columns import draw_over, map_columns
 
 
@@ -130,7 +131,7 @@ class MapRequests:
             return
         if self._delivered == generation and not frame.complete and self._is_overloaded():
             return
-        columns = map_columns(frame, characters=self._state.judge)
+        columns = map_columns(frame) | layer_columns(frame, self._state.layers)
         if self._painted is not None and _has_same_starts(self._painted[0], frame.spec):
             columns = draw_over(columns, self._painted[1], frame.spec.resolution)
         self._painted = frame.spec, columns

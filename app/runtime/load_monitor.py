@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 TICK_SECONDS = 0.02
 """Interval between two calls of `LoadMonitor.tick`."""
@@ -18,16 +19,23 @@ LONGEST_SECONDS = 2.0
 
 
 class LoadMonitor:
-    """Delay of a periodic callback on the event loop."""
+    """Delay of a periodic callback on the event loop.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    clock
+        Time in seconds.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
         self._due: float | None = None
         self._high_since: float | None = None
         self.delay = 0.0
 
     def tick(self) -> float:
         """Measure and return the delay in seconds; call every `TICK_SECONDS` on the event loop."""
-        now = time.monotonic()
+        now = self._clock()
         late = max(0.0, now - self._due) if self._due is not None else 0.0
         self.delay = max(late, _DECAY * self.delay)
         self._due = now + TICK_SECONDS
@@ -39,7 +47,7 @@ class LoadMonitor:
 
     def overdue_seconds(self) -> float:
         """Time since the next tick was due, negative before; for other threads."""
-        return time.monotonic() - self._due if self._due is not None else 0.0
+        return self._clock() - self._due if self._due is not None else 0.0
 
     def is_high(self) -> bool:
         """Whether work other than first frames should be postponed."""

@@ -8,6 +8,7 @@ import threading
 import time
 import traceback
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 
@@ -54,13 +55,15 @@ class LoopWatch:
         Measures the delay of the ticks.
     delays
         Counts the delays by cause, in seconds.
+    processor_time
+        Of the thread that calls it, in seconds.
     """
 
-    def __init__(self, load: LoadMonitor, delays: Histogram) -> None:
-        self._load, self._delays = load, delays
+    def __init__(self, load: LoadMonitor, delays: Histogram, processor_time: Callable[[], float] = time.thread_time) -> None:
+        self._load, self._delays, self._processor_time = load, delays, processor_time
         self._thread = threading.get_ident()
         self._samples: list[str] = []
-        self._busy = time.thread_time()
+        self._busy = self._processor_time()
         self._collecting, self._collected = 0.0, 0.0
 
     def on_collection(self, phase: str, info: dict[str, int]) -> None:
@@ -68,14 +71,14 @@ class LoopWatch:
         if threading.get_ident() != self._thread:
             return
         if phase == "start":
-            self._collecting = time.thread_time()
+            self._collecting = self._processor_time()
         else:
-            self._collected += time.thread_time() - self._collecting
+            self._collected += self._processor_time() - self._collecting
 
     def tick(self) -> None:
         """Measure the delay and report a long one; call every `TICK_SECONDS` on the event loop."""
         late = self._load.tick()
-        busy, self._busy = time.thread_time() - self._busy, time.thread_time()
+        busy, self._busy = self._processor_time() - self._busy, self._processor_time()
         collected, self._collected = self._collected, 0.0
         samples, self._samples = self._samples, []
         if late > _REPORTED:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 
 WINDOW_SECONDS = 20
 """Delays of this time count."""
@@ -25,17 +26,19 @@ class OverloadMonitor:
     ----------
     longest_delay
         Delay in seconds above which a second counts.
+    clock
+        Time in seconds.
     """
 
-    def __init__(self, longest_delay: float) -> None:
-        self._longest_delay = longest_delay
+    def __init__(self, longest_delay: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._longest_delay, self._clock = longest_delay, clock
         # The largest delay of each of the last seconds.
         self._delays: dict[int, float] = {}
         self._is_overloaded = False
 
     def add(self, delay: float) -> None:
         """Count a delay that ends now, in seconds; it belongs to all seconds since it began."""
-        now = time.monotonic()
+        now = self._clock()
         earliest = now - WINDOW_SECONDS
         for second in range(math.floor(max(now - delay, earliest)), math.floor(now) + 1):
             self._delays[second] = max(delay, self._delays.get(second, 0.0))

@@ -108,8 +108,17 @@ def process_state() -> ProcessState:
     ValueError
         An environment variable is invalid; one sentence with its name, value and legal values.
     """
-    global _started
     with _lock:
-        if _started is None:
-            _started = ProcessState(read_settings(os.environ))
-        return _started
+        return _started or _start(read_settings(os.environ))
+
+
+def start_process_state(settings: Settings) -> ProcessState:
+    """Start a new state of this process, in place of an earlier one; sessions that are open keep theirs."""
+    with _lock:
+        return _start(settings)
+
+
+def _start(settings: Settings) -> ProcessState:
+    global _started
+    _started = ProcessState(settings)
+    return _started

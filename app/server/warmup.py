@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from app.runtime.process_state import ProcessState
+from app.views.analysis import statistics
+from app.views.orbits import orbit_plots
 from engine import CASES, Potential
 from engine.integrator.portable_kernels import kernel_module
 from engine.warmup import prepare_for_evidence, prepare_for_maps, prepare_kernels, reserve_catalogue
@@ -36,6 +38,8 @@ STEPS: Mapping[str, Callable[[], object]] = {
     **_prepare_cases("maps"),
     "the kernels of browsers": kernel_module,
     **_prepare_cases("evidence", "orbits and analyses"),
+    "the panes of an orbit": orbit_plots.prepare,
+    "the charts of statistics": statistics.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
 """Functions that compile kernels or load them from the disk cache, by what they prepare, in the order of need."""

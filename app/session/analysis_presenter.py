@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from functools import partial
 from html import escape
 from typing import Any
 
@@ -14,7 +14,7 @@ from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.glossary import with_terms
-from app.state.view import IMAGES, Analysis
+from app.state.view import Analysis
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
@@ -22,42 +22,31 @@ from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from engine import (
     EscapeMap,
     MapSpec,
-    OriginFateMap,
     ParameterAxis,
-    RegularityMap,
-    StableManifolds,
     Sweep,
     SweepSpec,
-    TrustMap,
     UncertaintyExponent,
     Window,
     compute_uncertainty_exponent,
-    find_stable_manifolds,
 )
 from engine.jobs.job import Job
 from engine.jobs.map_jobs import (
     basin_measures_job,
     decay_laws_job,
     flux_job,
-    origin_fate_job,
-    regularity_job,
     sweep_job,
-    trust_job,
 )
 from engine.slices.section import SECTION
 from engine.slices.slice_text import default_range
 from engine.sweeps.measures import CURVES
 from engine.warmup import is_ready_for_maps
-from plots.pictures.manifold_strokes import select_image
-from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
-from plots.pictures.map_images import ON_DEMAND
+from plots.layers.layer import Layer
+from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.table import LAYERS
 from plots.pictures.palette import Palette
 
 # Columns and rows of the maps of a sweep.
 _SIDES = (112, 112)
-# Column of `map_columns` and attribute of `MapAnalyses` that each layer controls.
-_COLUMN_OF = {"judge": "character", "origins": "passage"}
-_RESULT_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
 
 
 class AnalysisPresenter:
@@ -76,8 +65,8 @@ class AnalysisPresenter:
         self._spec: MapSpec | None = None
         self._swept: SweepSpec | None = None
         self._analyses = NO_ANALYSES
-        # All images that are computed.
-        self._manifolds: StableManifolds | None = None
+        # Results of the layers that are on, with their maps and jobs, before a part of them is selected.
+        self._found: dict[str, tuple[EscapeMap, Any, Job[Any]]] = {}
         self._notes: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(locked(self._measure), context.copy, locked(lambda: state.param.update(box=None)))
@@ -90,10 +79,7 @@ class AnalysisPresenter:
     def follow_ups(self) -> list[FollowUp]:
         """Analyses of each complete map."""
         return [
-            self._layer("judge", lambda frame: regularity_job(frame.spec), self._show_regularity),
-            self._layer("trust", lambda frame: trust_job(frame.spec), self._show_trust),
-            self._layer("origins", lambda frame: origin_fate_job(frame.spec), self._show_origins),
-            self._layer("manifolds", _manifolds_job, self._show_manifolds),
+            *map(self._layer, LAYERS.values()),
             self._measure_of_basins(basin_measures_job, self.measures.show_basins),
             self._measure_of_basins(decay_laws_job, self.measures.show_laws),
             self._measure_of_basins(lambda spec, box: flux_job(spec), self.measures.show_flux),
@@ -104,14 +90,14 @@ class AnalysisPresenter:
         if spec == self._spec:
             return
         self._spec = spec
-        self._manifolds = None
+        self._found = {}
         self._exponent.cancel()
         self._maps.overlays.begin(spec)
         self.measures.begin()
         if self._analyses != NO_ANALYSES:
-            self._update(**dict.fromkeys(_RESULT_OF.values()))
-        self.note(**dict.fromkeys(_RESULT_OF, ""))
-        self._explain_manifolds()
+            self._update(NO_ANALYSES)
+        self.note(**dict.fromkeys(LAYERS, ""))
+        self._explain_refusals()
 
     def set_palette(self, palette: Palette) -> None:
         """Change the colours."""
@@ -125,20 +111,22 @@ class AnalysisPresenter:
 
     def _connect(self) -> None:
         watch, state = self._state.param.watch, self._state
-        watch(lambda *events: self._show_pictures(), [*ON_DEMAND.values(), "compared"])
-        watch(self._remove_switched_off, list(_RESULT_OF))
-        watch(lambda event: self._draw_manifolds(), "images")
-        watch(lambda *events: self._explain_manifolds(), ["manifolds", "plane"])
+        watch(lambda *events: self._show_pictures(), ["layers", "compared"])
+        watch(self._switch_layers, "layers")
+        watch(lambda event: self._select(), "settings")
         self._state.follow(self.curves.follow_energy, "energy")
         watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
         watch(lambda *events: self._follow_system(), "system")
         self._show_pictures()
         self.curves.follow_system(state.system)
 
-    def _layer(
-        self, name: str, request: Callable[[EscapeMap], Job[Any] | None], show: Callable[[EscapeMap, Any], None]
-    ) -> FollowUp:
-        return FollowUp(lambda frame: request(frame) if getattr(self._state, name) else None, show, (name,))
+    def _layer(self, layer: Layer) -> FollowUp:
+        """The analysis of a layer, requested while it is on."""
+        return FollowUp(partial(self._layer_job, layer), partial(self._show_result, layer), ("layers", "settings"))
+
+    def _layer_job(self, layer: Layer, frame: EscapeMap) -> Job[Any] | None:
+        is_shown = layer.name in self._state.layers and not layer.refusal(frame.spec)
+        return layer.job(frame.spec, self._state.settings) if is_shown else None
 
     def _measure_of_basins(
         self, job: Callable[[MapSpec, Window | None], Job[Any] | None], show: Callable[[Any], None]
@@ -154,36 +142,32 @@ class AnalysisPresenter:
 
     def _show_pictures(self) -> None:
         state = self._state
-        layers = [picture for picture, toggle in ON_DEMAND.items() if getattr(state, toggle)]
-        self._maps.show_pictures([*(PICTURES_ALONE if state.compared is None else PICTURES_COMPARED), *layers])
+        pictures = [layer.picture.name for layer in self._layers_on() if layer.picture is not None]
+        self._maps.show_pictures([*(PICTURES_ALONE if state.compared is None else PICTURES_COMPARED), *pictures])
 
-    def _remove_switched_off(self, *events: Any) -> None:
-        for event in events:
-            if not event.new:
-                self._remove(event.name)
+    def _layers_on(self) -> list[Layer]:
+        return [layer for name, layer in LAYERS.items() if name in self._state.layers]
+
+    def _switch_layers(self, event: Any) -> None:
+        for name in event.old - event.new:
+            self._remove(name)
+        self._explain_refusals()
 
     def _remove(self, name: str) -> None:
-        """Remove the results of an analysis."""
-        if name in _COLUMN_OF:
-            self._maps.remove_layer(_COLUMN_OF[name])
-        if name == "trust":
-            self._maps.overlays.show_trust(None)
-        if name == "manifolds":
-            self._manifolds = None
-            self._maps.overlays.show_manifolds(None)
-        self._update(**{_RESULT_OF[name]: None})
+        """Remove the result of a layer."""
+        self._found.pop(name, None)
+        self._maps.remove_layer(name)
+        self._update(self._analyses.with_result(name, None))
         self.note(**{name: ""})
 
-    # Results of follow-up analyses.
+    def _update(self, analyses: MapAnalyses) -> None:
+        self._analyses = analyses
+        self._on_analyses(analyses)
 
-    def _update(self, **results: Any) -> None:
-        self._analyses = replace(self._analyses, **results)
-        self._maps.describe()
-        self._on_analyses(self._analyses)
-
-    def _explain_manifolds(self) -> None:
-        if self._state.manifolds and self._state.plane != SECTION.plane:
-            self.note(manifolds=f"Stable manifolds are curves in the {SECTION.plane.title} plane and are drawn there only.")
+    def _explain_refusals(self) -> None:
+        if self._spec is not None:
+            spec = self._spec
+            self.note(**{layer.name: sentence for layer in self._layers_on() if (sentence := layer.refusal(spec))})
 
     def note(self, **sentences: str) -> None:
         """Show a sentence for each of some layers; an empty one removes it."""
@@ -191,35 +175,26 @@ class AnalysisPresenter:
         body = " ".join(escape(sentence) for sentence in self._notes.values() if sentence)
         self.notes.object = with_terms(body)
 
-    def _show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
-        self._maps.show_regularity(frame, regularity)
-        if regularity.complete:
-            self._update(regularity=regularity)
+    def _show_result(self, layer: Layer, frame: EscapeMap, result: Any) -> None:
+        self._found[layer.name] = frame, result, layer.job(frame.spec, self._state.settings)
+        self._show_selected(layer)
 
-    def _show_trust(self, frame: EscapeMap, trust: TrustMap) -> None:
-        self._maps.overlays.show_trust(trust)
-        self.note(trust=trust.describe())
-        if trust.complete:
-            self._update(trust=trust)
+    def _select(self) -> None:
+        """Select parts of the results by the settings, and remove those that are no results of these."""
+        for name, (frame, _, job) in list(self._found.items()):
+            if LAYERS[name].job(frame.spec, self._state.settings) == job:
+                self._show_selected(LAYERS[name])
+            else:
+                self._remove(name)
 
-    def _show_origins(self, frame: EscapeMap, origins: OriginFateMap) -> None:
-        self._maps.show_origins(origins)
-        self.note(origins=origins.describe())
-        self._update(origins=origins)
-
-    def _show_manifolds(self, frame: EscapeMap, manifolds: StableManifolds) -> None:
-        self._manifolds = manifolds
-        self._draw_manifolds()
-
-    def _draw_manifolds(self) -> None:
-        """Draw the image of the manifolds that is chosen, or all."""
-        if self._manifolds is None:
-            return
-        image = self._state.images
-        chosen = select_image(self._manifolds, image)
-        self._maps.overlays.show_manifolds(chosen)
-        self.note(manifolds=_describe_manifolds(chosen, image))
-        self._update(manifolds=chosen)
+    def _show_selected(self, layer: Layer) -> None:
+        """Show the part of the result of a layer that the settings select."""
+        frame, result, _ = self._found[layer.name]
+        selected = layer.select(result, self._state.settings)
+        self._maps.show_layer(layer.name, frame, selected)
+        self.note(**{layer.name: selected.describe()})
+        if getattr(result, "complete", True):
+            self._update(self._analyses.with_result(layer.name, selected))
 
     # Measurements started by buttons.
 
@@ -281,20 +256,3 @@ class AnalysisPresenter:
         else:
             system = spec.along.system.with_parameter(spec.along.key, value)
             self._open_view(system, {"energy": spec.energy, "plane": spec.plane, "window": None, "starts": (), "chosen": 0})
-
-
-def _manifolds_job(frame: EscapeMap) -> Job[StableManifolds] | None:
-    """The job of the stable manifolds in the plane of a map; None if it is not the section."""
-    spec = frame.spec
-    if spec.common_energy is None or spec.plane != SECTION.plane:
-        return None
-    options = ("images", IMAGES), ("window", spec.given_window)
-    return Job(find_stable_manifolds, (spec.potential, spec.common_energy), options)
-
-
-def _describe_manifolds(manifolds: StableManifolds, image: int) -> str:
-    points = sum(arc.x.size for arc in manifolds.arcs)
-    truncated = " Some spirals are truncated." if manifolds.truncated else ""
-    arcs = f"{len(manifolds.arcs)} arcs, {points} points"
-    drawn = f"image {image}" if image else f"images 1 to {manifolds.images}"
-    return f"Stable manifolds of the Lyapunov orbits, {drawn}: {arcs}.{truncated}"

@@ -102,7 +102,7 @@ class Explorer:
         self.progress = ProgressView(
             self._locked(self.map_requests.stop_map),
             self._locked(self.map_requests.request_map),
-            self._locked(lambda: self.state.param.update(trust=True)),
+            self._locked(lambda name: self.state.switch_layer(name, on=True)),
         )
         self._requested_at: float | None = None
         self._connect()

@@ -21,8 +21,8 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
-from engine import IndicatorVerdict
 from engine.slices.section import SECTION
+from engine.trajectories.chaos_indicators import IndicatorVerdict
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 from plots.pictures.palette import Palette
 

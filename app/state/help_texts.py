@@ -6,54 +6,17 @@ from collections.abc import Mapping
 from html import escape
 from types import MappingProxyType
 
+from plots.layers.table import PICTURES
+
 HELP_TEXTS: Mapping[str, str] = MappingProxyType(
     {
+        **{picture.name: picture.help for picture in PICTURES.values() if picture.help},
         "well": (
             "The zero-velocity curve V = h bounds the places that an orbit of this energy can reach; above the escape energy "
             "it has a gap at each saddle of the potential. An unstable periodic orbit, the Lyapunov orbit, spans each gap: an "
             "orbit that crosses it outward never returns, so it marks the exit; in a rotating frame some do, and orbits also "
             "end at bodies and at an escape radius. The orbit under the cursor and the chosen orbits are drawn up to their "
             "ends, very long ones as density images. A regular orbit fills a regular pattern, a chaotic one does not."
-        ),
-        "basins": (
-            "Each pixel is a start, and its colour shows the exit channel through which its orbit escapes, the body with which "
-            "it collides, or that it escapes beyond a radius. Inside a large "
-            "region of one colour all neighbours escape through the same exit. Elsewhere the colours are mixed on every "
-            "scale: however close two starts are, they may escape through different exits. Bounded orbits have not escaped by "
-            "t_max; many of them never will; dots are passages of the chosen orbits through the plane."
-        ),
-        "times": (
-            "The escape time is the time at which an orbit crosses a Lyapunov orbit outward. It is short and smooth inside "
-            "the basins and diverges at their fractal boundaries. It is long near islands of bounded orbits, too, because "
-            "orbits stick to the edge of an island before they escape. The colour scale is logarithmic; the colours at its ends "
-            "stand for all shorter and all longer times."
-        ),
-        "crossings": (
-            "The number of times an orbit passes the axis y = 0 upward before it escapes; the start does not count. No "
-            "crossing at all is a direct escape. There is about one crossing per period of the well, so the bands follow the "
-            "escape time, and they become thinner towards a basin boundary."
-        ),
-        "characters": (
-            "A bounded orbit is regular if averages over it agree as on a torus, and chaotic if SALI falls by t_max; "
-            "otherwise it shows no sign of chaos until t_max. Regular orbits form islands, which no orbit enters or leaves. A "
-            "chaotic orbit that has not escaped is usually sticky: it stays near the edge of an island and may escape long "
-            "after t_max. Escaping orbits are not classified."
-        ),
-        "origins": (
-            "Each orbit is integrated in both directions of time. The hue shows the exit through which it escapes, as in the "
-            "basins; the tone shows the exit through which it came in. The exit changes across the stable manifolds of the "
-            "Lyapunov orbits, the origin across the unstable ones. Where both kinds of curves accumulate lies the chaotic "
-            "saddle, the set of orbits that stay for ever."
-        ),
-        "compared": (
-            "The basins of the view with which this one is compared: another energy, system or plane, with the same window, "
-            "resolution and t_max. Zoom and cursor are those of all pictures; a click marks the same place in both, and its "
-            "orbit is that of the view in the controls."
-        ),
-        "differences": (
-            "Starts whose orbits have different outcomes in the two views: another exit, or inside in one of them only. Exits "
-            "are compared by their numbers. Close to a basin boundary any change moves starts across it, so small changes of "
-            "the energy show where the boundaries are."
         ),
         "sali": (
             "SALI, the smaller alignment index, follows two small deviations from the orbit. Chaos aligns them, and SALI "

@@ -6,16 +6,25 @@ from collections.abc import Mapping
 from typing import Any
 from urllib.parse import urlencode
 
-from app.state.link_formats import TIMES, Format, LinkParameter, listed, name_format, number_format
+from app.state.link_formats import (
+    SWITCH,
+    TIMES,
+    Format,
+    LinkParameter,
+    choice_format,
+    listed,
+    name_format,
+    number_format,
+)
 from app.state.link_system import SYSTEM_FORMATS, system_of, write_system
-from app.state.view import FIRST_VIEW, PICTURES, VIEW_PARAMETERS, View
+from app.state.view import FIRST_VIEW, PICTURES, VIEW_PARAMETERS, View, default_settings
 from app.state.view_state import ViewState, longest_first_t_max
 from engine import Plane
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.slices.slice_text import read_slice, write_slice
 from engine.systems.formulas.formula_parser import LONGEST_TEXT
 from engine.systems.review.potential_review import SystemReview
-from plots.pictures.map_images import ON_DEMAND
+from plots.layers.table import LAYER_OF, LAYERS, SETTINGS
 from plots.pictures.palette import PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT
@@ -39,18 +48,22 @@ _LINKED: dict[str, LinkParameter] = {
     "lock_times": LinkParameter("lock_times", TIMES),
 }
 
+_SETTING_FORMATS = {name: choice_format(setting.choices) for name, setting in SETTINGS.items()}
+
 # Of what is read from one parameter.
 _FORMATS: dict[str, Format] = {
     **SYSTEM_FORMATS,
     _ENERGY: number_format(-LARGEST_NUMBER, LARGEST_NUMBER, "a number, such as 0.25"),
     **{parameter.name: parameter.form for parameter in _LINKED.values()},
+    **dict.fromkeys(LAYERS, SWITCH),
+    **_SETTING_FORMATS,
     EMBED: _LINKED["focus"].form,
 }
 
 PARAMETERS = (*_FORMATS, _PLANE, _FIX, *(f"{_COMPARED}{name}" for name in _VIEW_NAMES))
 """Names of the parameters of a link."""
 
-LINKED = ("system", "plane", "energy", *_LINKED, "compared")
+LINKED = ("system", "plane", "energy", *_LINKED, "layers", "settings", "compared")
 """Attributes of the view state that a link contains."""
 
 
@@ -69,6 +82,7 @@ def write_link(state: ViewState, *, embedded: bool = False) -> str:
         value = getattr(state, attribute)
         if parameter.always or value != ViewState.param[attribute].default:
             written[parameter.name] = parameter.form.write(value)
+    written |= _write_layers(state)
     if embedded:
         written[EMBED] = written.pop("focus", _FIRST_EMBEDDED)
     if state.compared is not None:
@@ -95,9 +109,10 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
     """
     found, problems = _read_each(parameters, prefix)
     values = {attribute: found[parameter.name] for attribute, parameter in _LINKED.items() if parameter.name in found}
+    values |= _read_layers(found)
     if EMBED in found:
         picture = values["focus"] = found[EMBED]
-        values |= {ON_DEMAND[picture]: True} if picture in ON_DEMAND else {}
+        values |= {"layers": values.get("layers", frozenset()) | {LAYER_OF[picture].name}} if picture in LAYER_OF else {}
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
     for part, more in (_read_view(parameters, found, prefix), _read_compared(parameters)):
@@ -153,6 +168,23 @@ def _write_view(view: View) -> dict[str, str]:
     axes, held = write_slice(view.plane)
     energy = {} if view.energy is None else {_ENERGY: _FORMATS[_ENERGY].write(view.energy)}
     return {**write_system(view.system), _PLANE: axes, **({_FIX: held} if held else {}), **energy}
+
+
+def _write_layers(state: ViewState) -> dict[str, str]:
+    """The layers that are on, and the settings that have not their defaults."""
+    layers = {name: SWITCH.write(True) for name in LAYERS if name in state.layers}
+    changed = {name: value for name, value in state.settings.items() if value != SETTINGS[name].default}
+    return layers | {name: _SETTING_FORMATS[name].write(value) for name, value in changed.items()}
+
+
+def _read_layers(found: Mapping[str, Any]) -> dict[str, Any]:
+    """The layers and settings that a link names; none if it names none."""
+    values: dict[str, Any] = {}
+    if any(name in found for name in LAYERS):
+        values["layers"] = frozenset(name for name in LAYERS if found.get(name))
+    if any(name in found for name in SETTINGS):
+        values["settings"] = default_settings() | {name: found[name] for name in SETTINGS if name in found}
+    return values
 
 
 def _read_each(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, Any], list[str]]:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.state.view import Analysis, View
+from app.state.view import Analysis, View, default_settings
 from app.state.watched_starts import StartsFrom, WatchedStarts
-from engine import Coordinate, ParameterAxis, Plane, Slice, System, Window
+from engine import Coordinate, ParameterAxis, Plane, Slice, System, TimeDirection, Window
 
 GROUPS = ("The paper", "Places", "Explanations", "Other slices", "Other systems")
 """Kinds of figures in the paper, details found by zooming, analyses that explain both; slices and systems not in the paper."""
@@ -27,7 +27,7 @@ class Preset:
     group
         One of `GROUPS`.
     picture
-        Picture of its thumbnail, one of `plots.pictures.map_images.TITLES`.
+        Picture of its thumbnail, one of `plots.layers.table.TITLES`.
     view
         The view.
     invitation
@@ -108,7 +108,8 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="regular-or-chaotic", title="Regular or chaotic", group=_PAPER, picture="characters",
-        view=View(System("III"), Plane.X_PX, 0.26, resolution=112, judge=True, starts=((0.4, 0.2), (0.58, 0.0), (0.05, 0.58))),
+        view=View(System("III"), Plane.X_PX, 0.26, resolution=112, layers=frozenset({"judge"}),
+                  starts=((0.4, 0.2), (0.58, 0.0), (0.05, 0.58))),
         caption="Cyan orbits move on invariant tori, as averages over them show; magenta ones are chaotic, in thin layers "
         "between the tori, where SALI decreases to rounding error. A few pale ones show neither until t_max. The analysis takes "
         "a minute, and the picture is updated meanwhile.",
@@ -197,7 +198,7 @@ PRESETS: tuple[Preset, ...] = (
     Preset(
         key="owl", title="Closed exits", group=_PLACES, picture="characters",
         invitation="Islands in a chaotic sea",
-        view=View(System("I"), Plane.X_PX, 0.12, resolution=112, judge=True,
+        view=View(System("I"), Plane.X_PX, 0.12, resolution=112, layers=frozenset({"judge"}),
                   starts=((0.12, 0.155), (-0.1, 0.24), (0.0, 0.28), (0.2, 0.0))),
         caption="Below the escape energy of 1/8 no orbit escapes, but there is chaos (magenta) before the exits open. The cyan "
         "islands in it form chains: the first orbit visits three islands in turn, the second alternates between two. "
@@ -234,21 +235,29 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="threads", title="Stable manifolds", group=_EXPLANATIONS, picture="curves",
-        view=View(System("III"), Plane.X_PX, 0.45, t_max=1e4, manifolds=True, starts=((0.1, 0.6), (0.55, 0.12))),
+        view=View(System("III"), Plane.X_PX, 0.45, t_max=1e4, layers=frozenset({"manifolds"}), starts=((0.1, 0.6), (0.55, 0.12))),
         caption="Orbits that approach a Lyapunov orbit for ever form a tube, its stable manifold. The surface of section cuts "
         "the tubes in these curves, and each curve separates starts that escape from starts that turn back. The basins "
         "have no other boundaries.",
     ),
     Preset(
         key="passages", title="Origin and exit", group=_EXPLANATIONS, picture="origins",
-        view=View(System("III"), Plane.X_PX, 0.35, t_max=1e4, origins=True, starts=((0.3, 0.45), (-0.3, -0.45))),
+        view=View(System("III"), Plane.X_PX, 0.35, t_max=1e4, layers=frozenset({"origins"}), starts=((0.3, 0.45), (-0.3, -0.45))),
         caption="Each orbit is integrated in both directions of time: the hue shows the exit, the tone the entrance. Large "
         "tiles of one colour are fast passages with one history; between them future and past both depend sensitively "
         "on the start. Grey orbits neither came from an exit nor leave through one.",
     ),
     Preset(
+        key="parting", title="Where orbits part", group=_EXPLANATIONS, picture="descriptors",
+        view=View(System("II"), Plane.X_PX, 0.2, t_max=1e4, layers=frozenset({"descriptor"}),
+                  settings={**default_settings(), "descriptor_direction": TimeDirection.FORWARD, "descriptor_time": 20.0},
+                  starts=((0.2, 0.3), (0.25, 0.1))),
+        caption="The colour is the square root of the speed, integrated along each orbit up to t = 20 or its exit. Where it "
+        "changes abruptly, neighbours part: there run stable manifolds, found without the periodic orbits that they belong to.",
+    ),
+    Preset(
         key="doubt", title="Doubtful pixels", group=_EXPLANATIONS, picture="basins",
-        view=View(System("I"), Plane.X_PX, 0.17, t_max=1e4, trust=True, starts=((0.31, 0.05), (-0.2, 0.2))),
+        view=View(System("I"), Plane.X_PX, 0.17, t_max=1e4, layers=frozenset({"trust"}), starts=((0.31, 0.05), (-0.2, 0.2))),
         caption="Every pixel with a neighbour of another colour was computed again, from a start moved by 10⁻¹¹ and with "
         "another tolerance. The black and white ones changed: the exit of these orbits depends on rounding. The rest of the "
         "picture and its shares are not affected.",

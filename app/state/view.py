@@ -10,7 +10,6 @@ from typing import Any
 from app.runtime.process_state import process_state
 from app.state.link_formats import (
     STARTS,
-    SWITCH,
     WATCHED,
     WINDOW,
     Format,
@@ -23,7 +22,9 @@ from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Plane, Slice, System, Window
 from engine.slices.energies import Energy
 from engine.systems.review.potential_review import SystemReview
-from plots.pictures.map_images import COMPARISON_TITLES, TITLES
+from plots.layers.layer import Settings
+from plots.layers.table import PICTURES as MAPS
+from plots.layers.table import SETTINGS
 from plots.pictures.palette import MOST_ORBITS
 
 Start = tuple[float, float]
@@ -52,12 +53,6 @@ def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> di
 
 
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
-IMAGES = 3
-"""Images of the stable manifolds that are computed: later ones are less than a pixel apart."""
-
-IMAGE_CHOICES = {**{str(image): image for image in range(1, IMAGES + 1)}, "all": 0}
-"""Images of the stable manifolds that can be drawn."""
-
 RESOLUTION_CHOICES = {"112 × 112": 112, "224 × 224": 224, "450 × 450": 450, "900 × 900": 900}
 
 
@@ -71,8 +66,13 @@ def allowed_resolutions() -> dict[str, int]:
     return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
 
 
-PICTURES = ("well", *(name for name in TITLES if name != "curves"), *COMPARISON_TITLES)
+PICTURES = ("well", *(name for name in MAPS if name != "curves"))
 """Names of the pictures: the well, the maps of starts, and the comparison with another view."""
+
+
+def default_settings() -> dict[str, Any]:
+    """The defaults of the settings of all layers."""
+    return {name: setting.default for name, setting in SETTINGS.items()}
 
 
 def _linked(name: str, form: Format, *, of_system: bool = False, always: bool = False) -> dict[str, LinkParameter]:
@@ -102,16 +102,10 @@ class View:
         Columns and rows of the map.
     window, box
         Part of the plane, and part of it for the statistics; None for the whole interior and for all of the window.
-    judge
-        Whether bounded orbits are classified as regular or chaotic.
-    trust
-        Whether pixels that depend on rounding are marked.
-    manifolds
-        Whether the stable manifolds of the Lyapunov orbits are drawn.
-    origins
-        Whether orbits are integrated backward in time, too.
-    images
-        The image of the manifolds that is drawn; 0 for all.
+    layers
+        Names of the layers that are on, of `plots.layers.table.LAYERS`.
+    settings
+        The values of all `plots.layers.table.SETTINGS` by their names.
     analysis
         What is shown beside the maps.
     watched
@@ -129,11 +123,8 @@ class View:
     )
     window: Window | None = field(default=None, metadata=_linked("window", WINDOW, of_system=True))
     box: Window | None = field(default=None, metadata=_linked("box", WINDOW, of_system=True))
-    judge: bool = field(default=False, metadata=_linked("judge", SWITCH))
-    trust: bool = field(default=False, metadata=_linked("trust", SWITCH))
-    manifolds: bool = field(default=False, metadata=_linked("manifolds", SWITCH))
-    origins: bool = field(default=False, metadata=_linked("origins", SWITCH))
-    images: int = field(default=0, metadata=_linked("images", choice_format(IMAGE_CHOICES)))
+    layers: frozenset[str] = frozenset()
+    settings: Settings = field(default_factory=default_settings, hash=False)
     analysis: Analysis = field(default=Analysis.ORBIT, metadata=_linked("analysis", name_format(Analysis)))
     watched: WatchedStarts = field(default=WatchedStarts(), metadata=_linked("watch", WATCHED))
     starts: tuple[Start, ...] = field(default=(), metadata=_linked("orbits", STARTS, of_system=True))
@@ -182,7 +173,4 @@ FIRST_VIEW = View()
 """The view of the page without a link."""
 
 VIEW_PARAMETERS: Mapping[str, LinkParameter] = {each.name: each.metadata[_LINK] for each in fields(View) if each.metadata}
-"""The parameters in links of all fields but system, slice and energy, in the order of links."""
-
-LAYERS = tuple(name for name, parameter in VIEW_PARAMETERS.items() if parameter.form is SWITCH)
-"""Fields that turn follow-up analyses of the map on."""
+"""The fields that have one parameter each in links, in the order of links."""

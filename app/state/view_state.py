@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,6 @@ import param
 from app.state.system_review import review_catalogue_entry
 from app.state.view import (
     FIRST_VIEW,
-    IMAGE_CHOICES,
     PICTURES,
     RESOLUTION_CHOICES,
     T_MAX_CHOICES,
@@ -30,6 +29,7 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
+from plots.layers.table import LAYERS, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 
@@ -58,6 +58,23 @@ def _is_start(value: Any) -> bool:
     return is_pair and all(isinstance(number, int | float) and abs(number) < np.inf for number in value)
 
 
+class _Layers(param.Parameter):
+    """Names of layers."""
+
+    def _validate(self, val: Any) -> None:
+        if not isinstance(val, frozenset) or not val <= LAYERS.keys():
+            raise ValueError(f"layers={reprlib.repr(val)}: must be a frozenset of names among {', '.join(LAYERS)}")
+
+
+class _Settings(param.Parameter):
+    """A value for each setting of the layers."""
+
+    def _validate(self, val: Any) -> None:
+        is_complete = isinstance(val, Mapping) and val.keys() == SETTINGS.keys()
+        if not is_complete or any(val[name] not in setting.choices.values() for name, setting in SETTINGS.items()):
+            raise ValueError(f"settings={reprlib.repr(val)}: must have a legal value for each of {', '.join(SETTINGS)}")
+
+
 def longest_first_t_max(potential: Potential) -> float:
     """The longest t_max with which a system is first shown: a short one where all bounded orbits are integrated to it."""
     allowed = allowed_t_max().values()
@@ -74,11 +91,8 @@ class ViewState(param.Parameterized):
     window = param.ClassSelector(class_=Window, default=FIRST_VIEW.window, allow_None=True)
     t_max = param.Selector(default=FIRST_VIEW.t_max, objects=list(T_MAX_CHOICES.values()))
     resolution = param.Selector(default=FIRST_VIEW.resolution, objects=list(RESOLUTION_CHOICES.values()))
-    judge = param.Boolean(default=FIRST_VIEW.judge)
-    trust = param.Boolean(default=FIRST_VIEW.trust)
-    manifolds = param.Boolean(default=FIRST_VIEW.manifolds)
-    images = param.Selector(default=FIRST_VIEW.images, objects=list(IMAGE_CHOICES.values()))
-    origins = param.Boolean(default=FIRST_VIEW.origins)
+    layers = _Layers(default=FIRST_VIEW.layers)
+    settings = _Settings(default=FIRST_VIEW.settings)
     analysis = param.Selector(default=FIRST_VIEW.analysis, objects=list(Analysis))
     box = param.ClassSelector(class_=Window, default=FIRST_VIEW.box, allow_None=True)
     watched = param.ClassSelector(class_=WatchedStarts, default=FIRST_VIEW.watched)
@@ -168,6 +182,10 @@ class ViewState(param.Parameterized):
         elif len(self.starts) < MOST_ORBITS:
             self.param.update(starts=(*self.starts, start), chosen=len(self.starts))
         return start in self.starts
+
+    def switch_layer(self, name: str, *, on: bool) -> None:
+        """Switch a layer on or off."""
+        self.layers = self.layers | {name} if on else self.layers - {name}
 
     def show(self, reviewed: SystemReview, **values: Any) -> None:
         """Select a reviewed system together with other values."""

@@ -1,6 +1,6 @@
 """Compute a map: exit channel, escape time and crossings of each start, written to STEM.nc and STEM.png.
 
-The NetCDF file contains all results and the request; stable manifolds go to STEM-manifolds.csv.
+The NetCDF file contains all results and the request; layers of curves go to tables, such as STEM-manifolds.csv.
 
 Examples:
 
@@ -29,14 +29,15 @@ import typer
 
 from cli.arguments import Case, file_name_part
 from cli.execution import Place
-from cli.map_analyses import AnalysisOptions, compute_map_with_analyses, describe_analyses
+from cli.layer_options import LayerOptions
+from cli.map_analyses import compute_map_with_layers
 from cli.options import with_options
 from cli.output_files import Content, Stem, add_ending, reserve_output, split_ending, write_files
 from cli.printing import AsJson, Table, print_result
 from engine import EscapeMap, Fate, MapSpec
 from engine.propagation.fates import UNRESOLVED, name_fate
-from plots.pictures.map_analyses import MapAnalyses
-from plots.pictures.map_images import TITLES
+from plots.layers.map_analyses import MapAnalyses
+from plots.layers.table import LAYERS, TITLES
 from plots.pictures.palette import Palette
 from plots.printed.figure_files import map_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
@@ -79,7 +80,7 @@ def run(
     *,
     case: Case,
     spec: MapSpec,
-    analyses: AnalysisOptions,
+    layers: LayerOptions,
     count_outside: bool = False,
     picture: Annotated[list[str] | None, typer.Option(help=PICTURE_HELP)] = None,
     palette: Palette,
@@ -98,7 +99,7 @@ def run(
     formats
         Output format, by default that of --output, or else nc and png; repeat for several.
     """
-    wanted = analyses.with_pictures(picture or ())
+    wanted = layers.with_pictures(picture or ())
     wanted.check(spec)
     pictures = dict.fromkeys(picture or [*FIRST_PICTURES, *wanted.pictures])
     drawing = Drawing(tuple(pictures), palette, style)
@@ -107,7 +108,7 @@ def run(
         stem, endings = split_ending(output, list(Format), DEFAULT_FORMATS)
     with reserve_output(stem):
         with place.run() as context:
-            frame, found = compute_map_with_analyses(spec, wanted, context)
+            frame, found = compute_map_with_layers(spec, wanted, context)
         # After the cluster is closed: with a Dask client, xarray uses distributed locks, which in-memory files do not support.
         with Place().run() as context:
             context.start_stage("writing")
@@ -119,7 +120,7 @@ def run(
 def _contents(
     stem: Path, endings: Sequence[str], frame: EscapeMap, analyses: MapAnalyses, drawing: Drawing
 ) -> dict[Path, Content]:
-    """Return the content of each output file: the map in some formats, and its manifolds, if any, as CSV."""
+    """Return the content of each output file: the map in some formats, and results that are tables as CSV."""
     files: dict[Path, Content] = {}
     for ending in endings:
         if ending == "nc":
@@ -129,15 +130,16 @@ def _contents(
                 frame, drawing.pictures, drawing.palette, FigureFormat(ending), drawing.style, analyses=analyses
             )
             files[add_ending(stem, ending)] = picture
-    if analyses.manifolds is not None:
-        files[stem.with_name(f"{stem.name}-manifolds.csv")] = analyses.manifolds.to_pandas().to_csv(index=False)
+    for name, result in analyses.items():
+        if LAYERS[name].has_table:
+            files[stem.with_name(f"{stem.name}-{name}.csv")] = result.to_pandas().to_csv(index=False)
     return files
 
 
 def _print(frame: EscapeMap, analyses: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
     fractions = frame.fractions(count_outside=count_outside)
     shares = {name_fate(code, frame.spec.outcomes): share for code, share in fractions.items() if code != Fate.NOT_COMPUTED}
-    sentences = describe_analyses(analyses)
+    sentences = analyses.describe()
     rows = [(name, f"{100 * share:.2f} %") for name, share in shares.items() if share or name != UNRESOLVED]
     answer = {"request": frame.provenance(), "shares": shares, "findings": sentences}
     print_result(as_json, answer, Table(("outcome", "share"), rows), *sentences, files=files)

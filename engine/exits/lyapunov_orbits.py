@@ -10,6 +10,7 @@ import functools
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -26,10 +27,11 @@ from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_ret
 from engine.exits.periodic_orbits import find_orbit_in_rotating_frame, monodromy_matrix, multipliers_of
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
-from engine.foundations.validation import checked_number, checks_types, warn_of_method
+from engine.foundations.validation import checked_number, checks_types
 from engine.integrator.kernels import events
 from engine.systems.merged_channels import MergedExit, name_channels
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 # Ends of two orbits closer than this, in units of the well, are the same.
@@ -70,7 +72,7 @@ class LyapunovOrbit(Result):
         (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
         last point are equal.
     curve
-        (columns,) the exit for the kernels; columns as in `engine.integrator.kernels.events`.
+        (columns,) the exit as the integrator takes it.
     velocity
         (2,) px and py at the first point: at rest, unless the frame rotates.
     others
@@ -99,6 +101,13 @@ class LyapunovOrbit(Result):
         (4,) complex. Two of them are 1, and the others are λ and 1/λ: if the modulus of λ is not 1, the orbit is unstable. As
         there is only one eigenvector for the eigenvalue 1, rounding changes this pair by the square root of the error of the
         matrix, 1e-8 to 1e-6.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, find_lyapunov_orbits
+        >>> orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
+        >>> round(float(abs(orbit.find_multipliers()[0])), 2)
+        93.85
         """
         units = self.potential.units
         return read_only(
@@ -109,6 +118,10 @@ class LyapunovOrbit(Result):
     def start(self) -> np.ndarray:
         """(4,) x, y, px and py at the first point."""
         return np.array([self.x[0], self.y[0], *self.velocity])
+
+    def provenance(self) -> dict[str, Any]:
+        """The potential, the energy, the integrator and the version."""
+        return describe_run(self.potential, energy=self.energy)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """The path and its times."""
@@ -198,27 +211,6 @@ def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit
         return find_lyapunov_orbits(potential, energy)
     except UndefinedExitsError:
         return ()
-
-
-@checks_types(potential=Potential, orbit=LyapunovOrbit)
-def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
-    """Deprecated: use `LyapunovOrbit.find_multipliers`; an orbit has its potential.
-
-    Raises
-    ------
-    ValueError
-        If the potential is not that of the orbit.
-
-    Examples
-    --------
-    >>> from escape_explorer import CASES, find_lyapunov_orbits
-    >>> orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
-    >>> round(float(abs(orbit.find_multipliers()[0])), 2)
-    93.85
-    """
-    potential.check_same_motion(orbit.potential, "orbit")
-    warn_of_method("find_multipliers(potential, orbit)", "orbit.find_multipliers()")
-    return orbit.find_multipliers()
 
 
 class _SearchError(Exception):

@@ -74,7 +74,7 @@ def read_cached(path: Path) -> bytes | None:
     return payload
 
 
-def write_cached(path: Path, payload: bytes) -> None:
+def write_cached(path: Path, payload: bytes, *, largest_size: int = LARGEST_SIZE, most_files: int = MOST_FILES) -> None:
     """Write a file, and delete the least recently used ones beyond the limits; log a warning if it cannot be written."""
     folder = path.parent
     try:
@@ -83,7 +83,7 @@ def write_cached(path: Path, payload: bytes) -> None:
         folder.mkdir(mode=stat.S_IRWXU, exist_ok=True)
         if _is_private_folder(folder):
             _write_atomically(path, hashlib.sha256(payload).digest() + payload)
-            _delete_least_recently_used(folder)
+            _delete_least_recently_used(folder, largest_size, most_files)
     except OSError as error:
         _warn_once(f"compiled kernels cannot be stored in {folder} and are compiled at every start: {error.strerror}")
 
@@ -122,7 +122,7 @@ def _mark_used(path: Path) -> None:
         os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
 
 
-def _delete_least_recently_used(folder: Path) -> None:
+def _delete_least_recently_used(folder: Path, largest_size: int, most_files: int) -> None:
     """Delete files until the rest is within the limits; incomplete files of killed processes count as well."""
     files = []
     with os.scandir(folder) as entries:
@@ -134,7 +134,7 @@ def _delete_least_recently_used(folder: Path) -> None:
                     files.append((status.st_atime_ns, status.st_size, entry.path))
     count, size = len(files), sum(size for _, size, _ in files)
     for _, file_size, path in sorted(files):
-        if count <= MOST_FILES and size <= LARGEST_SIZE:
+        if count <= most_files and size <= largest_size:
             break
         Path(path).unlink(missing_ok=True)
         count, size = count - 1, size - file_size

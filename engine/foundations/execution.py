@@ -43,6 +43,11 @@ def default_executor() -> ThreadPoolExecutor:
     return create_thread_pool(count_cores())
 
 
+if hasattr(os, "register_at_fork"):
+    # A child process has none of the threads of its parent, and would wait for them.
+    os.register_at_fork(after_in_child=default_executor.cache_clear)
+
+
 def create_thread_pool(threads: int) -> ThreadPoolExecutor:
     """A thread pool for kernels, of lower priority than the threads of this process that serve requests."""
     return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
@@ -80,7 +85,9 @@ class SerialExecutor(Executor):
 class Execution:
     """How a computation runs: where its parts are computed, how it is cancelled, and who follows it.
 
-    Complete results do not depend on it, to the last bit.
+    Complete results do not depend on it, to the last bit. A cancelled computation raises
+    `concurrent.futures.CancelledError`, except where the result says what is missing: `compute_map`, `compute_trust` and
+    `compute_regularity` return a map whose ``complete`` is False, and `classify_orbits` codes of orbits that were not computed.
 
     Parameters
     ----------
@@ -206,7 +213,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
             if not isinstance(execution, Execution):
                 # The function itself refuses it.
                 return function(*args, **kwargs)
-            follows = execution.on_progress is not None or given.get("on_frame") is not None
+            follows = any(one is not None for one in (execution.on_progress, given.get("on_progress"), given.get("on_frame")))
             if follows or _shown.is_set() or not _is_interactive():
                 return function(*args, **kwargs)
             with _bar(label) as report:
@@ -231,7 +238,7 @@ def _bar(label: str) -> Iterator[Callable[[float], None]]:
     with warnings.catch_warnings():
         # Without Jupyter's widgets a bar of text is shown, with a warning.
         warnings.simplefilter("ignore")
-        from tqdm.autonotebook import tqdm
+        from tqdm.auto import tqdm
 
         bar = tqdm(total=1.0, desc=label, delay=_DELAY, leave=False, bar_format=_FORMAT)
 

@@ -15,11 +15,28 @@ if TYPE_CHECKING:
 
 FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
+        "CHAOS_THRESHOLD": ("its value, 1e-7", "..propagation.fates:CHAOS_THRESHOLD"),
         "Certificate": ("Evidence", "..propagation.evidence:Evidence"),
         "Curves": ("Sweep", "..sweeps.sweep:Sweep"),
         "CurvesSpec": ("SweepSpec", "..sweeps.former_calls:make_curves_spec"),
+        "IndicatorVerdict": ("OrbitVerdict.findings", "..trajectories.chaos_indicators:IndicatorVerdict"),
+        "SweepPlan": ("plan_sweep", "..sweeps.plan:SweepPlan"),
+        "Verdict": ("the words of OrbitVerdict.character", "..trajectories.chaos_indicators:Verdict"),
+        "channel_family": ('POTENTIALS["C3"] to POTENTIALS["C8"]', "..systems.known_potentials:channel_family"),
+        "compute_birkhoff_digits": (
+            "Orbit.compute_birkhoff_digits",
+            "..trajectories.birkhoff_digits:compute_birkhoff_digits",
+        ),
         "compute_curves": ("compute_sweep", "..sweeps.sweep:compute_sweep"),
+        "default_window": ("MapSpec.find_window", "..slices.default_window:default_window"),
+        "evaluate_indicators": ("OrbitVerdict.findings", "..trajectories.chaos_indicators:evaluate_indicators"),
+        "find_multipliers": ("LyapunovOrbit.find_multipliers", "..sweeps.former_calls:find_multipliers"),
+        "find_section_crossings": ("Orbit.find_section_crossings", "..sweeps.former_calls:find_section_crossings"),
         "run_sweep": ("compute_sweep", "..sweeps.former_calls:run_sweep"),
+        "trace_zero_velocity_curve": (
+            "MapSpec.trace_zero_velocity_curve",
+            "..slices.limiting_curves:trace_zero_velocity_curve",
+        ),
     }
 )
 """Former public names: the new name, and the module, as seen from this package, and object that stand for the former one."""

@@ -27,15 +27,15 @@ class Pictures(Protocol):
 
 
 @functools.cache
-def load_pictures() -> Pictures:
-    """The functions of the entry point in `GROUP`, imported at the first call: drawing libraries are slow to import.
+def load_pictures(group: str = GROUP) -> Pictures:
+    """The functions of the entry point in a group, imported at the first call: drawing libraries are slow to import.
 
     Raises
     ------
     RuntimeError
         If there is no entry point, as in sources that are not installed.
     """
-    for entry in entry_points(group=GROUP):
+    for entry in entry_points(group=group):
         pictures: Pictures = entry.load()
         return pictures
-    raise RuntimeError(f"no installed package draws results: entry point {GROUP!r} is missing; install escape-explorer")
+    raise RuntimeError(f"no installed package draws results: entry point {group!r} is missing; install escape-explorer")

@@ -6,31 +6,52 @@ The pictures are drawn by another package, which is imported at the first of the
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
-from enum import Enum, IntEnum
+from dataclasses import dataclass, field, fields
+from enum import IntEnum
+from importlib import metadata
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.foundations.codes import describe_codes
+from engine.foundations.former_names import FORMER_FIELDS
 from engine.foundations.pictures import load_pictures
+from engine.foundations.stored_fields import write_field
 from engine.foundations.summary import show_numbers, summarize
 
 if TYPE_CHECKING:
+    import os
+
     import pandas as pd
     import xarray as xr
     from matplotlib.axes import Axes
 
 
-class Result(ReadOnlyArrays):
+class _NamesForUsers(type):
+    """Metaclass of results: the completion of names, which reads classes too, shows what is for users."""
+
+    def __dir__(cls) -> list[str]:
+        return [name for name in super().__dir__() if name not in cls.inner_names]  # type: ignore[attr-defined]
+
+
+class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Base of dataclasses of results; their arrays are read-only."""
+
+    inner_names: ClassVar[frozenset[str]] = frozenset(
+        {"codes", "columns", "fate_labels", "held_as", "inner_names", "numbers", "row_dimension", "shown_numbers", *FORMER_FIELDS}
+    )
+    """The attributes that `dir` leaves out: they are for the modules of this package."""
 
     codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
     """The attributes that are codes, with the meaning of these."""
 
     row_dimension: ClassVar[str] = ""
     """Name of the dimension of the columns in files; empty if the first column, whose values are different, is its coordinate."""
+
+    held_as: ClassVar[dict[str, str]] = {}
+    """The fields that files hold under another name, or as parts, with the name of a part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:
@@ -69,6 +90,9 @@ class Result(ReadOnlyArrays):
     def _repr_html_(self) -> str:
         return load_pictures().to_html(self)
 
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in self.inner_names]
+
     def __repr__(self) -> str:
         describe = getattr(self, "describe", None)
         arrays = {name: value for name, value in self._attributes().items() if isinstance(value, np.ndarray)}
@@ -100,21 +124,58 @@ class Result(ReadOnlyArrays):
         table.attrs = numbers
         return table
 
+    def provenance(self) -> dict[str, Any]:
+        """How the result was made, in plain values, as far as it is known: the version, the potential, the request."""
+        return {"version": metadata.version("escape-explorer")}
+
     def to_xarray(self) -> xr.Dataset:
-        """The columns along one dimension, with the scalars as attributes; without columns a dataset of the scalars.
+        """The columns along one dimension, with the scalars and the provenance as attributes; without columns the scalars.
 
         It can be written as NetCDF and Zarr.
         """
         import xarray as xr
 
         columns = self.columns()
-        scalars = {name: _plain(value) for name, value in self.numbers().items()}
-        made = {"result": type(self).__name__}
+        scalars = {name: write_field(value) for name, value in self.numbers().items()}
+        arrays, others = self._remaining_fields({*scalars, *columns, *self.held_as})
+        attributes = {"result": type(self).__name__, **self.provenance(), **others}
         if not columns:
-            return xr.Dataset({name: ((), value, self._meaning(name, value)) for name, value in scalars.items()}, attrs=made)
+            variables = {name: ((), value, self._meaning(name, value)) for name, value in scalars.items()}
+            return xr.Dataset(variables, attrs=attributes)
         dimension = self.row_dimension or next(iter(columns))
-        variables = {name: (dimension, values, self._meaning(name, values)) for name, values in columns.items()}
-        return xr.Dataset(variables, attrs=made | scalars)
+        rows = {name: (dimension, values, self._meaning(name, values)) for name, values in columns.items()}
+        entries = {name: (f"{name}_entry", values, self._meaning(name, values)) for name, values in arrays.items()}
+        return xr.Dataset(rows | entries, attrs=attributes | scalars)
+
+    def _remaining_fields(self, stored: set[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+        """The fields that are neither columns nor shown numbers: arrays, and attributes; a potential is in the provenance."""
+        fields_left = {name: value for name, value in self._attributes().items() if name not in stored}
+        arrays = {name: value for name, value in fields_left.items() if isinstance(value, np.ndarray)}
+        others = {
+            name: write_field(value)
+            for name, value in fields_left.items()
+            if not (value is None or name in arrays or isinstance(value, Result | Mapping))
+        }
+        return arrays, others
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the result as a NetCDF file, which `open_result` reads; tables are written by ``to_pandas().to_csv(path)``.
+
+        Parameters
+        ----------
+        path
+            The file, which ends in ".nc"; one that exists is replaced.
+
+        Raises
+        ------
+        ValueError
+            If the name has another ending.
+        OSError
+            If the file cannot be written.
+        """
+        if Path(path).suffix != ".nc":
+            raise ValueError(f"path={path}: must end in .nc")
+        self.to_xarray().to_netcdf(path)
 
     def _meaning(self, name: str, values: Any) -> dict[str, str]:
         """Attributes of a variable: what its codes are, or that its numbers are dimensionless."""
@@ -123,11 +184,21 @@ class Result(ReadOnlyArrays):
         return {"units": "1"} if np.asarray(values).dtype.kind in "iuf" else {}
 
 
-def _plain(value: Any) -> Any:
-    """A scalar as files hold it."""
-    if isinstance(value, Enum):
-        return value.value
-    return int(value) if isinstance(value, bool) else value
+@dataclass(frozen=True, eq=False, repr=False)
+class RecordedResult(Result):
+    """Base of results that keep how they were made.
+
+    Attributes
+    ----------
+    made_by
+        How the result was made, in plain values, for `provenance`; empty if it is not known.
+    """
+
+    made_by: Mapping[str, Any] = field(default_factory=dict, kw_only=True, repr=False, compare=False)
+
+    def provenance(self) -> dict[str, Any]:
+        """How the result was made, in plain values, as far as it is known: the version, the potential, the request."""
+        return {**super().provenance(), **self.made_by}
 
 
 class MapResult(Result):

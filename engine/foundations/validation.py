@@ -12,7 +12,6 @@ import numbers
 import operator
 import re
 import reprlib
-import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -62,11 +61,6 @@ def checks_types[**P, T](**kinds: Any) -> Callable[[Callable[P, T]], Callable[P,
         return call
 
     return decorate
-
-
-def warn_of_method(function: str, method: str) -> None:
-    """Warn the caller of a function with `checks_types` that a method has replaced it."""
-    warnings.warn(f"{function} is deprecated: use {method}", DeprecationWarning, stacklevel=4)
 
 
 def check_type(name: str, value: Any, kind: Any) -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+from engine.foundations.execution import Execution
 from engine.jobs.cache import ResultCache
 
 
@@ -70,6 +71,32 @@ class Job[Result]:
         """The keyword arguments of a call: the options, and the offered values for which the function has parameters."""
         names = _parameters(self.function)
         return {**{name: value for name, value in offered.items() if name in names}, **dict(self.options)}
+
+
+def run_job[Result](job: Job[Result], execution: Execution, known: Mapping[Job[Any], Any]) -> Result:
+    """Compute a job in this thread.
+
+    Parameters
+    ----------
+    job
+        The job.
+    execution
+        How it and the jobs among its arguments run.
+    known
+        Results of some of these.
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        When cancelled.
+    """
+    if job in known:
+        found: Result = known[job]
+        return found
+    arguments = [run_job(each, execution, known) if isinstance(each, Job) else each for each in job.arguments]
+    result = job.function(*arguments, **job.keywords({"execution": execution}))
+    execution.raise_if_cancelled()
+    return result
 
 
 @functools.cache

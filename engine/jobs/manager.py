@@ -15,6 +15,7 @@ from typing import Any
 from engine.foundations.execution import Execution, count_workers, create_thread_pool
 from engine.integrator.jit.compiled_operations import charged_to
 from engine.jobs.cache import ABSENT, ResultCache
+from engine.jobs.clock import Clock
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_priority import MapPriority
 from engine.jobs.orbit_semaphore import SMALL_JOB, OrbitSemaphore
@@ -44,6 +45,7 @@ class _Run:
     account: Hashable
     map_priority: MapPriority | None
     """Priority of a map on display; None for other jobs, whose short calls run in the background."""
+    clock: Clock
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
     """The last partial result."""
@@ -72,7 +74,7 @@ class _Run:
         if self.measured is None or self.measured() is not Priority.FIRST_FRAME or self.begun is None:
             return 0.0
         calls = self.executors[Queue.FIRST_FRAME].computed if self.executors else 0.0
-        return max(0.0, self.measured.seconds() - calls - (time.thread_time() - self.begun))
+        return max(0.0, self.measured.seconds() - calls - (self.clock.thread_time() - self.begun))
 
     def waiting(self) -> float:
         """Seconds that a map has waited for its first call to begin."""
@@ -104,6 +106,8 @@ class Jobs:
         Calls a function in a process with limits, for `Queue.LIMITED`; None for a thread of this process.
     limited_calls
         Number of such calls at a time, each of another account.
+    clock
+        By default that of this process.
     """
 
     def __init__(
@@ -114,13 +118,15 @@ class Jobs:
         threads: int | None = None,
         limited: Callable[[Callable[[], Any]], Any] | None = None,
         limited_calls: int = 1,
+        clock: Clock = time,
     ) -> None:
         self._executor = executor
         self._limited = limited
-        self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads))
+        self._clock = clock
+        self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads), clock)
         # Numba compiles one function at a time: more threads would only wait for each other, and orbits for all of them.
-        self._compilations = FairScheduler(create_thread_pool(1))
-        self._limited_calls = FairScheduler(create_thread_pool(limited_calls), one_each=True)
+        self._compilations = FairScheduler(create_thread_pool(1), clock)
+        self._limited_calls = FairScheduler(create_thread_pool(limited_calls), clock, one_each=True)
         self._semaphore = OrbitSemaphore(most_orbits)
         self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
@@ -166,8 +172,8 @@ class Jobs:
                 latest = self._in_flight[job].latest
             elif not complete:
                 latest = None
-                priority = MapPriority() if job.queue is Queue.FIRST_FRAME else None
-                run = self._in_flight[job] = _Run(job, [subscription], client, account, priority)
+                priority = MapPriority(self._clock) if job.queue is Queue.FIRST_FRAME else None
+                run = self._in_flight[job] = _Run(job, [subscription], client, account, priority, self._clock)
                 self._coordinators.submit(self._run_job, run)
         if complete or latest is not None:
             subscription.deliver(latest, last=complete)
@@ -182,7 +188,7 @@ class Jobs:
         """Return the current load, totals and memory."""
         return JobStats(
             in_flight=self.in_flight,
-            calls_waiting=self._scheduler.pending_calls,
+            calls_waiting=sum(queue.pending_calls for queue in (self._scheduler, self._compilations, self._limited_calls)),
             done=self._ended["done"],
             failed=self._ended["failed"],
             cancelled=self._ended["cancelled"],
@@ -236,7 +242,7 @@ class Jobs:
                 del self._in_flight[job]
 
     def _run_job(self, run: _Run) -> None:
-        run.begun = time.thread_time()
+        run.begun = run.clock.thread_time()
         error: Exception | None = None
         result: Any = ABSENT
         try:

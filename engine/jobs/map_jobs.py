@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING, Any
 from engine.foundations.execution import Execution
 from engine.jobs.cache import ResultCache
 from engine.jobs.job import Job, Queue
-from engine.maps.compute import LARGEST_RUN, run_map
-from engine.maps.origin_fates import OriginFateMap, join_origin_fates
-from engine.maps.regularity import RegularityMap, compute_regularity
+from engine.maps.compute import LARGEST_RUN, compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.maps.trust import TrustMap, compute_trust
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
@@ -59,7 +56,7 @@ def map_job(spec: MapSpec) -> Job[EscapeMap]:
     """The job of a map; it continues an interrupted map, or one with a shorter t_max."""
     columns, rows = spec.resolution
     orbits = min(columns * rows, LARGEST_RUN)
-    return Job(run_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
+    return Job(compute_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
 
 
 def members_job(axis: ParameterAxis | None) -> Job[None] | None:
@@ -67,21 +64,6 @@ def members_job(axis: ParameterAxis | None) -> Job[None] | None:
     if axis is None or axis.system.case != TYPED:
         return None
     return Job(find_members, (axis,), queue=Queue.LIMITED)
-
-
-def regularity_job(spec: MapSpec) -> Job[RegularityMap]:
-    """The job of the regularity of a map's bounded orbits."""
-    return Job(compute_regularity, (map_job(spec),))
-
-
-def trust_job(spec: MapSpec) -> Job[TrustMap]:
-    """The job of the trust in a map's pixels."""
-    return Job(compute_trust, (map_job(spec),))
-
-
-def origin_fate_job(spec: MapSpec) -> Job[OriginFateMap]:
-    """The job of the exits of a map's orbits in the past and the future; `spec` is the map forward in time."""
-    return Job(join_origin_fates, tuple(map_job(replace(spec, backward=backward)) for backward in (False, True)))
 
 
 def basin_measures_job(spec: MapSpec, box: Window | None = None) -> Job[BasinMeasures]:
@@ -108,7 +90,7 @@ def sweep_job(spec: SweepSpec) -> Job[Sweep]:
 def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
     """The cached map that differs by the smallest reduction of t_max and can be resumed."""
     (spec,) = job.arguments
-    maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is run_map)
+    maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
     # Compare energies first: cheap, and there may be thousands of maps.
     same_energy = (key for key in maps if key.energy == spec.energy)
     shorter = [key for key in same_energy if key.t_max <= spec.t_max and replace(key, t_max=spec.t_max) == spec]

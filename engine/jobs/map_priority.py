@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 
+from engine.jobs.clock import Clock
 from engine.jobs.scheduler import Priority
 
 REST_SECONDS = 1.0
@@ -15,10 +16,16 @@ class MapPriority:
 
     The calls until the first frame have `Priority.FIRST_FRAME`. The longer integration times after that of the first frame, which
     change few pixels, have `Priority.UNSETTLED` for `REST_SECONDS`: other calls run first, but no thread is idle instead.
+
+    Parameters
+    ----------
+    clock
+        By default that of this process.
     """
 
-    def __init__(self) -> None:
-        self._requested = time.monotonic()
+    def __init__(self, clock: Clock = time) -> None:
+        self._clock = clock
+        self._requested = clock.monotonic()
         self._first_horizon: float | None = None
         self._horizon = 0.0
 
@@ -30,12 +37,12 @@ class MapPriority:
 
     def seconds(self) -> float:
         """Time since the request."""
-        return time.monotonic() - self._requested
+        return self._clock.monotonic() - self._requested
 
     def __call__(self) -> Priority:
         """Return the priority of the next call."""
         if self._first_horizon is None:
             return Priority.FIRST_FRAME
-        if self._horizon > self._first_horizon and time.monotonic() < self._requested + REST_SECONDS:
+        if self._horizon > self._first_horizon and self.seconds() < REST_SECONDS:
             return Priority.UNSETTLED
         return Priority.BACKGROUND

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from weakref import WeakSet
 
 from engine.foundations.execution import count_workers, default_executor
+from engine.jobs.clock import Clock
 
 # While background calls are paused, a long call of duration d is followed by a pause of 9 d: a duty cycle of 10 %.
 _PAUSE_PER_LONG_CALL = 9.0
@@ -56,12 +57,13 @@ class _Call(NamedTuple):
             self.future.set_result(result)
 
     def _compute(self) -> Any:
-        begin = time.thread_time()
+        clock = self.executor.clock
+        begin = clock.thread_time()
         self.executor.has_begun = True
         try:
             return self.function()
         finally:
-            self.executor.count(time.thread_time() - begin)
+            self.executor.count(clock.thread_time() - begin)
 
 
 class FairScheduler:
@@ -71,12 +73,15 @@ class FairScheduler:
     ----------
     pool
         The threads; None for the default pool of this process.
+    clock
+        By default that of this process.
     one_each
         Whether a client has one call at a time, so that it leaves the other threads to others.
     """
 
-    def __init__(self, pool: ThreadPoolExecutor | None = None, *, one_each: bool = False) -> None:
+    def __init__(self, pool: ThreadPoolExecutor | None = None, clock: Clock = time, *, one_each: bool = False) -> None:
         self._pool = pool or default_executor()
+        self.clock = clock
         self._one_each = one_each
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
@@ -164,16 +169,16 @@ class FairScheduler:
         """Run calls until none may start."""
         while chosen := self._take_next():
             call, priority = chosen
-            begun = time.monotonic()
+            begun = self.clock.monotonic()
             call.run()
-            self._end_call(call.executor.client, priority, time.monotonic() - begun)
+            self._end_call(call.executor.client, priority, self.clock.monotonic() - begun)
 
     def _end_call(self, client: Hashable, priority: Priority, duration: float) -> None:
         with self._lock:
             self._running[priority] -= 1
             self._served -= Counter([client])
             if priority is Priority.LONG_CALL:
-                self._next_long_call = time.monotonic() + _PAUSE_PER_LONG_CALL * duration
+                self._next_long_call = self.clock.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
     def _take_next(self) -> tuple[_Call, Priority] | None:
         """The next call that may start; without one, the thread is no longer active."""
@@ -214,7 +219,7 @@ class FairScheduler:
             return not self._background_paused
         running = self._running[priority]
         if self._background_paused:
-            return running == 0 and time.monotonic() >= self._next_long_call
+            return running == 0 and self.clock.monotonic() >= self._next_long_call
         return running < fewer
 
 
@@ -231,6 +236,7 @@ class QueueExecutor(Executor):
 
     def __init__(self, scheduler: FairScheduler, client: Hashable, priority: Callable[[], Priority]) -> None:
         self._scheduler = scheduler
+        self.clock = scheduler.clock
         self.client = client
         self.priority = priority
         self.has_begun, self.computed = False, 0.0

@@ -5,19 +5,20 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
-from engine.foundations.execution import Execution, shows_progress
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.maps.parameter_map import LineStack
 from engine.maps.result import EscapeMap
+from engine.maps.rounded_share import estimate_rounded_share
 from engine.maps.row_blocks import BlockStack
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import run_stages
-from engine.maps.trust import compute_trust, estimate_rounded_share
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""
@@ -26,7 +27,8 @@ DEEP_PIXEL = 1e-7
 """Distance of pixels in units of the well below which a map says how many of them double precision does not support."""
 
 
-@checks_types(spec=MapSpec, resume=(EscapeMap, type(None)), on_frame=(Callable, type(None)))
+@shows_progress("escape map")
+@checks_types(spec=MapSpec, resume=(EscapeMap, type(None)), on_frame=(Callable, type(None)), execution=Execution)
 def compute_map(
     spec: MapSpec,
     on_frame: Callable[[EscapeMap], None] | None = None,
@@ -34,8 +36,8 @@ def compute_map(
     executor: Executor | None = None,
     *,
     resume: EscapeMap | None = None,
-    with_trust: bool = False,
     on_progress: Callable[[float], None] | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> EscapeMap:
     """Compute an escape map.
 
@@ -44,20 +46,16 @@ def compute_map(
     spec
         The request.
     on_frame
-        Called in this thread with the map so far, at increasing intervals (`frame_pause`): first coarse, then at full
-        resolution, then with longer integration times. A map of more than `LARGEST_RUN` pixels is filled block by block.
-    cancel
-        When set, the map is returned as it is within about 0.1 s, with ``complete`` False.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
+        Called in this thread with the map so far, at increasing intervals: first coarse, then at full resolution, then with
+        longer integration times. A map of more than 2²⁰ pixels is filled block by block.
+    cancel, executor, on_progress
+        Fields of `execution`, which they replace where they are given: ``execution=Execution(executor, cancel)`` is the way
+        of all long functions. They stay legal.
     resume
         An earlier map, complete or cancelled, whose spec differs at most by a smaller t_max: its orbits are continued. Maps
         computed in blocks cannot be resumed.
-    with_trust
-        Whether to compute the reliability of each pixel as well (`compute_trust`) once the map is complete; when cancelled,
-        pixels not tested yet are `Trust.NOT_TESTED`.
-    on_progress
-        Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
+    execution
+        How the computation runs. When it is cancelled, the map is returned as it is, with ``complete`` False.
 
     Returns
     -------
@@ -75,30 +73,16 @@ def compute_map(
     >>> escapes.complete, round(sum(escapes.fractions().values()), 12)
     (True, 1.0)
     """
-    return run_map(spec, Execution(executor, cancel, on_progress), on_frame, resume=resume, with_trust=with_trust)
-
-
-@shows_progress("escape map")
-def run_map(
-    spec: MapSpec,
-    execution: Execution,
-    on_frame: Callable[[EscapeMap], None] | None = None,
-    *,
-    resume: EscapeMap | None = None,
-    with_trust: bool = False,
-) -> EscapeMap:
-    """`compute_map` with its execution as one object."""
+    given: dict[str, Any] = {"cancel": cancel, "executor": executor, "on_progress": on_progress}
+    execution = replace(execution, **{name: value for name, value in given.items() if value is not None})
     if resume is not None:
         _check_resumable(spec, resume)
-    part = execution.part(0, 2) if with_trust else execution
     work = _begin(spec, resume, coarse_first=on_frame is not None)
-    run_stages(work, part, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
-    result = _in_units_of(spec, _with_rounded_share(work.result(), part))
+    run_stages(work, execution, None if on_frame is None else lambda frame: on_frame(_in_units_of(spec, frame)))
+    result = _in_units_of(spec, _with_rounded_share(work.result(), execution))
     if on_frame is not None and result.complete:
         on_frame(replace(result, batch=None))
-    if not (with_trust and result.complete):
-        return result
-    return replace(result, trust=compute_trust(result, execution=execution.part(1, 2)).trust)
+    return result
 
 
 def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:
@@ -120,8 +104,9 @@ def _in_units_of(spec: MapSpec, found: EscapeMap) -> EscapeMap:
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
     if resume.batch is None:
         raise ValueError("resume: this map has no integration state; must be a map returned by compute_map, not a frame")
-    if replace(resume.spec, t_max=spec.t_max) != spec or resume.spec.t_max > spec.t_max:
-        raise ValueError(f"resume: a map of {resume.spec} cannot be continued to {spec}; must be equal but for a smaller t_max")
+    different = [field.name for field in fields(spec) if getattr(resume.spec, field.name) != getattr(spec, field.name)]
+    if different not in ([], ["t_max"]) or resume.spec.t_max > spec.t_max:
+        raise ValueError(f"resume: a map with another {', '.join(different)}; must be equal but for a smaller t_max")
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:

@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.validation import checks_types
-from engine.maps.compute import run_map
+from engine.maps.compute import compute_map
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
@@ -101,7 +101,7 @@ def compute_origin_fates(spec: MapSpec, *, execution: Execution = DEFAULT_EXECUT
            [410,  34,  18,  34],
            [ 34, 410,  34,  18]])
     """
-    forward, backward = (run_map(replace(spec, backward=way), execution.part(int(way), 2)) for way in (False, True))
+    forward, backward = (compute_map(replace(spec, backward=way), execution=execution.part(int(way), 2)) for way in (False, True))
     if not (forward.complete and backward.complete):
         raise CancelledError
     return join_origin_fates(forward, backward)

@@ -6,7 +6,7 @@ whole map is computed line by line.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -70,9 +70,7 @@ class Line:
         for name in _NUMBERED:
             arrays[name] = renumber(arrays[name], own)
         x, ordinate = self.spec.pixel_centres()
-        line = replace(
-            escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, trust=None, **arrays
-        )
+        line = replace(escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, **arrays)
         if escape_map.batch is None:
             return line
         pixels = np.arange(escape_map.fate.size).reshape(escape_map.fate.shape)[self.place].ravel()
@@ -212,6 +210,7 @@ def analyse_map[Analysis: PixelAnalysis](
     kind: type[Analysis],
     on_frame: Callable[[Analysis], None] | None,
     execution: Execution,
+    **choices: Any,
 ) -> Analysis:
     """Analyse a complete map; one along a parameter line by line.
 
@@ -223,6 +222,8 @@ def analyse_map[Analysis: PixelAnalysis](
         Returns what computes the analysis of a map of one potential, or of a line, which is given with its place.
     kind
         What the analysis is.
+    **choices
+        Fields of the analysis that are the same for all lines.
     on_frame
         Called with the analysis so far, see `run_stages`, and with the complete one.
     execution
@@ -234,16 +235,20 @@ def analyse_map[Analysis: PixelAnalysis](
     """
     if escape_map.spec.plane.parameter is None:
         return run_to_frame(begin(escape_map, ALL_PIXELS), execution, on_frame)
-    return run_to_frame(_LineAnalyses(escape_map, begin, kind), execution, on_frame)
+    return run_to_frame(_LineAnalyses(escape_map, begin, kind, choices), execution, on_frame)
 
 
 class _LineAnalyses[Analysis: PixelAnalysis]:
     """The analyses of the lines of a map, which are computed at once; see `analyse_map`."""
 
     def __init__(
-        self, escape_map: EscapeMap, begin: Callable[[EscapeMap, Place], Staged[Analysis]], kind: type[Analysis]
+        self,
+        escape_map: EscapeMap,
+        begin: Callable[[EscapeMap, Place], Staged[Analysis]],
+        kind: type[Analysis],
+        choices: Mapping[str, Any],
     ) -> None:
-        self._map, self._begin, self._kind = escape_map, begin, kind
+        self._map, self._begin, self._kind, self._choices = escape_map, begin, kind, choices
         self._arrays = empty_arrays(kind.pixel_arrays, escape_map.fate.shape)
         self._lines = [line for line in find_lines(escape_map.spec) if line is not None]
         self._finished, self._complete = 0, True
@@ -273,7 +278,8 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
     def frame(self) -> Analysis:
         """The analysis so far."""
         arrays: dict[str, Any] = {name: read_only(values.copy()) for name, values in self._arrays.items()}
-        return self._kind(spec=self._map.spec, complete=self._complete and self._finished == len(self._lines), **arrays)
+        complete = self._complete and self._finished == len(self._lines)
+        return self._kind(spec=self._map.spec, complete=complete, **arrays, **self._choices)
 
 
 def _as_finished[Key, Found](running: dict[Future[Found], Key], execution: Execution) -> Iterator[tuple[Key, Found]]:

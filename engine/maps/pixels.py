@@ -9,6 +9,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.result import MapResult
+from engine.foundations.stored_fields import write_field
 from engine.maps.result import EscapeMap, PixelArrays
 from engine.maps.spec import MapSpec
 
@@ -32,6 +33,12 @@ class PixelAnalysis(MapResult):
     complete: bool = field(default=True, kw_only=True)
     pixel_arrays: ClassVar[PixelArrays] = {}
     """The arrays with a value for each pixel, as `empty_arrays` takes them."""
+    kinds: ClassVar[dict[str, type[PixelAnalysis]]] = {}
+    """All analyses by the names of their classes, which files contain."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        PixelAnalysis.kinds[cls.__name__] = cls
 
     def to_xarray(self) -> xr.Dataset:
         """The values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
@@ -43,8 +50,10 @@ class PixelAnalysis(MapResult):
         images = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray) and value.ndim == 2}
         dims = (ordinate_name, abscissa_name)
         variables = {name: (dims, image, self._meaning(name, image)) for name, image in images.items()}
-        attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(self.complete)}
-        return xr.Dataset(variables, {ordinate_name: ordinate, abscissa_name: x}, attributes)
+        numbers = {name: write_field(value) for name, value in self.numbers().items()}
+        attributes = {"result": type(self).__name__, **self.spec.provenance(), **numbers}
+        coordinates = {name: (name, centres, {"units": "1"}) for name, centres in ((ordinate_name, ordinate), (abscissa_name, x))}
+        return xr.Dataset(variables, coordinates, attributes)
 
     @property
     def nbytes(self) -> int:

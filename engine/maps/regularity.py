@@ -56,6 +56,16 @@ class RegularityMap(PixelAnalysis):
         """Share of chaotic orbits among the bounded ones judged; NaN if there are none."""
         return self.share_of(Regularity.CHAOTIC)
 
+    def describe(self) -> str:
+        """The share of chaotic orbits, or how many are left to judge, in one sentence."""
+        bounded = self.character[self.character != Regularity.NOT_APPLICABLE]
+        if not bounded.size:
+            return "No orbit is bounded."
+        if not self.complete:
+            return f"{code_share(bounded, Regularity.NOT_JUDGED):.1%} of the bounded orbits are not judged yet."
+        unsure = self.share_of(Regularity.NO_SIGN_OF_CHAOS)
+        return f"{self.chaotic_share:.2%} of the bounded orbits are chaotic, {unsure:.2%} show no sign of chaos until t_max."
+
     def share_of(self, character: Regularity) -> float:
         """Share of orbits of a character among the bounded ones judged; NaN if there are none."""
         judged = ~np.isin(self.character, (Regularity.NOT_APPLICABLE, Regularity.NOT_JUDGED))

@@ -16,7 +16,7 @@ from engine.foundations.validation import checked_flag
 from engine.maps.spec import MapSpec
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, Trust, name_fate
+from engine.propagation.fates import Fate, name_fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
 from engine.systems.well_units import TIME
@@ -42,6 +42,10 @@ PIXEL_ARRAYS: PixelArrays = {
 def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
     """Arrays without any computed pixels, by name."""
     return {name: np.full(shape, value, dtype) for name, (dtype, value) in names.items()}
+
+
+NOTED_SHARE = 0.01
+"""Share of the interior pixels that double precision does not support from which a map says so."""
 
 
 @with_former_fields
@@ -75,11 +79,9 @@ class EscapeMap(MapResult):
         bool, the pixels whose orbits have been started.
     batch
         State of the orbits `continued_pixels` for ``resume``, in units of the well; None in frames.
-    trust
-        (rows, columns) int8, the `Trust` of each pixel if it was requested, else None.
     rounded_share
-        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support, see
-        `estimate_rounded_share`; else None.
+        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support:
+        their outcome changes with the errors of the integration; else None.
 
     Examples
     --------
@@ -106,7 +108,6 @@ class EscapeMap(MapResult):
     complete: bool
     started: np.ndarray = field(repr=False)
     batch: OrbitBatch | None = field(default=None, repr=False)
-    trust: np.ndarray | None = field(default=None, repr=False)
     rounded_share: float | None = None
 
     def numbers(self) -> dict[str, Any]:
@@ -140,10 +141,14 @@ class EscapeMap(MapResult):
         return float(errors.max()) if errors.size else float("nan")
 
     @property
+    def is_rounded(self) -> bool:
+        """Whether double precision does not support `NOTED_SHARE` of the pixels or more."""
+        return self.rounded_share is not None and self.rounded_share >= NOTED_SHARE
+
+    @property
     def nbytes(self) -> int:
         """Bytes held by the arrays, including the integration state."""
         arrays: list[np.ndarray] = [getattr(self, name) for name in PIXEL_ARRAYS]
-        arrays += [self.trust] if self.trust is not None else []
         return sum(array.nbytes for array in arrays) + (self.batch.nbytes if self.batch else 0)
 
     def check_complete(self, name: str) -> None:
@@ -209,8 +214,6 @@ class EscapeMap(MapResult):
             "outside": (dims, self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
             "evidence": (dims, self.evidence, {"long_name": "why the orbit is bounded", **describe_codes(Evidence)}),
         }
-        if self.trust is not None:
-            variables["trust"] = (dims, self.trust, {"long_name": "reliability of the outcome", **describe_codes(Trust)})
         coordinates = {
             ordinate: (ordinate, self.ordinate, {"units": "1"}),
             abscissa: (abscissa, self.x, {"units": "1"}),
@@ -225,6 +228,7 @@ class EscapeMap(MapResult):
             "worst_energy_error": self.worst_energy_error,
             "complete": int(self.complete),
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
+            **({} if self.rounded_share is None else {"rounded_share": self.rounded_share}),
         }
 
 

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import json
 import operator
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from importlib import metadata
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
-from engine.integrator.source.recurrence import TOLERANCE
-from engine.integrator.source.series import ORDER
 from engine.slices.default_window import map_window
 from engine.slices.energies import Energy, common_energy, scaled_energy
+from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
@@ -23,7 +22,7 @@ from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.stored_potential import describe_potential
+from engine.systems.provenance import describe_run
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
@@ -91,6 +90,21 @@ class MapSpec:
     use_evidence: bool = True
     backward: bool = False
 
+    # Type checkers accept what is converted; fields have the types of what is kept.
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            potential: Potential,
+            plane: Slice | str,
+            energy: Energy | Sequence[float] | np.ndarray,
+            resolution: Sequence[int] = DEFAULT_RESOLUTION,
+            window: GivenWindow | None = None,
+            t_max: float = 1e5,
+            use_evidence: bool = True,
+            backward: bool = False,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         check_type("potential", self.potential, Potential)
         plane = checked_slice(self.plane)
@@ -136,6 +150,17 @@ class MapSpec:
         _check_pixels(self, window)
         return window
 
+    def trace_zero_velocity_curve(self) -> list[np.ndarray]:
+        """The pieces (n, 2) of the boundary of the forbidden region, such as V(x, y) = h, in the window of the map.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, MapSpec, Plane
+        >>> len(MapSpec(CASES["I"], Plane.X_PX, 0.19).trace_zero_velocity_curve())
+        1
+        """
+        return trace_zero_velocity_curve(self.potential, self.plane, self.energy, self.find_window())
+
     def in_well_units(self) -> MapSpec:
         """The same map in units of the well, with its window; the legal range of t_max and of energies does not apply to it."""
         units, window = self.potential.units, self.find_window()
@@ -168,22 +193,20 @@ class MapSpec:
     def provenance(self) -> dict[str, Any]:
         """The request in plain values, with the integrator and the package version."""
         window, (axes, held), axis = self.find_window(), write_slice(self.plane), self.plane.parameter
-        return {
-            **describe_potential(self.potential),
-            "energy": self.energy,
-            "plane": self.plane.title,
-            "axes": axes,
-            "fix": held,
-            "system": json.dumps(None if axis is None else asdict(axis.system)),
-            "window": (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
-            "default_window": int(self.window is None),
-            "resolution": self.resolution,
-            "t_max": self.t_max,
-            "use_evidence": int(self.use_evidence),
-            "backward": int(self.backward),
-            "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
-            "version": metadata.version("escape-explorer"),
-        }
+        return describe_run(
+            self.potential,
+            energy=self.energy,
+            plane=self.plane.title,
+            axes=axes,
+            fix=held,
+            system=json.dumps(None if axis is None else asdict(axis.system)),
+            window=(window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
+            default_window=int(self.window is None),
+            resolution=self.resolution,
+            t_max=self.t_max,
+            use_evidence=int(self.use_evidence),
+            backward=int(self.backward),
+        )
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
         """(row, column) of the pixel that contains a point of the plane; None outside the window."""

@@ -17,6 +17,9 @@ _PAUSE_SHARE = 0.3
 Stage = Callable[[], None]
 """A part of a computation, which ends early when the execution is cancelled."""
 
+Pause = Callable[[float], float]
+"""The pause in seconds after a frame, given the time in seconds since the start of the computation."""
+
 OnChange = Callable[[bool], None]
 """Called whenever pixels may have changed, with whether a stage is over."""
 
@@ -42,7 +45,14 @@ class Staged[F: Frame](Protocol):
         """The result so far."""
 
 
-def run_stages[F: Frame](work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None = None) -> None:
+def frame_pause(elapsed: float) -> float:
+    """Pause in seconds after a frame, given the time in seconds since the start of the computation."""
+    return min(max(SHORTEST_PAUSE, _PAUSE_SHARE * elapsed), LONGEST_PAUSE)
+
+
+def run_stages[F: Frame](
+    work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None = None, pause: Pause = frame_pause
+) -> None:
     """Run all stages until done or cancelled.
 
     Parameters
@@ -52,10 +62,11 @@ def run_stages[F: Frame](work: Staged[F], execution: Execution, on_frame: Callab
     execution
         How it runs; its progress is reported whenever pixels may have changed.
     on_frame
-        Called in this thread with incomplete frames: first when a stage is over, so that its frame is even, then with growing
-        pauses (`frame_pause`).
+        Called in this thread with incomplete frames: first when a stage is over, so that its frame is even, then with pauses.
+    pause
+        The pauses, which grow by default.
     """
-    follow = _Follower(work, execution, on_frame)
+    follow = _Follower(work, execution, on_frame, pause)
     for stage in work.stages(execution, follow):
         if execution.is_cancelled:
             break
@@ -63,9 +74,11 @@ def run_stages[F: Frame](work: Staged[F], execution: Execution, on_frame: Callab
         follow(True)
 
 
-def run_to_frame[F: Frame](work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None = None) -> F:
+def run_to_frame[F: Frame](
+    work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None = None, pause: Pause = frame_pause
+) -> F:
     """The last frame after `run_stages`, which is published, too, if it is complete."""
-    run_stages(work, execution, on_frame)
+    run_stages(work, execution, on_frame, pause)
     frame = work.frame()
     if on_frame is not None and frame.complete:
         on_frame(frame)
@@ -73,10 +86,10 @@ def run_to_frame[F: Frame](work: Staged[F], execution: Execution, on_frame: Call
 
 
 class _Follower[F: Frame]:
-    """Publishes incomplete frames of a computation, with growing pauses between them, and reports its progress."""
+    """Publishes incomplete frames of a computation, with pauses between them, and reports its progress."""
 
-    def __init__(self, work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None) -> None:
-        self._work, self._execution, self._on_frame = work, execution, on_frame
+    def __init__(self, work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None, pause: Pause) -> None:
+        self._work, self._execution, self._on_frame, self._pause = work, execution, on_frame, pause
         self._started = time.monotonic()
         self._next_frame: float | None = None
 
@@ -87,10 +100,5 @@ class _Follower[F: Frame]:
             frame = self._work.frame()
             if not frame.complete:
                 self._on_frame(frame)
-                self._next_frame = time.monotonic() + frame_pause(now - self._started)
+                self._next_frame = time.monotonic() + self._pause(now - self._started)
         self._execution.report(self._work.progress)
-
-
-def frame_pause(elapsed: float) -> float:
-    """Pause in seconds after a frame, given the time in seconds since the start of the computation."""
-    return min(max(SHORTEST_PAUSE, _PAUSE_SHARE * elapsed), LONGEST_PAUSE)

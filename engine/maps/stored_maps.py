@@ -36,8 +36,11 @@ def as_map(name: str, value: Any) -> EscapeMap:
         return value
     if hasattr(value, "data_vars"):
         value = rename_stored(value)
-    if not hasattr(value, "data_vars") or not set(PIXEL_ARRAYS) - {"started"} <= set(value.data_vars):
+    missing = [each for each in PIXEL_ARRAYS if each != "started" and each not in getattr(value, "data_vars", ())]
+    if "fate" in missing:
         raise ValueError(f"{name}={short_repr(value)}: must be an EscapeMap, or a dataset of one")
+    if missing:
+        raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
     if value["fate"].ndim != len(("rows", "columns")):
         raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
     return read_map(value)
@@ -52,7 +55,7 @@ def read_map(dataset: xr.Dataset) -> EscapeMap:
     return EscapeMap(
         spec=spec, x=read_only(np.array(dataset[abscissa].values)), ordinate=read_only(np.array(dataset[ordinate].values)),
         stride=1, horizon=spec.t_max, progress=float(started.mean()), complete=bool(started.all()), started=read_only(started),
-        trust=read_only(np.array(dataset["trust"].values)) if "trust" in dataset else None, **arrays,
+        rounded_share=float(dataset.attrs["rounded_share"]) if "rounded_share" in dataset.attrs else None, **arrays,
     )  # fmt: skip
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from enum import IntEnum
 from functools import partial
 from typing import ClassVar
 
@@ -15,30 +16,17 @@ from engine.exits.exit_rows import closed_exits, exit_curves
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.integrator.kernels.dense_output import advance_states
-from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
-from engine.maps.result import PIXEL_ARRAYS, EscapeMap
+from engine.maps.reruns import SHIFT, SHIFTED_STARTS, Perturbation, Rerun
+from engine.maps.result import EscapeMap
 from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
-from engine.maps.spec import FINEST_PIXEL, MapSpec
-from engine.maps.stages import OnChange, Stage, run_to_frame
+from engine.maps.stages import OnChange, Stage
 from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.evidence import Evidence
-from engine.propagation.fates import CHAOS_THRESHOLD, Fate, Trust
+from engine.propagation.fates import CHAOS_THRESHOLD, Fate
 from engine.systems.compiled import kernels_of
-
-SHIFT = 1e-11
-"""Shift of a start along x and along the ordinate in units of the well: far above rounding errors, far below a pixel."""
-
-LARGEST_SHARE_OF_PIXEL = 0.01
-"""Largest shift as a share of the pixel, which limits it in deep zooms."""
-
-SAMPLED_SIDE = 16
-"""About this number of pixels per side are sampled for `estimate_rounded_share`."""
-
-SECOND_TOLERANCE = 10.0 * TOLERANCE
-"""Tolerance of the second rerun: steps are a sixth longer, so that their errors are independent of the map's."""
 
 APART = SHIFT / CHAOS_THRESHOLD
 """Distance of two reruns in phase space, in units of the well, from which a bounded orbit counts as chaotic.
@@ -47,19 +35,31 @@ Along a chaotic orbit SALI falls as exp(−λt) while a shift grows as exp(λt):
 threshold. Along a regular orbit a shift grows like t, to about 1e-6 at t = 1e5.
 """
 
-LARGEST_DELAY = 0.01
-"""Largest change of an escape time by a rerun, in units of the well.
-
-The escape time tends to infinity at the boundary of a basin, like the logarithm of the distance. A shift by the share d of that
-distance changes it by about d, so that at this limit shifts of the same size in other directions keep within the basin.
-"""
-
 # Horizons are doubled in each stage, so that few orbits are integrated longer than needed; one of them is FIRST_TEST_TIME.
 _FIRST_HORIZON = FIRST_TEST_TIME / 8.0
 _HORIZON_FACTOR = 2.0
 # A grid index on the coarsest lattice of `BoundedOrbitSearch`. The bounded pixels to test are few and lie around islands, so
 # one round with all of them fills the lanes of the kernels better than one round per lattice.
 _COARSEST_LATTICE_INDEX = 8
+
+
+class Trust(IntEnum):
+    """Whether the outcome of a pixel is robust against small changes.
+
+    ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
+    outcome, and the orbit escapes or is bounded on evidence. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its
+    number of crossings before the escape or its escape time changed, or it is bounded only by chance.
+    ``NOT_TESTED``: not computed yet.
+    """
+
+    NOT_APPLICABLE = 0
+    LIKE_NEIGHBOURS = 1
+    CONFIRMED = 2
+    DOUBTFUL = 3
+    NOT_TESTED = 4
+
+    def __str__(self) -> str:
+        return self.name.lower().replace("_", " ")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,13 +115,13 @@ def compute_trust(
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
     A pixel is tested if one of its eight neighbours has another fate or, both having escaped, other crossings, and also if it is
-    bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different directions by `SHIFT`
-    (see `shifted_starts`), the second time with tolerance `SECOND_TOLERANCE`. The pixel is doubtful if in either rerun its fate
-    changes, or its crossings before the escape, or its escape time by more than `LARGEST_DELAY`. Crossings of bounded orbits are
-    not compared, as orbits that are bounded on evidence are not integrated to t_max.
+    bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different directions by 1e-11 length
+    units of the well, at most a hundredth of a pixel, the second time with ten times the tolerance. The pixel is doubtful if in
+    either rerun its fate changes, or its crossings before the escape, or its escape time by more than 0.01 time units of the
+    well. Crossings of bounded orbits are not compared, as orbits that are bounded on evidence are not integrated to t_max.
 
-    A pixel that is bounded without evidence is also doubtful if the two reruns come to differ by `APART`. Such an orbit is
-    chaotic, and only chance keeps it inside until t_max. Of two pixels that are mirror images only the first is tested.
+    A pixel that is bounded without evidence is also doubtful if the two reruns come to differ by 1e-4 in phase space. Such an
+    orbit is chaotic, and only chance keeps it inside until t_max. Of two pixels that are mirror images only the first is tested.
 
     Parameters
     ----------
@@ -148,41 +148,10 @@ def compute_trust(
     escape_map.check_complete("escape_map")
     unlike = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
 
-    def begin_test(pixels: EscapeMap, place: Place) -> _TrustTest:
-        return _TrustTest(pixels, unlike[place], _SHIFTED_STARTS)
+    def begin_test(pixels: EscapeMap, place: Place) -> TrustTest:
+        return TrustTest(pixels, unlike[place], SHIFTED_STARTS)
 
     return analyse_map(escape_map, begin_test, TrustMap, on_frame, execution)
-
-
-def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT_EXECUTION) -> float:
-    """Estimate for which share of the pixels of a complete map double precision gives another fate or number of crossings.
-
-    Some `SAMPLED_SIDE`² pixels, evenly spread, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only
-    errors of the integration differ. Where the outcome changes, one of the two is wrong: the share is at most the sum of both
-    shares of wrong pixels, and at least their difference.
-
-    Parameters
-    ----------
-    escape_map
-        A complete map of one potential.
-    execution
-        How the computation runs.
-
-    Returns
-    -------
-    The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN if none is interior.
-    """
-    thinned = _thinned(escape_map)
-    unlike = find_unlike_neighbours(thinned.fate, thinned.crossings)
-    return run_to_frame(_TrustTest(thinned, unlike, _SAME_STARTS), execution).doubtful_share
-
-
-def _thinned(escape_map: EscapeMap) -> EscapeMap:
-    """Evenly spread pixels of a map, with the request of the whole map."""
-    down, right = (max(1, side // SAMPLED_SIDE) for side in escape_map.fate.shape)
-    arrays = {name: getattr(escape_map, name)[down // 2 :: down, right // 2 :: right] for name in PIXEL_ARRAYS}
-    x, ordinate = escape_map.x[right // 2 :: right], escape_map.ordinate[down // 2 :: down]
-    return replace(escape_map, x=x, ordinate=ordinate, batch=None, trust=None, **arrays)
 
 
 def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarray:
@@ -210,87 +179,6 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
     return unlike & interior
 
 
-def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-    """Shift points of the plane in two directions, so that mirror images stay mirror images.
-
-    The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
-    first direction is towards 0 in both coordinates, so that the points stay inside, and the second in the abscissa alone. An
-    axis h is not shifted, so that the energy and its exits do not change: the other one is shifted towards 0, then away from it.
-
-    Parameters
-    ----------
-    spec
-        The map in units of its well.
-    x, ordinate
-        (n,) coordinates of the points.
-
-    Returns
-    -------
-    For each direction (n,) x and (n,) ordinate of the shifted points.
-    """
-    window, (columns, rows) = spec.find_window(), spec.resolution
-    sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
-    is_free = spec.plane.free_axes
-    points = x, ordinate
-    axes = zip(points, sides, is_free, strict=True)
-    nearer = tuple(_shifted_towards_zero(along, side) if free else along for along, side, free in axes)
-    if all(is_free):
-        return (nearer[0], nearer[1]), (nearer[0], ordinate)
-    away = tuple(along + (along - shifted) for along, shifted in zip(points, nearer, strict=True))
-    return (nearer[0], nearer[1]), (away[0], away[1])
-
-
-def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
-    distance = np.maximum(min(SHIFT, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
-    # A start on y = 0 is shifted up: from below it would cross y = 0 once more.
-    shifted: np.ndarray = np.where(coordinate > 0.0, coordinate - distance, coordinate + distance)
-    return shifted
-
-
-def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-    """The points themselves."""
-    return ((x, ordinate),)
-
-
-@dataclass(frozen=True)
-class _Perturbation:
-    """How orbits are integrated again: the starts and the tolerance of each rerun, and the largest change of escape times."""
-
-    starts: Callable[[MapSpec, np.ndarray, np.ndarray], tuple[tuple[np.ndarray, np.ndarray], ...]]
-    tolerances: tuple[float, ...]
-    largest_delay: float
-
-
-_SHIFTED_STARTS = _Perturbation(shifted_starts, (TOLERANCE, SECOND_TOLERANCE), LARGEST_DELAY)
-_SAME_STARTS = _Perturbation(_same_starts, (SECOND_TOLERANCE,), np.inf)
-
-
-@dataclass(frozen=True, eq=False)
-class _Rerun:
-    """The orbits (n,) of the tested pixels, integrated once more, with their outcomes on the map."""
-
-    batch: OrbitBatch
-    tolerance: float
-    largest_delay: float
-    fate: np.ndarray
-    crossings: np.ndarray
-    escape_time: np.ndarray
-
-    def is_decided(self) -> np.ndarray:
-        """(n,) bool: the orbit has a fate."""
-        decided: np.ndarray = self.batch.fate != Fate.NOT_COMPUTED
-        return decided
-
-    def has_changed(self) -> np.ndarray:
-        """(n,) bool: the outcome differs from the map's, or will, as the orbit already has more crossings."""
-        batch, escaped = self.batch, self.fate >= 1
-        other_fate = self.is_decided() & (batch.fate != self.fate)
-        other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)
-        delayed = (batch.fate == self.fate) & (np.abs(batch.t - self.escape_time) > self.largest_delay)
-        changed: np.ndarray = other_fate | escaped & (other_crossings | delayed | (batch.crossings > self.crossings))
-        return changed
-
-
 def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
     """(rows, columns) bool: bounded pixels above the escape energy that have no evidence."""
     spec = escape_map.spec
@@ -299,10 +187,10 @@ def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
     return without_evidence
 
 
-class _TrustTest:
+class TrustTest:
     """The pixels of a map to test and the state of their reruns, in units of the well; `unlike`: see `find_unlike_neighbours`."""
 
-    def __init__(self, given: EscapeMap, unlike: np.ndarray, perturbation: _Perturbation) -> None:
+    def __init__(self, given: EscapeMap, unlike: np.ndarray, perturbation: Perturbation) -> None:
         self._given_spec, escape_map = given.spec, given.in_well_units()
         self.spec = escape_map.spec
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
@@ -318,7 +206,7 @@ class _TrustTest:
         self._undecided = np.arange(self._codes.pixels.size)
         self._curves, self._reruns = self._prepare_reruns(escape_map, perturbation)
 
-    def _prepare_reruns(self, escape_map: EscapeMap, perturbation: _Perturbation) -> tuple[np.ndarray, list[_Rerun]]:
+    def _prepare_reruns(self, escape_map: EscapeMap, perturbation: Perturbation) -> tuple[np.ndarray, list[Rerun]]:
         """The exit curves of each energy, and the reruns at t = 0."""
         spec, potential, pixels = self.spec, self.spec.potential, self._codes.pixels
         x, ordinate = escape_map.coordinates(pixels)
@@ -335,7 +223,7 @@ class _TrustTest:
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
             batch.mark_outside(potential, self._undecided, curves)
             batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Evidence.CLOSED)
-            reruns.append(_Rerun(batch, tolerance, perturbation.largest_delay, fate, crossings, escape_time))
+            reruns.append(Rerun(batch, tolerance, perturbation.largest_delay, fate, crossings, escape_time))
         return curves, reruns
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
@@ -359,7 +247,7 @@ class _TrustTest:
             self._find_chaotic(horizon)
             self._update_codes()
 
-    def _propagate_rerun(self, horizon: float, execution: Execution, rerun: _Rerun) -> None:
+    def _propagate_rerun(self, horizon: float, execution: Execution, rerun: Rerun) -> None:
         propagate_batch(
             self.spec.potential, self._curves, rerun.batch, self._undecided, horizon,
             final=horizon == self.spec.t_max, tolerance=rerun.tolerance, execution=execution,

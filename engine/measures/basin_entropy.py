@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_count
 from engine.foundations.wording import format_count
-from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, checked_labels
+from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, checked_labels, describe_labels
 
 BOX = 5
 """Default side of a box in pixels, that is 25 starts per box, as in Daza et al. (2016)."""
@@ -21,7 +21,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class BasinEntropy(Result):
+class BasinEntropy(RecordedResult):
     """Basin entropies of a labelled image, in nats (dimensionless).
 
     Attributes
@@ -119,6 +119,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     >>> round(entropy.s_b, 2), round(entropy.s_bb, 2), entropy.beyond_ln2
     (0.5, 1.06, True)
     """
+    made_by = describe_labels(labels)
     labels, valid = checked_labels(labels, valid, bounded=ENTROPY_COUNTS_BOUNDED)
     box = checked_count("box", box, 2, min(labels.shape))
     boxes = _tile(labels, box)[_tile(valid, box).all(axis=1)]
@@ -127,7 +128,8 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     s_b, s_b_error = _mean_and_error(entropies)
     s_bb, s_bb_error = _mean_and_error(entropies[on_boundary])
     return BasinEntropy(
-        s_b, s_bb, s_b_error, s_bb_error, len(boxes), int(np.count_nonzero(on_boundary)), np.unique(boxes).size, box
+        s_b, s_bb, s_b_error, s_bb_error, len(boxes), int(np.count_nonzero(on_boundary)), np.unique(boxes).size, box,
+        made_by=made_by,
     )  # fmt: skip
 
 

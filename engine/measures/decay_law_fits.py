@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -95,7 +96,7 @@ def fit_decay_laws(
         t_low, settled = _choose_t_low(times, t_high) if not statistics.undecided else (np.nan, False)
     sample = _Sample(t_low, t_high, times[times > (t_low if np.isfinite(t_low) else 0.0)])
     counts = (sample.times.size, all_times.size, statistics.undecided)
-    laws = DecayLaws(*compute_survival(statistics), t_low, t_high, *counts, settled)
+    laws = DecayLaws(*compute_survival(statistics), t_low, t_high, *counts, settled, made_by=statistics.made_by)
     if counts[0] < MIN_ESCAPES or statistics.undecided or not np.isfinite(t_low):
         return laws
     return _compare(laws, sample, statistics)
@@ -180,7 +181,7 @@ def _compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> 
     survival = [1.0 - count / statistics.decided for count in escaped]
     exponential, power_law = (_fit_law(law, sample, *survival) for law in DecayLaw)
     differences = sample.log_likelihoods(DecayLaw.EXPONENTIAL) - sample.log_likelihoods(DecayLaw.POWER_LAW)
-    ratio, half_width = float(differences.mean()), _DEVIATIONS * float(differences.std()) / np.sqrt(differences.size)
+    ratio, half_width = float(differences.mean()), _DEVIATIONS * float(differences.std()) / math.sqrt(differences.size)
     preferred = None
     if laws.settled and exponential.plausible and ratio > half_width:
         preferred = DecayLaw.EXPONENTIAL

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count, format_whole
 
 MIN_ESCAPES = 100
@@ -76,13 +76,13 @@ class LawFit:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DecayLaws(Result):
+class DecayLaws(RecordedResult):
     """Decay laws fitted to the escapes of a map or of a part of it; arrays are read-only.
 
     Attributes
     ----------
     times, survival
-        (m,) survival S(t), as from `compute_survival`.
+        (m,) survival S(t), the share of the decided starts that are still inside just after t.
     t_low, t_high
         Window of the fits; t_low is NaN if no window could be chosen.
     escapes

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.proportions import wilson_interval
-from engine.foundations.result import Result
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.classification import Outcomes
-from engine.propagation.fates import Fate
+from engine.propagation.fates import Fate, OrbitResult
 from engine.slices.window import GivenWindow, Window, checked_window
 from engine.systems.outcomes import Outcome
 
@@ -28,7 +28,7 @@ _LOWER_EDGE = 0.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EscapeStatistics(Result):
+class EscapeStatistics(OrbitResult):
     """Counts of the interior starts of a map or of a part of it, as in Zotos (2014), section 5; arrays are read-only.
 
     Attributes
@@ -36,7 +36,7 @@ class EscapeStatistics(Result):
     channel_counts
         Number of escapes through channel 1, 2, …, and at the other `outcomes`: collisions count as escapes.
     bounded, undecided, failed
-        Number of starts with the fate `Fate.BOUNDED`, `NOT_COMPUTED` (including orbits not started yet) and `FAILED`.
+        Number of starts with the fate `Fate.BOUNDED`, `Fate.NOT_COMPUTED` (including orbits not started yet) and `Fate.FAILED`.
     mean_escape_time, median_escape_time
         Mean and median over the escapes, dimensionless; NaN without escapes.
     crossing_counts
@@ -59,6 +59,7 @@ class EscapeStatistics(Result):
     escape_times: np.ndarray = field(repr=False)
     t_max: float = float("inf")
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
+    held_as: ClassVar = OrbitResult.held_as | {"crossing_counts": "escapes"}
 
     @property
     def starts(self) -> int:
@@ -167,10 +168,14 @@ def compute_statistics(frame: MapLike | Outcomes, window: GivenWindow | None = N
     if isinstance(frame, Outcomes):
         if window is not None:
             raise ValueError(f"window={window}: must be None for orbits that are no map")
-        return _count(frame.fate, frame.escape_time, frame.crossings, frame.outcomes, frame.t_max)
+        counted = _count(frame.fate, frame.escape_time, frame.crossings, frame.outcomes, frame.t_max)
+        return replace(counted, made_by=frame.made_by)
     frame = as_map("frame", frame)
-    part = pixels_inside(frame, None if window is None else checked_window(window))
-    return _count(frame.fate[part], frame.escape_time[part], frame.crossings[part], frame.spec.outcomes, frame.spec.t_max)
+    box = None if window is None else checked_window(window)
+    part = pixels_inside(frame, box)
+    counted = _count(frame.fate[part], frame.escape_time[part], frame.crossings[part], frame.spec.outcomes, frame.spec.t_max)
+    counted_in = {} if box is None else {"counted_in": (box.x_low, box.x_high, box.ordinate_low, box.ordinate_high)}
+    return replace(counted, made_by=frame.spec.provenance() | counted_in)
 
 
 def _count(

@@ -48,6 +48,15 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
     return read_only(fate.view()), read_only(valid)
 
 
+def describe_labels(labels: Any) -> dict[str, Any]:
+    """How the map was made of which labels are given; empty for an array."""
+    return as_map("labels", labels).spec.provenance() if _is_map(labels) else {}
+
+
+def _is_map(labels: Any) -> bool:
+    return isinstance(labels, EscapeMap) or hasattr(labels, "data_vars")
+
+
 def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
     """`labels` as integers and `valid` as bool, both (rows, columns), of a map those of `exit_labels`.
 
@@ -56,7 +65,7 @@ def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarra
     ValueError
         For any other shape or type, and for negative labels without `valid`: they are codes of starts without an outcome.
     """
-    if isinstance(labels, EscapeMap) or hasattr(labels, "data_vars"):
+    if _is_map(labels):
         labels, valid = exit_labels(as_map("labels", labels).fate, bounded=bounded)
     labels = checked_array("labels", labels, keep_type=True)
     if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):

@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.proportions import wilson_interval
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_array, checked_integers, short_repr
 from engine.foundations.wording import format_count, format_decimals
 from engine.systems.well_units import LENGTH, TIME
@@ -47,7 +47,7 @@ def _empty_counts() -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class UncertaintyExponent(Result):
+class UncertaintyExponent(RecordedResult):
     """Share of uncertain pairs against their separation, and the fitted power law; dimensionless, arrays are read-only.
 
     Attributes

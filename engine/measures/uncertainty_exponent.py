@@ -67,9 +67,9 @@ def compute_uncertainty_exponent(
     the interior of the window, the second one lies at distance ε in a random direction of the plane. On (x, h) both have the
     energy of a row of pixels, and the second one is displaced along x. Pairs with a forbidden or outside start are drawn again.
 
-    Orbits are integrated to min(t_max, `HORIZON`), and being inside at that time is a fate like a channel. The result's
-    `one_inside` and `both_inside` count the pairs that this can affect. The exponent of the basins of escaping orbits alone is
-    ``fit_uncertainty(separations, pairs − one_inside − both_inside, uncertain − one_inside)``.
+    Orbits are integrated to t_max, at most 1e4 time units of the well, and being inside at that time is a fate like a channel.
+    The result's `one_inside` and `both_inside` count the pairs that this can affect. The pairs of escaping orbits alone are
+    ``pairs − one_inside − both_inside``, the uncertain ones among them ``uncertain − one_inside``.
 
     Separations with few uncertain pairs get more pairs, as many as the law fitted to the first pairs suggests, within a fixed
     total integration time.
@@ -94,7 +94,7 @@ def compute_uncertainty_exponent(
 
     Returns
     -------
-    The `UncertaintyExponent` from `fit_uncertainty`.
+    The `UncertaintyExponent`.
 
     Raises
     ------
@@ -123,7 +123,8 @@ def compute_uncertainty_exponent(
     sampler.sample(sampler.plan_more_pairs(work), execution.part(1, 2))
     execution.report(lambda: 1.0)
     fit = sampler.fit()
-    return replace(units.restore(fit), amplitude=fit.amplitude / units.length**fit.exponent)
+    amplitude = fit.amplitude / units.length**fit.exponent
+    return replace(units.restore(fit), amplitude=amplitude, made_by=spec.provenance())
 
 
 def _separations(spec: MapSpec, count: int) -> np.ndarray:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count
-from engine.measures.labels import WADA_COUNTS_BOUNDED, checked_labels
+from engine.measures.labels import WADA_COUNTS_BOUNDED, checked_labels, describe_labels
 
 MIN_BASINS = 3
 """Fewest basins for the Wada property; two basins always share their boundary."""
@@ -23,7 +23,7 @@ _NUMBER_WORDS = ("none", "one", "two")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class WadaTest(Result):
+class WadaTest(RecordedResult):
     """Distances between the boundaries of the basins of an image, in pixels; arrays are read-only.
 
     Attributes
@@ -47,6 +47,7 @@ class WadaTest(Result):
     radius_99: float
     boundary_pixels: int
     shares: np.ndarray = field(repr=False)
+    held_as: ClassVar = {"shares": "share"}
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """The share of the boundary pixels within each distance."""
@@ -104,17 +105,18 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     >>> print(compute_wada_test(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (80, 80), t_max=1e3))).describe())
     The boundaries of the 4 basins coincide within 9 pixels, 99 % of the 1756 boundary pixels within 6.
     """
+    made_by = describe_labels(labels)
     labels, valid = checked_labels(labels, valid, bounded=WADA_COUNTS_BOUNDED)
     basins = tuple(np.unique(labels[valid]).tolist())
     boundary = _slim_boundary(labels, valid)
     count = int(np.count_nonzero(boundary))
     if len(basins) < MIN_BASINS or not count:
-        return WadaTest(basins, math.nan, math.nan, count, read_only(np.empty(0)))
+        return WadaTest(basins, math.nan, math.nan, count, read_only(np.empty(0)), made_by=made_by)
     distances = np.sort(_largest_distances(labels, valid, basins, boundary))
     shares = np.cumsum(np.bincount(distances[np.isfinite(distances)].astype(np.intp))) / count
     within = math.ceil(_PERCENTAGE * count / 100)
     radius_99 = float(distances[within - 1])
-    return WadaTest(basins, float(distances[-1]), radius_99, count, read_only(shares))
+    return WadaTest(basins, float(distances[-1]), radius_99, count, read_only(shares), made_by=made_by)
 
 
 def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:

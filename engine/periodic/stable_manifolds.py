@@ -13,7 +13,7 @@ import itertools
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from engine.slices.default_window import default_window
 from engine.slices.section import SECTION
 from engine.slices.window import GivenWindow, Window, checked_window
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH, MOMENTUM
 
 MOST_IMAGES = 6
@@ -94,6 +95,11 @@ class StableManifolds(Result):
     images: int
     truncated: bool
     row_dimension: ClassVar = "point"
+    held_as: ClassVar = {"arcs": "arc"}
+
+    def provenance(self) -> dict[str, Any]:
+        """The potential, the energy, the slice, the integrator and the version."""
+        return describe_run(self.potential, energy=self.energy, plane=SECTION.plane.title)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """All points, with the number of their arc from 1, its channel and its image."""
@@ -102,6 +108,24 @@ class StableManifolds(Result):
         points = (np.concatenate([np.empty(0), *(getattr(arc, name) for arc in self.arcs)]) for name in ("x", "px"))
         codes = np.repeat(np.array(labels, int).reshape(-1, 3), sizes, axis=0).T
         return dict(zip(("arc", "channel", "image", "x", "px"), (*codes, *points), strict=True))
+
+    @staticmethod
+    def arcs_of(columns: Mapping[str, np.ndarray]) -> tuple[ManifoldArc, ...]:
+        """The arcs of such `columns`."""
+        starts = np.flatnonzero(np.diff(columns["arc"], prepend=0))
+        parts = [np.split(columns[name], starts[1:]) for name in ("channel", "image", "x", "px")] if starts.size else [[]] * 4
+        return tuple(
+            ManifoldArc(int(channel[0]), int(image[0]), read_only(x), read_only(px))
+            for channel, image, x, px in zip(*parts, strict=True)
+        )
+
+    def describe(self) -> str:
+        """The numbers of arcs and points in one sentence."""
+        images = sorted({arc.image for arc in self.arcs})
+        shown = f"images {', '.join(map(str, images))}" if len(images) > 1 else f"image {images[0]}" if images else "no image"
+        points = sum(arc.x.size for arc in self.arcs)
+        truncated = ", some of them truncated spirals" if self.truncated else ""
+        return f"Stable manifolds of the Lyapunov orbits, {shown}: {len(self.arcs)} arcs of {points} points{truncated}."
 
     @property
     def nbytes(self) -> int:
@@ -132,7 +156,7 @@ def find_stable_manifolds(
     energy
         h, finite, dimensionless.
     images
-        Number of successive intersections of each tube with the section, 1 to `MOST_IMAGES`.
+        Number of successive intersections of each tube with the section, 1 to 6.
     window
         Part of (x, px) to resolve in a zoom, given as in `MapSpec`: the spacing of points follows from its size, as far as the
         number of orbits allows, and curves beyond it are left out. None for the whole plane.

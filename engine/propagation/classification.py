@@ -16,6 +16,7 @@ from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate, OrbitResult
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import TIME
 
 ENERGY_TOLERANCE = 1e-9
@@ -112,7 +113,8 @@ def classify_orbits(
     t_max = potential.checked_t_max(t_max)
     units, well = potential.units, potential.in_well_units
     outcomes = classify_in_well_units(well, energy / units.energy, states / units.state, t_max / units.time, execution)
-    return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy))
+    made_by = describe_run(potential, energy=float(energy), t_max=t_max)
+    return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy), made_by=made_by)
 
 
 def classify_in_well_units(
@@ -145,8 +147,9 @@ def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndar
         row = int(np.argmin(legal))
         raise ValueError(f"states: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")
     difference = np.abs(potential.energy(array) - energy)
-    if np.any(difference > ENERGY_TOLERANCE * potential.units.energy):
+    tolerance = ENERGY_TOLERANCE * potential.units.energy
+    if np.any(difference > tolerance):
         row = int(np.argmax(difference))
         row_energy = float(potential.energy(array[row]))
-        raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {ENERGY_TOLERANCE:g}")
+        raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {tolerance:.2g}")
     return array

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from engine.foundations.codes import name_code
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.integrator.kernels import events
 from engine.systems.outcomes import Exit, Outcome, write_outcomes
 
@@ -45,25 +45,6 @@ class Regularity(IntEnum):
     CHAOTIC = 2
     NO_SIGN_OF_CHAOS = 3
     NOT_JUDGED = 4
-
-    def __str__(self) -> str:
-        return self.name.lower().replace("_", " ")
-
-
-class Trust(IntEnum):
-    """Whether the outcome of a pixel is robust against small changes.
-
-    ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
-    outcome, and the orbit escapes or is bounded on evidence. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its
-    number of crossings before the escape or its escape time changed, or it is bounded only by chance.
-    ``NOT_TESTED``: not computed yet.
-    """
-
-    NOT_APPLICABLE = 0
-    LIKE_NEIGHBOURS = 1
-    CONFIRMED = 2
-    DOUBTFUL = 3
-    NOT_TESTED = 4
 
     def __str__(self) -> str:
         return self.name.lower().replace("_", " ")
@@ -113,10 +94,11 @@ def renumber(fates: np.ndarray, numbers: np.ndarray) -> np.ndarray:
     return renumbered
 
 
-class OrbitResult(Result):
+class OrbitResult(RecordedResult):
     """Base of results on orbits, with the outcomes of their potential."""
 
     outcomes: tuple[Outcome, ...]
+    held_as: ClassVar[dict[str, str]] = {"outcomes": "outcomes"}
 
     @property
     def fate_labels(self) -> Sequence[str]:

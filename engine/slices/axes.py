@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import MutableMapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -188,7 +188,7 @@ class ParameterAxis(_SystemAxis):
     low, high
         Its range in the default window, dimensionless, low < high, within `System.range_of`.
     system
-        The system; its own value of the parameter is that at which exits have their numbers.
+        The system, or its potential; its own value of the parameter is that at which exits have their numbers.
 
     Raises
     ------
@@ -202,7 +202,14 @@ class ParameterAxis(_SystemAxis):
     high: float
     system: System
 
+    # Type checkers accept what is converted; fields have the types of what is kept.
+    if TYPE_CHECKING:
+
+        def __init__(self, key: str, low: float, high: float, system: System | Potential) -> None: ...
+
     def __post_init__(self) -> None:
+        if isinstance(self.system, Potential):
+            object.__setattr__(self, "system", _system_of(self.system))
         check_type("system", self.system, System)
         known = self.system.parameter_names
         if self.key not in known:
@@ -240,6 +247,15 @@ class HeldParameter(_SystemAxis):
 
     key: str
     value: float
+
+
+def _system_of(potential: Potential) -> System:
+    if potential.system is None:
+        raise ValueError(
+            f"system={potential.name}: its letters are not known; must be a System, or the potential of one, such as "
+            "System.from_formula(text, b=0.5)"
+        )
+    return potential.system
 
 
 Axis = Coordinate | Direction | ParameterAxis | HeldParameter

@@ -39,7 +39,7 @@ _VALUES = 9
 # Points of a line of pixels that are tested for symmetry, and the largest distance of its pixels from 0 as a share of the window.
 _LINE_POINTS = 65
 _CENTRED = 1e-9
-_EMPTY = "must be at least about 1e-5 above the minimum of the well, and the fixed values inside the well"
+_EMPTY = "must be at least about 1e-5 above the minimum of the well; fixed values must lie inside the well"
 
 Range = tuple[float, float]
 

@@ -23,8 +23,6 @@ from engine.systems.potential import Potential
 # Nodes divide the range of the axis into `_PARTS`, and the distance from the system's own value to the farther end of the range
 # into at most `_MOST_PARTS`. A part whose ends have different exits is halved up to `_HALVINGS` times.
 _PARTS, _MOST_PARTS, _HALVINGS = 8, 24, 12
-# Most potentials whose critical points are searched, which takes some 10 s.
-_MOST_FOUND = 120
 _NEWTON_STEPS = 20
 # Potentials along the axis that `find_members` finds.
 _TRIED = 112
@@ -33,6 +31,10 @@ _TRIED = 112
 _CONVERGED, _LARGEST_SHARE = 1e-12, 0.5
 # Relative to the distance from the origin, saddles closer than this are the same one.
 _SAME = 1e-7
+
+
+MOST_FOUND = 120
+"""Most potentials of a family whose critical points are searched, which takes some 10 s."""
 
 
 class ManyExitsError(ValueError):
@@ -73,10 +75,17 @@ class ParameterFamily:
 
     Outcomes keep the numbers that they have at the system's own value of the parameter. Exits that do not exist there get the
     numbers after those, in the order in which they appear, first towards higher values and then towards lower ones.
+
+    Parameters
+    ----------
+    axis
+        The axis.
+    most_found
+        Most potentials whose critical points are searched, 1 or more.
     """
 
-    def __init__(self, axis: ParameterAxis) -> None:
-        self._axis = axis
+    def __init__(self, axis: ParameterAxis, most_found: int = MOST_FOUND) -> None:
+        self._axis, self._most_found = axis, most_found
         self._own = axis.system.value_of(axis.key)
         self._reach = max(abs(axis.low - self._own), abs(axis.high - self._own))
         self._step = max((axis.high - axis.low) / _PARTS, self._reach / _MOST_PARTS)
@@ -160,7 +169,7 @@ class ParameterFamily:
     def _linked(self, value: float, node: float) -> Member:
         """Find the potential at a value; its exits get the numbers of the same exits at a node, and new numbers otherwise."""
         self._found += 1
-        if self._found > _MOST_FOUND:
+        if self._found > self._most_found:
             raise ManyExitsError(
                 f"parameter {self._axis.key}: its exits change too often up to {value:.6g}; choose a smaller range"
             )

@@ -43,7 +43,7 @@ def checked_slice(value: Any) -> Slice:
     for plane in Plane if isinstance(value, str) else ():
         if value in (plane.title, plane.key):
             return plane
-    raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.title for plane in Plane)}")
+    raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.key for plane in Plane)}")
 
 
 def _fields(chosen: Slice) -> tuple[Any, ...]:
@@ -52,7 +52,7 @@ def _fields(chosen: Slice) -> tuple[Any, ...]:
 
 @checks_types(potential=Potential)
 def start_states(
-    potential: Potential, plane: Slice, energy: float | np.ndarray, x: float | np.ndarray, ordinate: float | np.ndarray
+    potential: Potential, plane: Slice | str, energy: float | np.ndarray, x: float | np.ndarray, ordinate: float | np.ndarray
 ) -> np.ndarray:
     """The initial conditions of points of a slice.
 

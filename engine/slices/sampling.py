@@ -31,7 +31,7 @@ def sample_starts(
     energy: float,
     count: int,
     *,
-    plane: Slice | None = None,
+    plane: Slice | str | None = None,
     window: GivenWindow | None = None,
     seed: int = 0,
 ) -> np.ndarray:

@@ -7,8 +7,9 @@ energy and exits of its own, along a parameter also a potential.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -51,6 +52,18 @@ class Slice:
     solved: Coordinate | None = None
     sign: int = 1
     fixed: tuple[tuple[Coordinate, float], ...] = ()
+
+    # Type checkers accept what is converted; fields have the types of what is kept.
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            abscissa: Axis,
+            ordinate: Axis,
+            solved: Coordinate | None = None,
+            sign: int = 1,
+            fixed: Iterable[tuple[Coordinate, float]] = (),
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         for name, axis in zip(("abscissa", "ordinate"), self.axes, strict=True):

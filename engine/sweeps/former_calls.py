@@ -1,16 +1,22 @@
-"""What stands for former calls of sweeps that had other parameters or results, see `engine.foundations.former_names`."""
+"""What stands for former functions that had other parameters or results, see `engine.foundations.former_names`."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from engine.exits.lyapunov_orbits import LyapunovOrbit
+from engine.foundations.validation import checks_types
 from engine.slices.axes import ParameterAxis
 from engine.slices.slice import Slice
 from engine.sweeps.measures import CURVES, QUICK_CURVES
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import compute_sweep
 from engine.systems.potential import Potential
+from engine.trajectories.trajectory import Orbit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,3 +43,18 @@ def make_curves_spec(
 def run_sweep(spec: SweepSpec, store: Any, **options: Any) -> xr.Dataset:
     """Compute a sweep into a store, and return its dataset."""
     return compute_sweep(spec, store, **options).dataset
+
+
+@checks_types(potential=Potential, orbit=LyapunovOrbit)
+def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
+    """Return the multipliers of an orbit; ValueError if the potential is not that of the orbit."""
+    potential.check_same_motion(orbit.potential, "orbit")
+    return orbit.find_multipliers()
+
+
+@checks_types(potential=Potential, orbit=Orbit)
+def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
+    """Return the crossings of y = 0 of an orbit; ValueError if the potential is not that of the orbit."""
+    if orbit.potential is not None:
+        potential.check_same_motion(orbit.potential, "orbit")
+    return replace(orbit, potential=potential).find_section_crossings()

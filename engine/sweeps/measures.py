@@ -14,7 +14,7 @@ import numpy as np
 
 from engine.foundations.codes import describe_codes
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.maps.compute import run_map
+from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.measures.basin_entropy import compute_basin_entropy
@@ -110,7 +110,7 @@ def compute_point(point: SweepPoint, *, frame: EscapeMap | None = None, executio
     import xarray as xr
 
     if frame is None:
-        frame = run_map(point.map_spec, execution.part(0, 2))
+        frame = compute_map(point.map_spec, execution=execution.part(0, 2))
     if not frame.complete:
         raise CancelledError
     measured = MeasuredMap(point, frame, execution.part(1, 2))

@@ -3,31 +3,36 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import fields
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_type_hints
 
-import numpy as np
-
-from engine.foundations.arrays import read_only
+from engine.exits.lyapunov_orbits import LyapunovOrbit
 from engine.foundations.extras import require_package
 from engine.foundations.former_names import rename_stored
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult, Result
+from engine.foundations.stored_fields import plain_attributes, read_field
 from engine.foundations.validation import checks_types
-from engine.maps.origin_fates import OriginFateMap
-from engine.maps.regularity import RegularityMap
+from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import read_map, read_spec
-from engine.maps.trust import TrustMap
 from engine.measures.basin_entropy import BasinEntropy
+from engine.measures.decay_laws import DecayLaws
+from engine.measures.escape_statistics import EscapeStatistics
 from engine.measures.uncertainty_exponent import UncertaintyExponent
+from engine.measures.wada import WadaTest
+from engine.periodic.stable_manifolds import StableManifolds
 from engine.propagation.classification import Outcomes
 from engine.sweeps.sweep import Sweep
 from engine.systems.outcomes import read_outcomes
+from engine.systems.potential import Potential
+from engine.systems.review.potential_review import PotentialReview
 from engine.systems.stored_potential import read_potential
 from engine.trajectories.birkhoff_digits import BirkhoffDigits
+from engine.trajectories.flux import EscapeFlux
 from engine.trajectories.nearest_divergent_start import DivergentStart
+from engine.trajectories.orbit_verdicts import OrbitVerdict
 from engine.trajectories.sampled_orbits import SampledOrbits
 from engine.trajectories.separation import Separation
 from engine.trajectories.trajectory import Orbit
@@ -38,15 +43,22 @@ if TYPE_CHECKING:
 _KINDS: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
-        EscapeMap, RegularityMap, TrustMap, OriginFateMap, Orbit, Outcomes, Separation, BirkhoffDigits, DivergentStart,
-        BasinEntropy, UncertaintyExponent, Sweep, SampledOrbits,
+        EscapeMap, StableManifolds, Orbit, SampledOrbits, Outcomes, OrbitVerdict,
+        LyapunovOrbit, EscapeFlux, Separation, BirkhoffDigits, DivergentStart, BasinEntropy, WadaTest, UncertaintyExponent,
+        EscapeStatistics, DecayLaws, Sweep, Potential, PotentialReview,
     )
 }  # fmt: skip
-# Readers of results with a field that is neither a number nor an array nor a request of maps.
-_READERS: dict[Any, Callable[[xr.Dataset], Result]] = {EscapeMap: read_map, Sweep: Sweep}
+# Readers of results that are no dataclasses of what their files hold.
+_READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
+    EscapeMap: read_map,
+    Sweep: Sweep,
+    Potential: lambda dataset: read_potential(dataset.attrs),
+}
 # Flags of finished energies in the stores of earlier versions, and the name of their curves: both are opened as plain datasets.
 _FORMER_FLAGS, _FORMER_CURVES = "done", "Curves"
 _ZARR = "zarr.json"
+# How files of HDF5, and thus of NetCDF 4, begin.
+_HDF5 = b"\x89HDF"
 
 
 @checks_types(path=(str, os.PathLike))
@@ -56,15 +68,15 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     Parameters
     ----------
     path
-        A NetCDF file, or the folder of a Zarr store, to which ``result.to_xarray()`` was written, or the store of a sweep.
+        A NetCDF file that `Result.save` wrote, or the folder of a Zarr store, to which ``result.to_xarray()`` was written, or the
+        store of a sweep.
 
     Returns
     -------
-    An equal result: an `EscapeMap`, `RegularityMap`, `TrustMap`, `OriginFateMap`, `Orbit`, `SampledOrbits`, `Outcomes`,
-    `Separation`, `BirkhoffDigits`, `DivergentStart`, `BasinEntropy`, `UncertaintyExponent`, or `Sweep`, which `compute_sweep`
-    takes as `earlier`. A map has no integration state and cannot be resumed. The dataset of a sweep in a store is read on access;
-    measures and analyses take one of its maps, ``sweep.dataset.sel(h=0.3)``. Sweeps and curves of earlier versions are opened as
-    datasets.
+    An equal result, of any kind. A map has no integration state and cannot be resumed. `compute_sweep` takes a `Sweep` as
+    `earlier`; the dataset of a sweep in a store is read on access, and measures and analyses take one of its maps,
+    ``sweep.dataset.sel(h=0.3)``.
+    Sweeps and curves of earlier versions are opened as datasets.
 
     Raises
     ------
@@ -79,7 +91,7 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, open_result
     >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (20, 20), t_max=100.0))
     >>> with TemporaryDirectory() as folder:
-    ...     escapes.to_xarray().to_netcdf(f"{folder}/map.nc", engine="h5netcdf")
+    ...     escapes.save(f"{folder}/map.nc")
     ...     opened = open_result(f"{folder}/map.nc")
     >>> opened.spec == escapes.spec, bool((opened.fate == escapes.fate).all())
     (True, True)
@@ -99,11 +111,16 @@ def open_result(path: str | os.PathLike[str]) -> Any:
         raise ValueError(
             f"path={os.fspath(path)}: is a folder without {_ZARR}; must be a NetCDF file or a Zarr store of format 3"
         )
-    require_package("h5netcdf", "files")
+    with open(path, "rb") as file:
+        if file.read(len(_HDF5)) == _HDF5:
+            require_package("h5netcdf", "files")
     try:
-        dataset = xr.open_dataset(path, engine="h5netcdf")
+        dataset = xr.open_dataset(path)
     except OSError as error:
         raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: {error}") from error
+    except ValueError:
+        # xarray found no engine.
+        raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: it is none") from None
     with dataset as opened:
         return _read(path, opened.load())
 
@@ -111,35 +128,63 @@ def open_result(path: str | os.PathLike[str]) -> Any:
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     if dataset.attrs.get("result") == _FORMER_CURVES:
         return dataset
-    kind = _KINDS.get(str(dataset.attrs.get("result")))
+    kinds = _KINDS | PixelAnalysis.kinds
+    kind = kinds.get(str(dataset.attrs.get("result")))
     if kind is None:
         held = dataset.attrs.get("result", "no result")
-        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(_KINDS)}. xarray opens it")
+        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(kinds)}. xarray opens it")
     dataset = rename_stored(dataset)
-    if kind in _READERS:
-        return _READERS[kind](dataset)
-    values = {each.name: _value(kind, each.name, dataset) for each in fields(kind)}
-    found: Result = kind(**{name: value for name, value in values.items() if value is not None})
-    return found
+    return _READERS[kind](dataset) if kind in _READERS else _read_fields(kind, dataset)
 
 
-def _value(kind: Any, name: str, dataset: xr.Dataset) -> Any:
-    """The value of a field; None for the default one."""
-    if name == "spec":
-        return read_spec(dataset)
-    if name == "potential":
-        return read_potential(dataset.attrs) if "terms" in dataset.attrs else None
-    if name == "outcomes":
-        return read_outcomes(dataset.attrs.get(name, "[]"))
-    if name in ("x", "ordinate") and kind is OriginFateMap:
-        return read_only(read_spec(dataset).pixel_centres()[name == "ordinate"])
-    if name in dataset.variables and dataset[name].ndim:
-        return read_only(np.array(dataset[name].values))
-    found = dataset[name].values if name in dataset.variables else dataset.attrs.get(name)
-    if found is None:
-        return None
-    number = np.asarray(found).item()
-    if name == "complete":
-        return bool(number)
-    # Fates are numbers, as some of them are outcomes.
-    return kind.codes[name](number) if name == "evidence" else number
+def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
+    """A result from its fields; those that the file does not hold have their default values, or are None."""
+    hints, values = get_type_hints(kind), {}
+    if kind is SampledOrbits:
+        dataset = _with_times_of_each(dataset)
+    elif issubclass(kind, PixelAnalysis):
+        dataset = _with_names_of_axes(dataset)
+    for each in fields(kind):
+        name = kind.held_as.get(each.name, each.name)
+        if each.name in _HELD_OTHERWISE:
+            values[each.name] = _HELD_OTHERWISE[each.name](dataset)
+        elif name in dataset.variables:
+            values[each.name] = read_field(hints[each.name], dataset[name].values)
+        elif name in dataset.attrs:
+            values[each.name] = read_field(hints[each.name], dataset.attrs[name])
+        elif each.default is MISSING and each.default_factory is MISSING:
+            values[each.name] = None
+    result = kind(**values)
+    return replace(result, made_by=_read_made_by(result, dataset)) if isinstance(result, RecordedResult) else result
+
+
+def _read_made_by(result: RecordedResult, dataset: xr.Dataset) -> dict[str, Any]:
+    """The attributes that are not what was computed."""
+    computed = {"result", "outcomes", *result.numbers(), *(each.name for each in fields(result))} - _REQUESTED
+    return {name: value for name, value in plain_attributes(dataset.attrs).items() if name not in computed}
+
+
+def _with_times_of_each(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset of sampled orbits with the times of each of them."""
+    if "t" not in dataset.dims:
+        return dataset
+    dataset = dataset.rename_dims(t="sample")
+    return dataset.assign(t=dataset["t"].broadcast_like(dataset["x"]).transpose(*dataset["x"].dims))
+
+
+def _with_names_of_axes(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset of an analysis of a map with the axes x and ordinate."""
+    ordinate, abscissa = next(variable.dims for variable in dataset.data_vars.values() if variable.ndim == 2)
+    return dataset.rename({abscissa: "x", ordinate: "ordinate"})
+
+
+# Fields that are several attributes or variables.
+_HELD_OTHERWISE: Mapping[str, Callable[[xr.Dataset], Any]] = {
+    "spec": read_spec,
+    "potential": lambda dataset: read_potential(dataset.attrs) if "terms" in dataset.attrs else None,
+    "outcomes": lambda dataset: read_outcomes(dataset.attrs.get("outcomes", "[]")),
+    "arcs": lambda dataset: StableManifolds.arcs_of({str(name): each.values for name, each in dataset.variables.items()}),
+    "made_by": lambda dataset: {},
+}
+# What a file says once, of the request and of the result.
+_REQUESTED = {"potential", "energy", "t_max"}

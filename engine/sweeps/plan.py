@@ -11,7 +11,7 @@ import numpy as np
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.validation import checked_count, checks_types
 from engine.foundations.wording import format_count
-from engine.maps.compute import run_map
+from engine.maps.compute import compute_map
 from engine.maps.result import PIXEL_ARRAYS
 from engine.maps.spec import MapSpec
 from engine.sweeps.spec import SweepSpec
@@ -72,6 +72,11 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
     execution
         How the sweep will run. Only its number of workers is used; they are assumed to be as fast as this core.
 
+    Returns
+    -------
+    The plan, with the number of `orbits`, the wall time in `seconds` if all `cores` are busy, and the `bytes` of the arrays of
+    the maps; `describe` says it in a sentence.
+
     Raises
     ------
     ValueError
@@ -112,6 +117,6 @@ def _predict_seconds(spec: MapSpec, execution: Execution) -> float:
 def _measure_seconds(spec: MapSpec, execution: Execution) -> float:
     begun = time.thread_time()
     # The map is computed in this thread, because its processor time is measured.
-    if not run_map(spec, execution.in_this_thread()).complete:
+    if not compute_map(spec, execution=execution.in_this_thread()).complete:
         raise CancelledError
     return time.thread_time() - begun

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from engine.slices.window import GivenWindow
 from engine.sweeps.measures import MEASURES, SweepPoint
 from engine.systems.outcomes import Outcome, write_outcomes
 from engine.systems.potential import Potential
-from engine.systems.stored_potential import describe_potential
+from engine.systems.provenance import describe_potential
 
 MOST_VALUES = 10_000
 """Most energies, or values of a parameter, of one sweep."""
@@ -85,6 +85,24 @@ class SweepSpec:
     along: ParameterAxis | None = None
     energy: float | None = None
     refine: int = 0
+
+    # Type checkers accept what is converted; fields have the types of what is kept.
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            potential: Potential,
+            plane: Slice | str,
+            values: Sequence[float] | np.ndarray,
+            resolution: Sequence[int] = DEFAULT_RESOLUTION,
+            window: GivenWindow | None = None,
+            t_max: float = 1e5,
+            use_evidence: bool = True,
+            measures: Sequence[str] = ("maps",),
+            along: ParameterAxis | None = None,
+            energy: float | None = None,
+            refine: int = 0,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         check_type("along", self.along, (ParameterAxis, type(None)))

@@ -109,7 +109,8 @@ class SweepStore:
 
 def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, but: Sequence[str] = ()) -> None:
     """Raise a ValueError that names the difference if attributes are of another sweep; those of files have other types."""
-    for name, value in wanted.items():
+    # A default window follows from what else differs.
+    for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
         if name not in but and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
             raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")
 

@@ -143,7 +143,7 @@ def compute_sweep(
     on_frame
         Called in this thread after each value with the values so far.
     measure
-        Replaces `compute_point`, for example to use a cache.
+        Replaces the function that measures one value, for example to use a cache.
     execution
         How the computation runs.
 

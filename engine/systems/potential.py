@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -21,9 +21,13 @@ from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
 from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
 from engine.systems.parameters import WELL_PARAMETERS, symbol_of
+from engine.systems.provenance import describe_potential
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
+
+if TYPE_CHECKING:
+    from engine.systems.system import System
 
 Terms = tuple[tuple[int, int, float], ...]
 
@@ -59,6 +63,8 @@ class Potential(Result):
         (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`; it has no influence on any result.
     lineage
         How its well is found.
+    system
+        The `System` whose potential it is; None for one that was made otherwise.
     ends
         What orbits end at besides exits, of any kind of `engine.systems.outcomes`; `centres` and `escape_radius` replace those of
         their kinds.
@@ -85,6 +91,12 @@ class Potential(Result):
     ends: tuple[End, ...] = ()
     origin: tuple[float, float] = (0.0, 0.0)
     lineage: Lineage = field(default=SEARCHED, repr=False)
+    system: System | None = field(default=None, repr=False, compare=False)
+    inner_names: ClassVar = Result.inner_names | {
+        "check_at_rest", "check_same_motion", "check_without_centres", "checked_t_max", "continued", "form", "gaps",
+        "hessian_matrix", "in_well_units", "lineage", "reversed_in_time", "tori_are_evidence", "units", "well",
+    }  # fmt: skip
+    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system"), "terms")
 
     def __init__(
         self,
@@ -97,6 +109,7 @@ class Potential(Result):
         lineage: Lineage = SEARCHED,
         *,
         ends: Sequence[End] = (),
+        system: System | None = None,
     ) -> None:
         check_type("name", name, str)
         if isinstance(form, Expression):
@@ -115,6 +128,7 @@ class Potential(Result):
             "ends": tuple(sorted(_checked(ends, "ends", End), key=lambda end: list(KINDS).index(end.key))),
             "origin": (checked_number("origin", origin[0]), checked_number("origin", origin[1])),
             "lineage": lineage,
+            "system": system,
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
@@ -189,6 +203,7 @@ class Potential(Result):
             rotation=self.rotation * units.time,
             ends=tuple(end.scaled(1.0 / units.length) for end in self.ends),
             lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
+            system=None,
         )
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
@@ -197,7 +212,7 @@ class Potential(Result):
 
     def _changed(self, **values: Any) -> Potential:
         """Another potential, whose well is searched."""
-        return replace(self, lineage=SEARCHED, **values)
+        return replace(self, lineage=SEARCHED, system=None, **values)
 
     def in_rotating_frame(self, rotation: float) -> Potential:
         """The potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).
@@ -288,6 +303,10 @@ class Potential(Result):
         In a rotating frame and with ends besides the exits this evidence is not tested.
         """
         return not self.rotation and not self.ends
+
+    def provenance(self) -> dict[str, Any]:
+        """The potential in plain values, and the version."""
+        return super().provenance() | describe_potential(self)
 
     def numbers(self) -> dict[str, Any]:
         """The name, the escape energy and the number of channels."""

@@ -1,4 +1,4 @@
-"""Potentials as attributes of files, and back."""
+"""Potentials from the attributes of files, which `engine.systems.provenance` writes."""
 
 from __future__ import annotations
 
@@ -12,17 +12,6 @@ from engine.systems.outcomes import end_kinds
 from engine.systems.potential import Potential
 
 _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
-
-
-def describe_potential(potential: Potential) -> dict[str, Any]:
-    """Return name, formula with all digits, rotation, an attribute for each kind of end, and origin of the axes."""
-    return {
-        "potential": potential.name,
-        "terms": potential.form.text,
-        "rotation": potential.rotation,
-        **{kind.attribute: kind.write([end for end in potential.ends if isinstance(end, kind)]) for kind in end_kinds()},
-        "origin": json.dumps(potential.origin),
-    }
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:

@@ -31,9 +31,9 @@ class System:
     Attributes
     ----------
     case
-        A key of `engine.POTENTIALS`, or `TYPED`.
+        A key of `POTENTIALS`, or "typed" for a formula.
     formula
-        V(x, y) as text for `TYPED`, else empty.
+        V(x, y) as text for a formula, else empty.
     parameters
         Values by name: omega_1, omega_2 and epsilon as in `Potential.with_parameters`, rotation as in
         `Potential.in_rotating_frame`, and the letters of the formula as in `parse_formula`. Those that have their default value,
@@ -62,6 +62,19 @@ class System:
 
     def __hash__(self) -> int:
         return hash((self.case, self.formula, tuple(self.parameters.items())))
+
+    @classmethod
+    def from_formula(cls, formula: str, **parameters: float) -> System:
+        """The system of a formula, with values of its letters, of omega_1, omega_2 and epsilon, and of the rotation.
+
+        Examples
+        --------
+        >>> from escape_explorer import ParameterAxis, System
+        >>> system = System.from_formula("½(x² + y²) − b x²y", b=0.5, rotation=0.1)
+        >>> system.potential.channels, ParameterAxis("b", 0.5, 2.0, system).symbol
+        (1, 'b')
+        """
+        return cls(TYPED, formula, parameters)
 
     @property
     def entry(self) -> CatalogueEntry:
@@ -148,4 +161,5 @@ def _potential(system: System) -> Potential:
     values = {**entry.parameters, **system.parameters}
     letters = {name: value for name, value in values.items() if name not in WELL_PARAMETERS}
     well = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}
-    return parse_formula(entry.formula, entry.name, letters).with_parameters(**well).in_rotating_frame(values[ROTATION])
+    found = parse_formula(entry.formula, entry.name, letters).with_parameters(**well).in_rotating_frame(values[ROTATION])
+    return replace(found, system=system)

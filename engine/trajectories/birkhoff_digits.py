@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,16 +11,17 @@ from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS, count_agree
 from engine.exits.exit_rows import exits_of_orbit
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_state, checks_types
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import TIME
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BirkhoffDigits(Result):
+class BirkhoffDigits(RecordedResult):
     """Number of digits to which weighted averages over two consecutive windows agree, by window length; arrays are read-only.
 
     Attributes
@@ -28,7 +29,7 @@ class BirkhoffDigits(Result):
     windows
         (m,) increasing window lengths T, dimensionless, with the orbit bounded for 2T. Empty for a shorter orbit.
     digits
-        (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is `TORUS_DIGITS` or more.
+        (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is 8 or more.
     time_unit
         Unit of time of the well before rounding, 1/ω, of which the windows are multiples.
     """
@@ -86,7 +87,8 @@ def compute_birkhoff_digits(
     """
     start, units = checked_state("state", state), potential.units
     t_max = potential.checked_t_max(t_max)
-    return units.restore(_compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution))
+    found = _compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution)
+    return replace(units.restore(found), made_by=describe_run(potential, energy=float(potential.energy(start)), t_max=t_max))
 
 
 def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:

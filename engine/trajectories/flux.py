@@ -5,19 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.arrays import read_only
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.root_finding import bisect
 from engine.foundations.validation import checked_number, checks_types
 from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 
 # Rows and columns of the points between which the edge of the interior is searched, and halvings of the distance to it. Of each
 # three rows the middle one serves the estimate of the error.
@@ -26,7 +27,7 @@ _HALVINGS = 40
 
 
 @dataclass(frozen=True, eq=False)
-class EscapeFlux(Result):
+class EscapeFlux(RecordedResult):
     """Flux through each open exit at one energy, and the volume of the energy surface inside; dimensionless, arrays read-only.
 
     Attributes
@@ -46,6 +47,7 @@ class EscapeFlux(Result):
     flux: np.ndarray
     area: float
     area_error: float = field(repr=False)
+    held_as: ClassVar = {"channels": "channel"}
 
     def numbers(self) -> dict[str, Any]:
         """The energy, the volume, the total flux, and the decay rate and mean passage time of mixed motion."""
@@ -140,7 +142,8 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     actions = [orbit.period * float(np.mean(2.0 * (h - potential.value(orbit.x[:-1], orbit.y[:-1])))) for orbit in orbits]
     area, error = _interior_area(potential, h)
     channels = np.array([orbit.channel for orbit in orbits], np.int64)
-    return EscapeFlux(h, read_only(channels), read_only(np.array(actions)), area, error)
+    made_by = describe_run(potential, energy=h)
+    return EscapeFlux(h, read_only(channels), read_only(np.array(actions)), area, error, made_by=made_by)
 
 
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:

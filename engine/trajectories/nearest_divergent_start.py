@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -17,6 +17,7 @@ from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH
 
 # Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
@@ -64,7 +65,7 @@ class DivergentStart(OrbitResult):
 @checks_types(potential=Potential, execution=Execution)
 def find_divergent_start(
     potential: Potential,
-    plane: Slice,
+    plane: Slice | str,
     energy: Energy,
     x: float,
     ordinate: float,
@@ -137,7 +138,8 @@ def find_divergent_start(
     found = search.find_nearest(furthest / units.length)
     if found is None:
         return None
-    return plane.restore(found, units)
+    made_by = describe_run(potential, energy=h, plane=plane.title, t_max=t_max)
+    return replace(plane.restore(found, units), made_by=made_by)
 
 
 def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:

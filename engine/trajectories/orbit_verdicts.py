@@ -37,13 +37,18 @@ class OrbitVerdict(OrbitResult):
         Why the orbit is called bounded: ``INTEGRATED`` holds until `t_end` only, ``CLOSED`` for ever, and ``QUASI_PERIODIC`` is
         evidence of a torus, on which it would stay for ever. ``NONE`` if it is not bounded.
     character
-        If the orbit is bounded, what its indicators show until `t_end`; chaotic while inside or None if it is not.
+        If the orbit is bounded, what its indicators show until `t_end`: "regular", "chaotic", "no sign of chaos", like a regular
+        orbit but without evidence of a torus, or "undecided". If it is not, "chaotic while inside" or None.
     indicators
         The indicators that decide on the character, with their values; empty if none does.
     outcomes
         Those of the potential, see `Potential.outcomes`; empty if they are not known.
     exits_unknown
         Why the exits over saddles are not known at its energy, see `Orbit`; empty if they are.
+    findings
+        The indicators one by one: SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
+        given, the digits of windows. Each has a `name`, its `value` at the end of the orbit, NaN if not available, a
+        `conclusion`, one of the words of `character` or None, and a `sentence` with the reason.
     """
 
     fate: int
@@ -54,6 +59,7 @@ class OrbitVerdict(OrbitResult):
     indicators: str
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     exits_unknown: str = ""
+    findings: tuple[IndicatorVerdict, ...] = field(default=(), repr=False, compare=False)
     codes: ClassVar = {"fate": Fate, "evidence": Evidence}
 
     @property
@@ -133,7 +139,7 @@ class OrbitVerdict(OrbitResult):
 def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerdict:
     """The verdict on an orbit, from its energy, its outcome and its chaos indicators.
 
-    A bounded orbit is regular or chaotic if an indicator of `evaluate_indicators` concludes so and none concludes the opposite.
+    A bounded orbit is regular or chaotic if an indicator concludes so and none concludes the opposite.
     Without either, it shows no sign of chaos until the end if none of its deviation vectors does, and is undecided otherwise.
     It is bounded for ever if its energy is below every saddle; Birkhoff averages that agree as on an invariant torus are
     evidence for that in a well at rest (`Potential.tori_are_evidence`), unless another indicator shows chaos. One that escapes is
@@ -144,7 +150,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     orbit
         The `Orbit`.
     digits
-        The `BirkhoffDigits` of the same orbit; None leaves them out.
+        The `BirkhoffDigits` of the same orbit, ``orbit.compute_birkhoff_digits()``; None leaves them out.
 
     Examples
     --------
@@ -153,6 +159,11 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     Escaped through channel 1 at t = 15.1781, after 1 upward crossing of y = 0.
     >>> judge_orbit(integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=1e3)).summarize()
     'bounded for ever, regular'
+    >>> for finding in judge_orbit(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.3), t_max=2e3)).findings:
+    ...     print(finding.name, finding.conclusion)
+    SALI no sign of chaos
+    Lyapunov exponent no sign of chaos
+    Birkhoff digits of halves regular
     """
     indicators = evaluate_indicators(orbit, digits)
     conclusions = [indicator.conclusion for indicator in indicators]
@@ -160,7 +171,8 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     evidence = _find_evidence(orbit, digits, Verdict.CHAOTIC in conclusions)
     deciding = _deciding_indicators(indicators, character)
     t_end, known = float(orbit.t[-1]), (orbit.outcomes, orbit.exits_unknown)
-    return OrbitVerdict(orbit.fate, t_end, orbit.crossings, evidence, character, deciding, *known)
+    found = orbit.fate, t_end, orbit.crossings, evidence, character, deciding
+    return OrbitVerdict(*found, *known, findings=indicators, made_by=orbit.made_by)
 
 
 def _combine(indicators: Sequence[IndicatorVerdict]) -> Verdict:

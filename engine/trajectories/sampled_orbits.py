@@ -18,6 +18,7 @@ from engine.propagation.orbit_steps import record_orbit
 from engine.systems.compiled import kernels_of
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME
 from engine.trajectories.trajectory import MAX_ORBIT_TIME
 
@@ -57,15 +58,23 @@ class SampledOrbits(OrbitResult):
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     codes: ClassVar = {"fate": Fate}
     row_dimension: ClassVar = "orbit"
+    held_as: ClassVar = OrbitResult.held_as | {name: name for name in ("t", "x", "y", "px", "py")}
 
     def columns(self) -> dict[str, np.ndarray]:
         """The outcome and the energy of each orbit."""
         return {name: getattr(self, name) for name in ("fate", "escape_time", "crossings", "energy")}
 
     def to_xarray(self) -> xr.Dataset:
-        """All orbits with the dimensions (orbit, sample); it can be written as NetCDF and Zarr."""
-        paths = {name: (("orbit", "sample"), getattr(self, name), {"units": "1"}) for name in ("x", "y", "px", "py", "t")}
-        return super().to_xarray().assign(paths).set_coords("t")
+        """All orbits with the dimensions (orbit, t), or (orbit, sample) if each has times of its own.
+
+        It can be written as NetCDF and Zarr.
+        """
+        unit = {"units": "1"}
+        are_common = bool((self.t == self.t[0]).all() and (np.diff(self.t[0]) > 0.0).all())
+        times = ("t", self.t[0], unit) if are_common else (("orbit", "sample"), self.t, unit)
+        dimensions = ("orbit", "t" if are_common else "sample")
+        paths = {name: (dimensions, getattr(self, name), unit) for name in ("x", "y", "px", "py")}
+        return super().to_xarray().assign(paths).assign_coords(t=times)
 
 
 @shows_progress("orbits")
@@ -89,7 +98,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
 
     Returns
     -------
-    `SampledOrbits`. `to_xarray` has the dimensions (orbit, sample).
+    `SampledOrbits`. `to_xarray` has the dimensions (orbit, t), or (orbit, sample) if each orbit has times of its own.
 
     Raises
     ------
@@ -126,7 +135,8 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
         execution.report(lambda place=place: (place + 1) / len(futures))  # type: ignore[misc]
     energies = potential.energy(states)
     outcomes = potential.outcomes_at((float(energies.min()), float(energies.max()))) if len(states) else potential.outcomes
-    return replace(units.restore(_join(well, states / units.state, times / units.time, rows)), outcomes=outcomes)
+    found = units.restore(_join(well, states / units.state, times / units.time, rows))
+    return replace(found, outcomes=outcomes, made_by=describe_run(potential, t_max=float(times[:, -1].max())))
 
 
 def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
@@ -165,8 +175,10 @@ def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.nd
     """(n, m) times."""
     rows = np.array(np.broadcast_to(times, (count, times.size))) if times.ndim == 1 else times
     has_shape = rows.ndim == 2 and len(rows) == count and rows.size > 0
-    if not (has_shape and (rows[:, 0] >= 0.0).all() and (np.diff(rows) >= 0.0).all()):
-        raise ValueError(f"times of shape {times.shape}: must be ascending from 0, (m,) or ({count}, m)")
+    if not has_shape:
+        raise ValueError(f"times of shape {times.shape}: must be (m,) or ({count}, m)")
+    if not ((rows[:, 0] >= 0.0).all() and (np.diff(rows) >= 0.0).all()):
+        raise ValueError(f"times={short_repr(times.tolist())}: must be ascending from 0")
     for last in (rows[:, -1].min(), rows[:, -1].max()):
         potential.checked_t_max(float(last), MAX_ORBIT_TIME, name="times: the last one")
     return rows

@@ -9,11 +9,12 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH, TIME
 
 LONGEST_SEPARATION = 2000.0
@@ -23,7 +24,7 @@ _SAMPLES = 2000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Separation(Result):
+class Separation(RecordedResult):
     """Distance of two orbits against time, dimensionless; arrays are read-only.
 
     Attributes
@@ -60,7 +61,7 @@ def compute_separation(
     first, second
         (4,) initial x, y, px, py; finite, dimensionless.
     t_end
-        Last time, 0 < t_end ≤ 1e8, dimensionless; not after the escape of either orbit. Times beyond `LONGEST_SEPARATION` are
+        Last time, 0 < t_end ≤ 1e8, dimensionless; not after the escape of either orbit. Times beyond 2000 units of the well are
         left out.
     execution
         How the computation runs.
@@ -88,4 +89,5 @@ def compute_separation(
         start = checked_state(name, state) / units.state
         steps = trace_steps(kernels, start, float(times[-1]), len(potential.outcomes), execution)
         paths.append(sample_path(kernels, steps, times, execution))
-    return units.restore(Separation(read_only(times), read_only(np.linalg.norm(paths[1] - paths[0], axis=0))))
+    made_by = describe_run(potential, energy=float(potential.energy(first)))
+    return units.restore(Separation(read_only(times), read_only(np.linalg.norm(paths[1] - paths[0], axis=0)), made_by=made_by))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,11 +22,9 @@ from engine.propagation.orbit_steps import OrbitSteps, record_orbit
 from engine.systems.compiled import kernels_of
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
-from engine.systems.stored_potential import describe_potential
+from engine.systems.provenance import describe_run
 from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
-
-if TYPE_CHECKING:
-    import xarray as xr
+from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
 
 MAX_ORBIT_TIME = 1e7
 """Largest t_max of `integrate_orbit`, whose samples then take 3 GB."""
@@ -115,23 +113,45 @@ class Orbit(OrbitResult):
         The start is not counted. Between two samples on either side of y = 0 the Taylor series of the first is used; where steps
         are shorter than the distance of the samples, as near a body, that of the step. Raises ValueError if the orbit has no
         potential.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, integrate_orbit
+        >>> integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=20.0).find_section_crossings().round(4)
+        array([[ 0.1162, -0.042 ],
+               [ 0.1585, -0.0726],
+               [ 0.2122, -0.0821]])
         """
-        if self.potential is None:
-            raise ValueError("this orbit has no potential; must be one of `integrate_orbit`")
-        units, kernels = self.potential.units, kernels_of(self.potential.in_well_units)
+        potential = self._known_potential
+        units, kernels = potential.units, kernels_of(potential.in_well_units)
         samples = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
         times = self.t / units.time
-        steps = trace_steps(kernels, samples[:, 0], times[-1], len(self.potential.outcomes))
+        steps = trace_steps(kernels, samples[:, 0], times[-1], len(potential.outcomes))
         short = steps[np.isin(steps[:, 4], _starts_of_short_steps(times, steps[:, 4]))]
         every_time, first = np.unique(np.concatenate([times, short[:, 4]]), return_index=True)
         path = np.concatenate([samples, short[:, :4].T], axis=1)[:, first]
         return find_crossings(kernels, path, every_time) * [units.length, units.momentum]
 
-    def to_xarray(self) -> xr.Dataset:
-        """The samples along t, with the outcome and the potential as attributes; it can be written as NetCDF and Zarr."""
-        dataset = super().to_xarray()
-        made = {} if self.potential is None else describe_potential(self.potential)
-        return dataset.assign_attrs(made)
+    def compute_birkhoff_digits(self, *, execution: Execution = DEFAULT_EXECUTION) -> BirkhoffDigits:
+        """To how many digits averages over two consecutive windows of the orbit agree, for windows up to half its length.
+
+        The computation runs in this thread. Raises CancelledError if it is cancelled, and ValueError if the orbit has no
+        potential.
+
+        Examples
+        --------
+        >>> from escape_explorer import CASES, integrate_orbit
+        >>> integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).compute_birkhoff_digits().digits.round(1)
+        array([8.9])
+        """
+        start = (self.x[0], self.y[0], self.px[0], self.py[0])
+        return compute_birkhoff_digits(self._known_potential, start, float(self.t[-1]), execution=execution)
+
+    @property
+    def _known_potential(self) -> Potential:
+        if self.potential is None:
+            raise ValueError("this orbit has no potential; must be one of `integrate_orbit`")
+        return self.potential
 
     @property
     def nbytes(self) -> int:
@@ -179,7 +199,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     start, units = checked_state("state", state), potential.units
     t_max = potential.checked_t_max(t_max, MAX_ORBIT_TIME)
     orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
-    return replace(units.restore(orbit), potential=potential)
+    return replace(units.restore(orbit), potential=potential, made_by=describe_run(potential, t_max=t_max))
 
 
 def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:

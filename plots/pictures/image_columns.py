@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine import EscapeMap, Evidence, Fate, OriginFateMap, Outcome, Regularity, RegularityMap, Trust, TrustMap
+from engine import EscapeMap, Fate, Outcome
 from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
 
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
@@ -17,31 +17,29 @@ NO_LAYER = [np.zeros((1, 1), np.uint8)]
 _DRAWN = ("fate", "crossing_class", "crossings", "escape_time")
 
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
-_FIRST_CLASS = len(OUTCOMES)
+FIRST_CLASS = len(OUTCOMES)
+"""The first pixel code of a class; before it come the fates that are no ends."""
+
 _UNDECIDED = _OUTCOME_CODES[Fate.NOT_COMPUTED]
 _WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
 _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 
 
-def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[Any]]:
+def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
     """One image per column, in the smallest integer types, and the position of the images in the plane.
 
-    Coarse frames have coarse images. The columns of passages and of differences are a single pixel: they need
-    another map (`passage_column`, `difference_column`). The column of characters is one too, unless `characters` is true.
+    Coarse frames have coarse images. The column of differences is a single pixel: it needs another map (`difference_column`).
     """
     images, window = frame.thinned()
     fate, crossings = images["fate"], images["crossings"]
     classes = np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1
     # Bounded pixels are classified by their evidence.
     classes[fate == Fate.BOUNDED] = len(CROSSING_CLASSES) + images["evidence"][fate == Fate.BOUNDED]
-    character = [_codes(fate, _characters_by_evidence(images), bounded_too=True)] if characters else NO_LAYER
     return {
         "fate": [fate_codes(fate, frame.spec.outcomes)],
-        "crossing_class": [_codes(fate, classes, bounded_too=True)],
+        "crossing_class": [pixel_codes(fate, classes, bounded_too=True)],
         "crossings": [crossings.astype(np.min_scalar_type(crossings.max(initial=0)))],
         "escape_time": [images["escape_time"].astype(np.float32)],
-        "character": character,
-        "passage": NO_LAYER,
         "difference": NO_LAYER,
         "ends": [end_words(frame.spec.outcomes)],
         "x": [window.x_low],
@@ -55,7 +53,7 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
 
 def fate_codes(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
     """uint8 codes of the colours `Palette.fate_colours` for fates of any shape."""
-    return _codes(fate, _ends(fate, outcomes) - 1)
+    return pixel_codes(fate, end_numbers(fate, outcomes) - 1)
 
 
 def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], sides: tuple[int, int]) -> dict[str, list[Any]]:
@@ -118,16 +116,16 @@ def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Codes of `DIFFERENCES` for two arrays of pixel codes of the fates; pixels without an orbit in both keep their code."""
     lack_one, lack_other = np.isin(one, _WITHOUT_ORBIT), np.isin(other, _WITHOUT_ORBIT)
     classes = np.where(lack_one != lack_other, 2, np.where(one != other, 1, 0))
-    codes = np.where(lack_one & lack_other, one, _FIRST_CLASS + classes)
+    codes = np.where(lack_one & lack_other, one, FIRST_CLASS + classes)
     return np.where((one == _UNDECIDED) | (other == _UNDECIDED), _UNDECIDED, codes).astype(np.uint8)
 
 
 def end_words(outcomes: Sequence[Outcome]) -> list[str]:
     """What orbits of each of `Palette.ends` do; empty for those that the potential does not have."""
-    return _at_places(outcomes, [outcome.present for outcome in outcomes])
+    return at_places(outcomes, [outcome.present for outcome in outcomes])
 
 
-def _at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
+def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
     """Words for each outcome at its place among `Palette.ends`."""
     placed = [""] * len(PAPER.ends)
     for place, word in zip(end_places(outcomes), words, strict=True):
@@ -143,7 +141,7 @@ def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """
     return {
         "outcomes": [[int(fate), code] for fate, code in _OUTCOME_CODES.items()],
-        "first": _FIRST_CLASS,
+        "first": FIRST_CLASS,
         "ends": end_places(outcomes),
         "words": end_words(outcomes),
         "leastCrossings": _LEAST_CROSSINGS.tolist(),
@@ -152,46 +150,16 @@ def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     }
 
 
-def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, list[Any]]:
-    """Column of regular and chaotic bounded orbits."""
-    return {"character": [_codes(frame.fate, regularity.character, bounded_too=True)]}
-
-
-def passage_column(origins: OriginFateMap) -> dict[str, list[Any]]:
-    """Columns of origin and fate of each orbit, and of the origins in words: none, then the ends."""
-    outcomes = origins.spec.outcomes
-    origin, fate = (_ends(codes, outcomes) for codes in (origins.origin, origins.fate))
-    passage = origin * (len(PAPER.ends) + 1) + fate
-    # If the origin or the fate is neither an end nor bounded, the pixel shows it.
-    outcome = np.minimum(origins.origin, origins.fate)
-    words = ["never entered: inside since −t_max", *_at_places(outcomes, [end.origin for end in outcomes])]
-    return {"passage": [_codes(outcome, passage, bounded_too=True)], "origins": [words]}
-
-
-def doubt_tones(trust: TrustMap) -> np.ndarray:
-    """(rows, columns) uint8: 1 and 2 alternately on doubtful pixels, as on a chessboard, for the colours `DOUBT`; 0 elsewhere."""
-    rows, columns = np.indices(trust.trust.shape)
-    tones: np.ndarray = np.where(trust.trust == Trust.DOUBTFUL, 1 + (rows + columns) % 2, 0).astype(np.uint8)
-    return tones
-
-
-def _characters_by_evidence(images: dict[str, np.ndarray]) -> np.ndarray:
-    """Regularity as far as the evidence tells: orbits on an invariant torus are regular."""
-    character = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
-    character[images["evidence"] == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
-    return character
-
-
-def _ends(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
+def end_numbers(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
     """Number of the end of each fate from 1 on, 1 for the first of `Palette.ends`; 0 for the others."""
     numbers = np.array([0, *(place + 1 for place in end_places(outcomes))])
     found: np.ndarray = numbers[np.maximum(fate, 0)]
     return found
 
 
-def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
+def pixel_codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
     """Pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
-    codes = (_FIRST_CLASS + classes).astype(np.min_scalar_type(_FIRST_CLASS + int(classes.max(initial=0))))
+    codes = (FIRST_CLASS + classes).astype(np.min_scalar_type(FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):
             codes[fate == outcome] = code

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine import Orbit, Potential, Window, default_window
+from engine import Orbit, Potential, Window
+from engine.foundations.extras import require_package
+from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from plots.pictures.histories import History
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
-from plots.pictures.path_density import shade_path
 
 MOST_LINE_POINTS = 20_000
 """Paths with more points are drawn as density images."""
@@ -19,6 +20,9 @@ MOST_LINE_POINTS = 20_000
 TRAIL = 25.0
 """Length of the trail behind the moving point in time, about four periods of the well."""
 
+# Twice the pixels of the plot, for high-density screens.
+_SHADED_PIXELS = 600
+_FAINTEST = 50
 # Half the side of the window of a path: in units of its reach, and at most in units of the distance of the farthest saddle.
 _AROUND_PATH, _FARTHEST_SHOWN = 1.1, 10.0
 
@@ -63,12 +67,15 @@ class OrbitCurves:
         return ink | (self.visits.astype(np.uint32) << 24)
 
 
-def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
-    """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock."""
+def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: bool = True) -> OrbitCurves:
+    """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock.
+
+    with_visits: whether a long path gets its density image, which needs the extra ``page``.
+    """
     window = _path_window(potential, orbit) if orbit.exits_unknown else find_well_window(potential, orbit.energy)
     everything = slice(None)
     section = orbit.find_section_crossings()
-    visits = _visits(orbit, window, everything)
+    visits = _visits(orbit, window, everything) if with_visits else None
     return OrbitCurves(orbit, window, _histories(orbit, everything), section, visits)
 
 
@@ -115,9 +122,23 @@ def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
 
 
 def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
-    """Density image of a long path; None for a short one."""
+    """Density image of a long path; None for a short one. ModuleNotFoundError without the extra ``page``."""
     x, y = orbit.x[part], orbit.y[part]
-    return shade_path(x, y, window) if x.size > MOST_LINE_POINTS else None
+    if x.size <= MOST_LINE_POINTS:
+        return None
+    require_package("datashader", "page")
+    # Slow to import, and needed for long paths only.
+    import datashader
+    import pandas as pd
+    from datashader import transfer_functions
+
+    canvas = datashader.Canvas(
+        _SHADED_PIXELS, _SHADED_PIXELS, (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
+    )
+    counts = canvas.line(pd.DataFrame({"x": x, "y": y}), "x", "y")
+    shaded = transfer_functions.shade(counts, cmap="#000000", how="eq_hist", min_alpha=_FAINTEST)
+    image = transfer_functions.dynspread(shaded, max_px=1).to_numpy()
+    return np.ascontiguousarray((image >> 24).astype(np.uint8))
 
 
 @dataclass(frozen=True)

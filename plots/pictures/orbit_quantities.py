@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine import CHAOS_THRESHOLD, Orbit
+from engine import Orbit
 from engine.foundations.wording import format_number
+from engine.propagation.fates import CHAOS_THRESHOLD
 from plots.pictures.histories import History, reduce_history
 
 _LEAST_SALI, _LARGEST_SALI = 1e-17, 10.0

@@ -19,12 +19,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, NullFormatter
 from matplotlib.transforms import Bbox, ScaledTranslation, Transform
 
-from plots.pictures.palette import LIGHT, PATCH_EDGE, Entry
+from plots.pictures.palette import LIGHT, PATCH_EDGE, Entry, Mark
 from plots.printed.figure_style import CM_PER_INCH, POINTS_PER_INCH, SCREEN, FigureFormat, FigureStyle
 
 RENDER_LOCK = threading.Lock()
@@ -116,9 +117,24 @@ def name_panels(panels: Iterable[Axes], words: Sequence[str]) -> None:
         name_panel(axes, f"({letter}) {word}")
 
 
-def patches(entries: Iterable[Entry]) -> list[Artist]:
-    """Legend handles of colours."""
-    return [Patch(facecolor=entry.colour, edgecolor=PATCH_EDGE, linewidth=0.5, label=entry.label) for entry in entries]
+def legend_handles(entries: Iterable[Entry]) -> list[Artist]:
+    """Handles of the entries of a legend."""
+    return [_HANDLES[entry.mark](entry) for entry in entries]
+
+
+def _patch(entry: Entry) -> Artist:
+    return Patch(facecolor=entry.colour, edgecolor=PATCH_EDGE, linewidth=0.5, label=entry.label)
+
+
+def _line(entry: Entry) -> Artist:
+    return Line2D([], [], color=entry.colour, linewidth=1.2, label=entry.label)
+
+
+def _chessboard(entry: Entry) -> Artist:
+    return Patch(facecolor=entry.second_colour, edgecolor=entry.colour, hatch="xxxxx", linewidth=0.5, label=entry.label)
+
+
+_HANDLES = {Mark.PATCH: _patch, Mark.LINE: _line, Mark.CHESSBOARD: _chessboard}
 
 
 def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureStyle = SCREEN, columns: int | None = None) -> None:

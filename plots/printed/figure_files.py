@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from engine import EscapeMap, Potential, Sweep, Window, compute_statistics
-from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.pictures.orbit_curves import OrbitCurves, initial_state
 from plots.pictures.palette import Palette
 from plots.pictures.time_scale import TimeScale

@@ -1,4 +1,4 @@
-"""Maps drawn with Matplotlib: pixels, limiting curve, exits, manifolds, marks of starts, legend and provenance.
+"""Maps drawn with Matplotlib: pixels, limiting curve, exits, curves of layers, marks of starts, legend and provenance.
 
 Maps are drawn in shares of the window that their axes show, 0 to 1 from its lower left corner: in plane coordinates the transform
 to pixels would lose all digits in a deep zoom.
@@ -13,38 +13,31 @@ from typing import Any
 
 import numpy as np
 import shapely
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colorbar import Colorbar
-from matplotlib.colors import ListedColormap, LogNorm
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from engine import (
     EscapeMap,
-    Fate,
     Potential,
     Slice,
-    StableManifolds,
     Window,
-    trace_zero_velocity_curve,
 )
 from engine.exits.lyapunov_orbits import find_known_exits
 from engine.slices.energies import common_energy
+from engine.slices.limiting_curves import trace_zero_velocity_curve
+from plots.layers.layer import Stroke
+from plots.layers.legend import ColourScale
+from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.map_images import picture_pixels
+from plots.layers.picture import ShownMap
+from plots.layers.table import LAYERS, TITLES, map_legend
 from plots.pictures.axis_labels import label_axis
-from plots.pictures.manifold_strokes import Stroke, manifold_strokes
-from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
-from plots.pictures.map_images import (
-    CROSSED_BY_MANIFOLDS,
-    DOUBTED,
-    TITLES,
-    picture_pixels,
-)
-from plots.pictures.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
+from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
 from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale, fitted_scale
 from plots.printed.figure_axes import (
@@ -53,9 +46,9 @@ from plots.printed.figure_axes import (
     figure_of,
     fit_height,
     label_axes,
+    legend_handles,
     name_panel,
     new_figure,
-    patches,
     set_font,
     size_in_points,
     style_axes,
@@ -76,10 +69,10 @@ _LEGEND_WIDTH = 0.9
 _LETTERS_PER_EM = 2.6
 # Width of a letter of a tick label, and the space between labels, in units of the font size.
 _LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
-# Least distance of the times at a colour bar, as a share of it.
-_BETWEEN_TIMES = 0.15
+# Least distance of the ticks of a colour bar, as a share of it.
+_BETWEEN_TICKS = 0.15
 _EXIT_DASHES = (0, (2.0, 1.5))
-# Width of manifolds in a file, relative to that on the page.
+# Width of the curves of layers in a file, relative to that on the page.
 _LINE_SCALE = 0.6
 _HALO_ORDER = 1.5
 # Curves are cut this far outside the window, in shares of it.
@@ -111,7 +104,7 @@ def draw_map_figure(
     style
         Width of the figure, resolution, letters and titles.
     analyses
-        Results of follow-up analyses: regularity, origins, doubtful pixels and stable manifolds.
+        Results of the layers.
     starts
         (x, ordinate) of each chosen orbit, numbered from 1; those outside the window keep their number.
     times
@@ -160,8 +153,10 @@ def draw_picture(
     spec, window = frame.spec, frame.spec.find_window()
     draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
-    if picture in CROSSED_BY_MANIFOLDS and analyses.manifolds is not None:
-        draw_manifolds(axes, analyses.manifolds, window, palette)
+    for name, result in analyses.items():
+        over = LAYERS[name].over_picture(picture)
+        if over is not None and over.strokes is not None:
+            draw_strokes(axes, over.strokes(result), window, palette)
     show_window(axes, window, *spec.plane.axis_symbols, style)
     letters = int(_LETTERS_PER_EM * size_in_points(axes)[0] / style.font_size)
     name_panel(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
@@ -179,15 +174,16 @@ def _explain_picture(
 ) -> None:
     """Colour bar and legend below a map, whose column is `width` inches wide."""
     depth = _BELOW_AXIS * style.font_size
-    if picture == "times":
+    legend = map_legend(picture, ShownMap.of(frame, palette, analyses, times))
+    if legend.scale is not None:
         bar = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
-        add_time_bar(figure_of(axes), times, palette, style, cax=bar, orientation="horizontal")
+        add_colour_bar(figure_of(axes), legend.scale, style, cax=bar, orientation="horizontal")
         bar.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size
-    handles = [*patches(picture_entries(frame, picture, palette, analyses)), *_doubt_handle(picture, analyses)]
+    handles = legend_handles([*legend.entries, *legend.others])
     # Matplotlib names curves without a label "_child…".
     handles += [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
-    handles += _manifold_handles(picture, palette, analyses)
+    handles += legend_handles(legend.over)
     add_legend_below(axes, handles, (_LEFT_OF_AXIS * style.font_size, depth), _LEGEND_WIDTH * width * POINTS_PER_INCH, style)
 
 
@@ -222,36 +218,15 @@ def draw_limits(
         draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.name}", halo=True, **style)
 
 
-def draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window, palette: Palette) -> None:
-    """Draw the manifolds in the colours of their channels."""
-    strokes = manifold_strokes(manifolds)
+def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown: Window, palette: Palette) -> None:
+    """Draw curves of a layer, from back to front, in the colours of their channels."""
     for stroke in strokes:
         if stroke.halo_width:
             halo: dict[str, Any] = {"colors": LIGHT.halo, "linewidths": _LINE_SCALE * stroke.halo_width}
-            draw_curve(axes, _points(stroke), shown, zorder=_HALO_ORDER, **halo)
+            draw_curve(axes, stroke.lines, shown, zorder=_HALO_ORDER, **halo)
     for stroke in strokes:
         line: dict[str, Any] = {"colors": palette.channels[stroke.channel - 1], "linewidths": _LINE_SCALE * stroke.width}
-        draw_curve(axes, _points(stroke), shown, alpha=stroke.alpha, **line)
-
-
-def _points(stroke: Stroke) -> list[np.ndarray]:
-    return [np.column_stack([arc.x, arc.px]) for arc in stroke.arcs]
-
-
-def _manifold_handles(picture: str, palette: Palette, analyses: MapAnalyses) -> list[Artist]:
-    """The legend of the stable manifolds."""
-    if picture not in CROSSED_BY_MANIFOLDS or analyses.manifolds is None:
-        return []
-    entries = palette.manifold_entries(analyses.manifolds)
-    return [Line2D([], [], color=entry.colour, linewidth=1.2, label=entry.label) for entry in entries]
-
-
-def _doubt_handle(picture: str, analyses: MapAnalyses) -> list[Artist]:
-    """The legend of doubtful pixels."""
-    if picture not in DOUBTED or analyses.trust is None:
-        return []
-    dark, light = DOUBT
-    return [Patch(facecolor=light, edgecolor=dark, hatch="xxxxx", linewidth=0.5, label="doubtful")]
+        draw_curve(axes, stroke.lines, shown, alpha=stroke.alpha, **line)
 
 
 def draw_curve(
@@ -327,19 +302,26 @@ def _spaced(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, s
     return ticks[:: max(1, math.ceil(needed / width))]
 
 
-def add_time_bar(figure: Figure, times: TimeScale, palette: Palette, style: FigureStyle = SCREEN, **place: Any) -> Colorbar:
-    """Add a logarithmic colour bar of escape times; `place` as for `matplotlib.figure.Figure.colorbar`."""
-    scale = ScalarMappable(LogNorm(times.low, times.high), ListedColormap(list(palette.escape_time)))
-    bar = figure.colorbar(scale, **place)
-    powers = [10.0**k for k in range(math.ceil(math.log10(times.low)), math.floor(math.log10(times.high)) + 1)]
-    room = (times.high / times.low) ** _BETWEEN_TIMES
-    ticks = [times.low, *(power for power in powers if times.low * room < power < times.high / room), times.high]
-    # The colours at the ends stand for all shorter and all longer times.
-    signs = {times.low: "≤ ", times.high: "≥ "}
+def add_colour_bar(figure: Figure, scale: ColourScale, style: FigureStyle = SCREEN, **place: Any) -> Colorbar:
+    """Add the colour bar of a scale; `place` as for `matplotlib.figure.Figure.colorbar`."""
+    norm = LogNorm(scale.low, scale.high) if scale.is_logarithmic else Normalize(scale.low, scale.high)
+    bar = figure.colorbar(ScalarMappable(norm, ListedColormap(list(scale.colours))), **place)
+    ticks = [scale.low, *_inner_ticks(scale), scale.high]
+    # The colours at the ends stand for all smaller and all larger numbers.
+    signs = {scale.low: "≤ ", scale.high: "≥ "}
     bar.set_ticks(ticks, labels=[f"{signs.get(tick, '')}{tick:g}" for tick in ticks])
     bar.ax.minorticks_off()
     bar.ax.tick_params(labelsize=style.small_size)
     return bar
+
+
+def _inner_ticks(scale: ColourScale) -> list[float]:
+    """Powers of ten between the ends of a logarithmic scale, not too close to them; the middle of another one."""
+    if not scale.is_logarithmic:
+        return [float(f"{0.5 * (scale.low + scale.high):.3g}")]
+    powers = [10.0**k for k in range(math.ceil(math.log10(scale.low)), math.floor(math.log10(scale.high)) + 1)]
+    room = (scale.high / scale.low) ** _BETWEEN_TICKS
+    return [power for power in powers if scale.low * room < power < scale.high / room]
 
 
 def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
@@ -352,17 +334,3 @@ def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
 def _corners(window: Window) -> np.ndarray:
     """(2, 2) lower left and upper right corner."""
     return np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])
-
-
-def picture_entries(frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> list[Entry]:
-    """Legend of the colours: all classes of the picture, and the outcomes that occur."""
-    judged = analyses.regularity is not None and analyses.regularity.complete
-    occurring = set(np.unique(frame.fate).tolist())
-    outcomes = [entry for fate, entry in reversed(palette.outcomes.items()) if fate in occurring]
-    if picture == "characters":
-        characters = palette.character_entries[:-1] if judged else palette.character_entries
-        return [*characters, *(entry for entry in outcomes if entry != palette.outcomes[Fate.BOUNDED])]
-    if picture == "origins":
-        return [*palette.passage_entries(frame.spec.outcomes), *outcomes]
-    classes = {"basins": palette.legend_entries(frame.spec.outcomes), "crossings": palette.crossing_entries}
-    return [*classes.get(picture, []), *outcomes]

@@ -22,34 +22,29 @@ from engine import (
     EscapeStatistics,
     LyapunovOrbit,
     Orbit,
-    OriginFateMap,
     Potential,
     PotentialReview,
-    RegularityMap,
     Result,
     SampledOrbits,
     Separation,
-    StableManifolds,
     Sweep,
-    Trust,
-    TrustMap,
     UncertaintyExponent,
     WadaTest,
     Window,
-    default_window,
 )
 from engine.foundations.extras import require_package
+from engine.maps.pixels import PixelAnalysis
+from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
-from engine.slices.section import SECTION
-from plots.pictures.image_columns import passage_column
-from plots.pictures.map_analyses import MapAnalyses
-from plots.pictures.map_images import TITLES
+from plots.layers.layer import Layer
+from plots.layers.picture import ShownMap
+from plots.layers.table import LAYERS, TITLES, map_legend
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, PALETTES, Entry, Palette, rgba
 from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
-from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
-from plots.printed.map_figure import draw_limits, draw_manifolds, draw_picture, draw_pixels, picture_entries, show_window
+from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, legend_handles, name_panel, set_font, style_axes
+from plots.printed.map_figure import draw_limits, draw_picture, draw_pixels, draw_strokes, show_window
 from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
 
@@ -57,8 +52,6 @@ _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
 # In shares of the axes: the middle of the legend of a map, below the name of its abscissa.
 _BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
-TRUST_COLOURS = ("#ffffff", "#dfe6ee", "#7da7c9", "#d1495b", "#b0b0b0")
-"""Colours of the codes of `Trust`."""
 _MOST_DECADES = 16
 
 
@@ -97,7 +90,7 @@ def to_holoviews(result: Result) -> Any:
     require_package("holoviews", "page")
     import holoviews as hv
 
-    if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):
+    if isinstance(result, EscapeMap | PixelAnalysis):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
     table = result.to_pandas()
     if result.row_dimension:
@@ -123,7 +116,27 @@ def _picture(result: Result) -> str:
 
 @singledispatch
 def _draw(result: Result, axes: Axes, palette: Palette) -> None:
+    for layer in LAYERS.values():
+        if layer.result is type(result):
+            return _draw_layer(layer, result, axes, palette)
     raise TypeError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
+
+
+def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> None:
+    """Draw the result of a layer without the map over which it lies."""
+    spec = layer.spec_of(result)
+    window = spec.find_window()
+    panel = _panel(axes, window)
+    if layer.pixels is not None:
+        codes = layer.pixels.codes(result, None)
+        draw_pixels(panel, rgba([*layer.pixels.colours(palette)])[codes][::-1], window, window)
+        if entries := layer.pixels.entries(result, palette):
+            _add_legend_below(panel, entries)
+    draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
+    if layer.over is not None and layer.over.strokes is not None:
+        draw_strokes(panel, layer.over.strokes(result), window, palette)
+    show_window(panel, window, *spec.plane.axis_symbols)
+    name_panel(panel, layer.title)
 
 
 def _panel(axes: Axes, window: Window) -> Axes:
@@ -142,52 +155,22 @@ def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str =
         raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
     panel = _panel(axes, result.spec.find_window())
     draw_picture(panel, result, picture, palette)
-    if entries := picture_entries(result, picture, palette, MapAnalyses()):
+    legend = map_legend(picture, ShownMap.of(result, palette, {}))
+    if entries := [*legend.entries, *legend.others]:
         _add_legend_below(panel, entries)
 
 
 def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:
     axes.legend(
-        handles=patches(entries), loc="upper center", bbox_to_anchor=_BELOW_AXES, ncols=3, fontsize="small", frameon=False
+        handles=legend_handles(entries), loc="upper center", bbox_to_anchor=_BELOW_AXES, ncols=3, fontsize="small", frameon=False
     )
-
-
-def _draw_codes(axes: Axes, result: Any, codes: np.ndarray, colours: list[str], palette: Palette) -> Axes:
-    """Draw the codes of the pixels of an analysis in their colours."""
-    spec = result.spec
-    window = spec.find_window()
-    panel = _panel(axes, window)
-    draw_pixels(panel, rgba(colours)[codes][::-1], window, window)
-    draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
-    show_window(panel, window, *spec.plane.axis_symbols)
-    return panel
-
-
-@_draw.register
-def _draw_regularity(result: RegularityMap, axes: Axes, palette: Palette) -> None:
-    entries = palette.character_entries
-    panel = _draw_codes(axes, result, result.character, [entry.colour for entry in entries], palette)
-    panel.legend(handles=patches(entries[1:3]))
-
-
-@_draw.register
-def _draw_trust(result: TrustMap, axes: Axes, palette: Palette) -> None:
-    panel = _draw_codes(axes, result, result.trust, list(TRUST_COLOURS), palette)
-    names = [code.name.lower().replace("_", " ") for code in Trust]
-    panel.legend(handles=patches(Entry(name, colour) for name, colour in zip(names[1:4], TRUST_COLOURS[1:4], strict=True)))
-
-
-@_draw.register
-def _draw_origins(result: OriginFateMap, axes: Axes, palette: Palette) -> None:
-    panel = _draw_codes(axes, result, passage_column(result)["passage"][0], palette.passage_colours, palette)
-    name_panel(panel, TITLES["origins"])
 
 
 @_draw.register
 def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
     if result.potential is None:
         raise TypeError("this orbit has no potential, so its exits are unknown")
-    curves = compute_orbit_curves(result.potential, result)
+    curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
     if show == "path":
         axes.set_box_aspect(1.0)
         draw_path(_panel(axes, curves.window), result.potential, [curves], palette)
@@ -230,16 +213,6 @@ def _draw_flux(result: EscapeFlux, axes: Axes, palette: Palette) -> None:
     style_axes(axes)
     label_axes(axes, "channel", "flux")
     name_panel(axes, f"Flux through the exits at h = {result.energy:.6g}")
-
-
-@_draw.register
-def _draw_stable_manifolds(result: StableManifolds, axes: Axes, palette: Palette) -> None:
-    window = default_window(result.potential, SECTION.plane, result.energy)
-    panel = _panel(axes, window)
-    draw_limits(panel, result.potential, SECTION.plane, result.energy, window, palette.channels)
-    draw_manifolds(panel, result, window, palette)
-    show_window(panel, window, *SECTION.plane.axis_symbols)
-    name_panel(panel, f"Stable manifolds at h = {result.energy:.6g}")
 
 
 @_draw.register

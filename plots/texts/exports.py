@@ -6,12 +6,12 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from importlib import metadata
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, Sweep, System, judge_orbit
-from engine.foundations.extras import require_package
 from engine.systems.system import TYPED
-from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,15 +24,16 @@ _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 
 
 def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
-    """NetCDF-4 file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
+    """NetCDF file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
     dataset = analyses.add_to(frame.to_xarray())
     # Shuffled and compressed, a map has a quarter of the size and is written faster.
     return dataset_bytes(dataset, {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars})
 
 
 def dataset_bytes(dataset: xr.Dataset, encoding: Mapping[Any, Any] | None = None) -> bytes:
-    """NetCDF-4 file of a dataset; `encoding` as in xarray. ModuleNotFoundError without the extra ``files``."""
-    require_package("h5netcdf", "files")
+    """NetCDF-4 file of a dataset, with `encoding` as in xarray; without the extra ``files`` one of NetCDF 3, uncompressed."""
+    if find_spec("h5netcdf") is None:
+        return bytes(dataset.to_netcdf(engine="scipy"))
     return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
 
 

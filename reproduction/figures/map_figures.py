@@ -11,13 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import CASES, EscapeMap, Fate, Plane, Window
-from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
-from plots.pictures.map_images import picture_pixels
+from plots.layers.legend import ColourScale
+from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.map_images import picture_pixels
 from plots.pictures.palette import PAPER
 from plots.pictures.time_scale import TimeScale, common_scale
-from plots.printed.figure_axes import add_figure_legend, label_axes, name_panel, new_figure, patches
+from plots.printed.figure_axes import add_figure_legend, label_axes, legend_handles, name_panel, new_figure
 from plots.printed.figure_style import SCREEN
-from plots.printed.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
+from plots.printed.map_figure import add_colour_bar, draw_limits, draw_pixels, show_window
 from reproduction.map_cache import MapCache
 from reproduction.notation import axis_label, plane_label
 from reproduction.paper_ranges import nine_energies, plane_energies
@@ -41,7 +42,8 @@ def draw_nine_maps(case: str, cache: MapCache, *, plane: Plane, picture: str) ->
         place = axes.get_subplotspec()
         label_axes(axes, axes.get_xlabel() if place.is_last_row() else "", axes.get_ylabel() if place.is_first_col() else "")
     if picture == "times":
-        bar = add_time_bar(figure, times, PAPER, ax=panels.ravel().tolist(), shrink=0.75, aspect=34, pad=0.015, extend="both")
+        scale = ColourScale(times.low, times.high, PAPER.escape_time)
+        bar = add_colour_bar(figure, scale, ax=panels.ravel().tolist(), shrink=0.75, aspect=34, pad=0.015, extend="both")
         bar.set_label(r"escape time $t_{\mathrm{esc}}$", fontsize=SCREEN.font_size)
     add_figure_legend(figure, [*_colour_handles(case, picture), *panels[0, 0].collections])
     return figure
@@ -79,7 +81,7 @@ def draw_map_panel(
     frame
         A complete map.
     picture
-        One of `plots.pictures.map_images.TITLES`.
+        One of `plots.layers.table.TITLES`.
     shown
         Window of the panel.
     times
@@ -112,5 +114,6 @@ def _common_window(frames: Sequence[EscapeMap]) -> Window:
 def _colour_handles(case: str, picture: str) -> list[Artist]:
     bounded = PAPER.outcomes[Fate.BOUNDED]
     if picture == "times":
-        return patches([bounded])
-    return patches([bounded, *(PAPER.end_entries(CASES[case].outcomes) if picture == "basins" else PAPER.crossing_entries)])
+        return legend_handles([bounded])
+    classes = PAPER.end_entries(CASES[case].outcomes) if picture == "basins" else PAPER.crossing_entries
+    return legend_handles([bounded, *classes])

@@ -8,17 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import (
-    CASES,
-    LyapunovOrbit,
-    Plane,
-    Potential,
-    Window,
-    default_window,
-    find_lyapunov_orbits,
-    integrate_orbit,
-    trace_zero_velocity_curve,
-)
+from engine import CASES, LyapunovOrbit, Plane, Potential, Window, find_lyapunov_orbits, integrate_orbit
+from engine.slices.default_window import default_window
+from engine.slices.limiting_curves import trace_zero_velocity_curve
 from plots.pictures.palette import LIGHT, PAPER
 from plots.printed.figure_axes import label_axes, name_panels, new_figure, style_axes
 from plots.printed.figure_style import SCREEN

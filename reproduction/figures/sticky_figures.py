@@ -10,15 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import Plane, find_lyapunov_orbits, sample_orbits
-from plots.pictures.map_analyses import MapAnalyses
+from plots.layers.map_analyses import MapAnalyses
+from plots.layers.regularity import REGULARITY, entries
 from plots.pictures.palette import MEASURED, PAPER, THRESHOLD
 from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
     label_axes,
+    legend_handles,
     name_panels,
     new_figure,
-    patches,
     style_axes,
 )
 from plots.printed.figure_style import SCREEN
@@ -48,8 +49,8 @@ def draw_characters(cache: MapCache) -> Figure:
     title = f"Case {STICKY_CASE}, {plane_label(Plane.X_PX)} plane, $h = {STICKY_ENERGY}$: bounded orbits"
     figure = new_figure(replace(SCREEN, width=17.3), 18.3, title, equal=True)
     axes = figure.subplots()
-    draw_map_panel(axes, frame, "characters", frame.spec.find_window(), analyses=MapAnalyses(regularity=regularity))
-    add_figure_legend(figure, [*patches(PAPER.character_entries[1:-1]), *axes.collections])
+    draw_map_panel(axes, frame, "characters", frame.spec.find_window(), analyses=MapAnalyses({REGULARITY.name: regularity}))
+    add_figure_legend(figure, [*legend_handles(entries(PAPER)[1:-1]), *axes.collections])
     return figure
 
 

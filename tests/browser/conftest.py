@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
@@ -79,15 +79,18 @@ class Watch:
 @pytest.fixture
 def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
     """Opens the page, or a link to a view, in a new browser context, at a given size of the window."""
-    yield from _opening(chromium, server)
+    with _opening(chromium, server) as open_page:
+        yield open_page
 
 
 @pytest.fixture(scope="module")
 def open_for_all(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
     """The same for a page that several tests of a file share, as none of them changes what it shows."""
-    yield from _opening(chromium, server)
+    with _opening(chromium, server) as open_page:
+        yield open_page
 
 
+@contextmanager
 def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
     contexts: list[BrowserContext] = []
     watches: list[Watch] = []
@@ -110,9 +113,8 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
         page = context.new_page()
         page.set_default_timeout(TIMEOUT_MS)
         watches.append(Watch(page))
-        page.goto(server + link)
-        explorer = ExplorerPage(page)
-        explorer.wait_until_complete()
+        explorer = ExplorerPage(page, server + link, watches[-1].problems)
+        explorer.open()
         return explorer
 
     yield open_page
@@ -121,29 +123,20 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
     assert [problem for watch in watches for problem in watch.problems] == []
 
 
-@pytest.fixture(scope="module")
-def opened(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
+@pytest.fixture(scope="session")
+def opened(chromium: Browser, server: str) -> Iterator[ExplorerPage]:
     """The page behind `explorer`, with a map that takes little time; a file may open another one."""
-    return open_for_all(link=QUICK)
+    with _opening(chromium, server) as open_page:
+        yield open_page(link=QUICK)
 
 
 @pytest.fixture
-def explorer(opened: ExplorerPage) -> Iterator[ExplorerPage]:
-    """A page that a test may change: all tests of a file share it, as it returns to its first view after each."""
+def explorer(opened: ExplorerPage, request: pytest.FixtureRequest) -> Iterator[ExplorerPage]:
+    """A page that a test may change: many tests share it, as it returns to its first view after each."""
+    failed = request.session.testsfailed
     yield opened
-    opened.return_home()
-
-
-@pytest.fixture(scope="module")
-def shared(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
-    """The page as it opens by default, for all tests of a file that leave its map unchanged."""
-    return open_for_all()
-
-
-@pytest.fixture
-def for_orbits(shared: ExplorerPage) -> Iterator[ExplorerPage]:
-    """The shared page without orbits; orbits that a test adds are removed after it."""
-    yield shared
-    if shared.model_data("starts").get("x"):
-        shared.press("Clear all")
-        shared.wait_for_data("starts", "data.x.length == 0")
+    if request.session.testsfailed > failed:
+        opened.open()
+    else:
+        opened.return_home()
+    assert opened.take_problems() == []

@@ -43,6 +43,8 @@ _ADDRESSED = """name => {
 _RETURNED = """() => history.state.entry === 0
     && [...Bokeh.documents[0].all_models].some(model => model.data?.attributes?.address?.entry === 0)"""
 
+_PREVIEW = "!data.complete[0] && data.fate[0].shape[0] >= {least} && Math.abs(data.energy[0] - {energy}) < 1e-9"
+
 # The thumb is 18 pixels wide.
 _RAIL_AND_THUMB = """rail => {
     const {x, y, width, height} = rail.getBoundingClientRect(), reach = width - 18
@@ -52,10 +54,22 @@ _RAIL_AND_THUMB = """rail => {
 
 
 class ExplorerPage:
-    """The page of one session."""
+    """The page of one session, the address that it opens, and the list in which its problems are noted."""
 
-    def __init__(self, page: Page) -> None:
-        self.page = page
+    def __init__(self, page: Page, home: str = "", problems: list[str] | None = None) -> None:
+        self.page, self._home = page, home
+        self._problems = [] if problems is None else problems
+
+    def open(self) -> None:
+        """Open the address, and wait for its map."""
+        self.page.goto(self._home)
+        self.wait_until_complete()
+
+    def take_problems(self) -> list[str]:
+        """The problems since the last call."""
+        taken = [*self._problems]
+        self._problems.clear()
+        return taken
 
     def wait_until_complete(self) -> None:
         self.page.wait_for_function(
@@ -177,18 +191,25 @@ class ExplorerPage:
         box.fill(value)
         box.press("Enter")
 
-    def drag_energy_to(self, share: float, *, steps: int = 5, let_go: bool = True, pause: float = 0.0) -> None:
-        """Drag the thumb of the energy slider to a share of its length, with a pause, in ms, after each step."""
+    def drag_energy_to(self, share: float, *, steps: int = 5, let_go: bool = True) -> None:
+        """Drag the thumb of the energy slider to a share of its length."""
         rail = self._rail()
         begin, end = rail["begin"], rail["low"] + share * rail["reach"]
         self.page.mouse.move(begin, rail["middle"])
         self.page.mouse.down()
-        for step in range(1, steps + 1):
-            self.page.mouse.move(begin + (end - begin) * step / steps, rail["middle"])
-            if pause:
-                self.page.wait_for_timeout(pause)
+        self.page.mouse.move(end, rail["middle"], steps=steps)
         if let_go:
             self.page.mouse.up()
+
+    def wait_for_preview(self, energy: float, least: int = 76) -> None:
+        """Wait for pixels of the browser at an energy, at least so many along a side."""
+        self.wait_for_data("maps", _PREVIEW.format(energy=energy, least=least))
+
+    def start_engine(self) -> None:
+        """Wait until the browser has its engine, by means of a preview at h = 0.22 of case I, and go back to h = 0.19."""
+        self.drag_energy_to(0.3, let_go=False)
+        self.wait_for_preview(0.22)
+        self.drag_energy_to(0.225)
 
     def move_slider_to(self, share: float) -> None:
         """Move the thumb that is being dragged to a share of its length."""

@@ -2,28 +2,79 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import subprocess
 import sys
-import time
-import urllib.error
+import threading
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 ROOT = Path(__file__).parents[2]
 START_SECONDS = 600
 """Enough to compile all kernels on a busy machine."""
+PANEL = ("panel", "serve", "app")
+READY = ": ready\n"
+"""What the server writes when its kernels are there."""
+NO_VARIABLES: Mapping[str, str] = {}
+
+
+class Output:
+    """What a process writes, which is copied to a file and can be waited for."""
+
+    def __init__(self, stream: IO[str], log: Path) -> None:
+        self._stream, self._log = stream, log
+        self._changed, self._text, self._has_ended = threading.Condition(), "", False
+        self._copier = threading.Thread(target=self._copy)
+        self._copier.start()
+
+    def wait_for(self, text: str) -> None:
+        """Wait until the process has written a text; RuntimeError if it ends or fails before."""
+        with self._changed:
+            self._changed.wait_for(lambda: text in self._text or self._has_failed(), START_SECONDS)
+            if text not in self._text:
+                raise RuntimeError(f"the server did not write {text!r}: {self._text}")
+
+    def close(self) -> None:
+        """Wait until all is copied, after the end of the process."""
+        self._copier.join()
+        self._stream.close()
+
+    def _has_failed(self) -> bool:
+        return self._has_ended or "could not be prepared" in self._text
+
+    def _copy(self) -> None:
+        with self._log.open("w") as file:
+            for line in self._stream:
+                file.write(line)
+                file.flush()
+                with self._changed:
+                    self._text += line
+                    self._changed.notify_all()
+        with self._changed:
+            self._has_ended = True
+            self._changed.notify_all()
+
+
+def free_port() -> int:
+    """A port of the loopback interface on which nothing listens."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
 
 
 @dataclass(frozen=True)
 class RunningApp:
-    """A server process and its address; `root` ends without a slash."""
+    """A server process, its address and what it writes; `root` ends without a slash."""
 
     root: str
-    process: subprocess.Popen[bytes]
+    process: subprocess.Popen[str]
+    output: Output
 
     @property
     def address(self) -> str:
@@ -47,35 +98,33 @@ def served_app(log: Path) -> Iterator[str]:
 @contextmanager
 def running_app(log: Path, *options: str) -> Iterator[RunningApp]:
     """The app, served with more options of `panel serve`; its kernels are there when this begins."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    command = [sys.executable, "-m", "panel", "serve", "app", "--address", "127.0.0.1", "--port", str(port)]
-    command += ["--allow-websocket-origin", f"127.0.0.1:{port}", *options]
-    with log.open("w") as output:
-        process = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT)
-    running = RunningApp(f"http://127.0.0.1:{port}", process)
-    try:
-        _wait_until_ready(running)
+    with started_app(log, *PANEL, *options) as running:
+        running.output.wait_for(READY)
         yield running
+
+
+@contextmanager
+def started_app(
+    log: Path, *command: str, port: int | None = None, variables: Mapping[str, str] = NO_VARIABLES
+) -> Iterator[RunningApp]:
+    """A module that serves the app, with its options, port and environment variables; it answers when this begins."""
+    port = free_port() if port is None else port
+    options = ["--address", "127.0.0.1", "--port", str(port), "--allow-websocket-origin", f"127.0.0.1:{port}"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", *command, *options],
+        cwd=ROOT,
+        env={**os.environ, **variables},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert process.stdout is not None
+    output = Output(process.stdout, log)
+    try:
+        # Written when the server listens already.
+        output.wait_for("preparing ")
+        yield RunningApp(f"http://127.0.0.1:{port}", process, output)
     finally:
         process.terminate()
         process.wait(30)
-
-
-def _wait_until_ready(running: RunningApp) -> None:
-    end = time.monotonic() + START_SECONDS
-    while time.monotonic() < end:
-        if running.process.poll() is not None:
-            raise RuntimeError(f"the server ended with {running.process.returncode}")
-        try:
-            with urllib.request.urlopen(f"{running.root}/readiness", timeout=60):
-                return
-        except urllib.error.HTTPError as not_yet:
-            with not_yet:
-                if "could not be compiled" in not_yet.read().decode():
-                    raise RuntimeError("the server could not compile its kernels") from None
-        except OSError:
-            pass
-        time.sleep(0.3)
-    raise TimeoutError(f"the server was not ready within {START_SECONDS} s")
+        output.close()

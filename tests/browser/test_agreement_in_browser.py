@@ -8,25 +8,23 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import expect
 
-from app.views.components.analysis_choice import LAYER_LABELS
+from plots.layers.table import LAYERS
 from tests.browser.explorer_page import ExplorerPage
 
 LAYERS_ON = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112&trust=yes&judge=yes&origins=yes"
 # Two messages as the server sends them, the second one when the button has been drawn and before it can answer.
 _ENABLE_AGAIN = """async label => {
-    const model = [...Bokeh.documents[0]._all_models.values()].find(model => model.label === label)
+    const model = [...Bokeh.documents[0].all_models].find(model => model.label === label)
     const set = value => Bokeh.documents[0].apply_json_patch(
         {events: [{kind: "ModelChanged", model: {id: model.id}, attr: "disabled", new: value}]})
     set(true)
     await new Promise(resolve => requestAnimationFrame(resolve))
     set(false)
-    await new Promise(resolve => setTimeout(resolve, 300))
-    return model.disabled
 }"""
 
 # A case is chosen while an older choice of the server is on its way.
 _CHOOSE_BEFORE_AN_OLDER_CHOICE = """radio => {
-    const model = [...Bokeh.documents[0]._all_models.values()].find(model => `${model.labels}` === "I,II,III")
+    const model = [...Bokeh.documents[0].all_models].find(model => `${model.labels}` === "I,II,III")
     radio.click()
     Bokeh.documents[0].apply_json_patch({events: [{kind: "ModelChanged", model: {id: model.id}, attr: "active", new: 0}]})
 }"""
@@ -39,16 +37,19 @@ def opened(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
 
 def on_in_the_address(explorer: ExplorerPage) -> set[str]:
     query = urllib.parse.parse_qs(urllib.parse.urlsplit(explorer.page.url).query)
-    return {name for name in LAYER_LABELS if query.get(name) == ["yes"]}
+    return {name for name in LAYERS if query.get(name) == ["yes"]}
 
 
 def expect_switches(explorer: ExplorerPage, on: set[str]) -> None:
-    for name, label in LAYER_LABELS.items():
-        expect(explorer.page.get_by_label(label, exact=True)).to_be_checked(checked=name in on)
+    for name, layer in LAYERS.items():
+        expect(explorer.page.get_by_label(layer.title, exact=True)).to_be_checked(checked=name in on)
 
 
 def test_a_widget_keeps_the_last_state_that_the_server_sets(explorer: ExplorerPage) -> None:
-    assert explorer.page.evaluate(_ENABLE_AGAIN, "▶ Play") is False
+    explorer.page.evaluate(_ENABLE_AGAIN, "▶ Play")
+    # The server would have answered an echo of the browser before this.
+    explorer.pick("II")
+    explorer.wait_for_view("case=II&")
     expect(explorer.button("▶ Play")).to_be_enabled()
 
 
@@ -59,7 +60,7 @@ def test_the_last_choice_is_shown_when_an_older_one_arrives_after_it(explorer: E
 
 
 def test_a_switch_can_be_changed_right_after_the_server_has_set_it(explorer: ExplorerPage) -> None:
-    explorer.page.get_by_label(LAYER_LABELS["trust"], exact=True).click()
+    explorer.page.get_by_label(LAYERS["trust"].title, exact=True).click()
     explorer.page.wait_for_url(lambda address: "trust=yes" not in address)
     expect_switches(explorer, {"judge", "origins"})
     assert on_in_the_address(explorer) == {"judge", "origins"}

@@ -17,7 +17,6 @@ WATCH = """() => {
     const send = WebSocket.prototype.send
     WebSocket.prototype.send = function (data) { window.sent += 1; return send.call(this, data) }
 }"""
-PREVIEW = "!data.complete[0] && data.fate[0].shape[0] >= {least} && Math.abs(data.energy[0] - {energy}) < 1e-9"
 
 
 def assert_same_fates(explorer: ExplorerPage, expected: np.ndarray) -> None:
@@ -31,11 +30,6 @@ def exact_energy(explorer: ExplorerPage) -> Locator:
     return explorer.page.get_by_label("Exact h", exact=True)
 
 
-def wait_for_preview(explorer: ExplorerPage, energy: float, least: int = 76) -> None:
-    """Wait for pixels of the browser, at least so many along a side."""
-    explorer.wait_for_data("maps", PREVIEW.format(energy=energy, least=least))
-
-
 def moving_picture(explorer: ExplorerPage) -> Locator:
     """The canvas over one of the pictures while the energy moves."""
     return explorer.page.locator("canvas[data-energy]").first
@@ -44,12 +38,12 @@ def moving_picture(explorer: ExplorerPage) -> Locator:
 def test_pixels_follow_the_slider_without_the_server(explorer: ExplorerPage) -> None:
     # Until the engine is there.
     explorer.drag_energy_to(0.3, let_go=False)
-    wait_for_preview(explorer, 0.22)
+    explorer.wait_for_preview(0.22)
     explorer.page.evaluate(WATCH)
     for share, energy in ((0.5, "0.3"), (0.7, "0.38"), (0.9, "0.46")):
         explorer.move_slider_to(share)
         expect(moving_picture(explorer)).to_have_attribute("data-energy", energy)
-    wait_for_preview(explorer, 0.46)
+    explorer.wait_for_preview(0.46)
     assert explorer.page.evaluate("() => window.sent") == 0
     expect(explorer.text("Preview up to t =")).to_be_visible()
     # The number follows the pixels.
@@ -60,7 +54,7 @@ def test_pixels_follow_the_slider_without_the_server(explorer: ExplorerPage) -> 
 
 def test_at_rest_the_preview_is_that_of_the_map_and_at_release_the_map_comes(explorer: ExplorerPage) -> None:
     explorer.drag_energy_to(0.9, let_go=False)
-    wait_for_preview(explorer, 0.46, least=112)
+    explorer.wait_for_preview(0.46, least=112)
     window = explorer.window_of_pixels()
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.46, (112, 112), t_max=100.0)
     np.testing.assert_allclose(window, list(vars(spec.find_window()).values()), rtol=0.05)
@@ -71,9 +65,7 @@ def test_at_rest_the_preview_is_that_of_the_map_and_at_release_the_map_comes(exp
 
 
 def test_the_energy_can_be_played_and_stopped_without_the_server_between(explorer: ExplorerPage) -> None:
-    explorer.drag_energy_to(0.3, let_go=False)
-    wait_for_preview(explorer, 0.22)
-    explorer.drag_energy_to(0.225)
+    explorer.start_engine()
     explorer.press("▶ Play")
     expect(explorer.button("■ Stop")).to_be_visible()
     explorer.page.evaluate(WATCH)
@@ -88,9 +80,7 @@ def test_the_energy_can_be_played_and_stopped_without_the_server_between(explore
 
 
 def test_a_zoom_is_drawn_by_the_browser_until_the_map_comes(explorer: ExplorerPage) -> None:
-    explorer.drag_energy_to(0.3, let_go=False)
-    wait_for_preview(explorer, 0.22)
-    explorer.drag_energy_to(0.225)
+    explorer.start_engine()
     explorer.page.evaluate(
         """() => {
             window.previewed = false
@@ -107,9 +97,7 @@ def test_a_zoom_is_drawn_by_the_browser_until_the_map_comes(explorer: ExplorerPa
 
 
 def test_the_orbit_under_the_cursor_is_drawn(explorer: ExplorerPage) -> None:
-    explorer.drag_energy_to(0.3, let_go=False)
-    wait_for_preview(explorer, 0.22)
-    explorer.drag_energy_to(0.225)
+    explorer.start_engine()
     explorer.hover("basins", 0.3, 0.1)
     card = explorer.page.locator(".orbit-card")
     expect(card).to_be_visible()
@@ -120,9 +108,10 @@ def test_the_orbit_under_the_cursor_is_drawn(explorer: ExplorerPage) -> None:
 
 def test_an_energy_typed_right_after_choosing_a_case_is_used_and_shown(explorer: ExplorerPage) -> None:
     explorer.pick("III")
-    explorer.type_number("Exact h", "0.6")
-    explorer.wait_for_view("case=III", "h=0.6&")
-    expect(exact_energy(explorer)).to_have_value("0.6")
+    explorer.type_number("Exact h", "1.1")
+    explorer.wait_for_view("case=III", "h=1.1&")
+    expect(exact_energy(explorer)).to_have_value("1.1")
+    expect(explorer.text("h = 1.1, beyond the end of the slider")).to_be_visible()
 
 
 def test_an_energy_that_is_being_typed_stays_when_the_case_changes(explorer: ExplorerPage) -> None:

@@ -73,14 +73,15 @@ NAMES = {
 }
 
 
-def test_widgets_have_accessible_names(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(link=f"{QUICK}&orbits=0.1,0.2;0.1,0.05")
+def test_widgets_have_accessible_names(explorer: ExplorerPage) -> None:
+    explorer.click("basins", 0.1, 0.05)
     explorer.open_fold("Quality and colours")
     explorer.open_fold("Type a start")
     explorer.press("Share")
     for role, names in NAMES.items():
         for name in names:
             expect(explorer.page.get_by_role(cast("Any", role), name=name, exact=True)).to_have_count(1)
+    explorer.press("Close")
 
 
 def test_arrows_move_the_window(explorer: ExplorerPage) -> None:

@@ -1,4 +1,4 @@
-"""Layers over the maps, texts of pixels and bars under the mouse, and the lock of the escape times."""
+"""The text of a pixel under the mouse with all layers."""
 
 from __future__ import annotations
 
@@ -15,18 +15,6 @@ from tests.browser.explorer_page import ExplorerPage
 OpenExplorer = Callable[..., ExplorerPage]
 VIEW = "?case=III&h=0.28&resolution=112&t_max=1000"
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (112, 112), t_max=1e3)
-_BAR = """name => {
-    for (const view of Bokeh.index.all_views()) {
-        if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue
-        const renderer = view.model.renderers[0]
-        const box = view.canvas_view.el.getBoundingClientRect()
-        const {data} = renderer.data_source
-        const tall = values => [...values].indexOf(Math.max(...values))
-        const bar = tall(data.top ?? data.p)
-        const x = data.left ? Math.sqrt(data.left[bar] * data.right[bar]) : data.n[bar]
-        return [box.left + view.frame.x_scale.compute(x), box.top + view.frame.bbox.bottom - 8]
-    }
-}"""
 
 
 def expect_tooltip(explorer: ExplorerPage, *texts: str) -> None:
@@ -37,8 +25,8 @@ def expect_tooltip(explorer: ExplorerPage, *texts: str) -> None:
 @pytest.mark.slow
 def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{VIEW}&judge=yes&trust=yes&origins=yes")
-    explorer.wait_for_data("doubts", "data.trust.length == 1")
-    explorer.page.wait_for_function("Bokeh.documents[0].get_model_by_name('maps').data.passage[0].length > 1")
+    for column in ("trust", "passage"):
+        explorer.page.wait_for_function(f"Bokeh.documents[0].get_model_by_name('maps').data.{column}[0].length > 1")
     frame = compute_map(SPEC)
     regularity, origins = compute_regularity(frame), compute_origin_fates(SPEC)
     explorer.page.wait_for_function(
@@ -67,22 +55,3 @@ def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplor
     explorer.hover("basins", xs[column + 1], ordinates[row])
     explorer.hover("basins", xs[column], ordinates[row])
     expect(explorer.page.locator(".bk-Tooltip").get_by_text("never entered")).to_have_count(0)
-
-
-@pytest.fixture(scope="module")
-def with_statistics(open_for_all: OpenExplorer) -> ExplorerPage:
-    return open_for_all(link=f"{VIEW}&analysis=statistics", height=2000)
-
-
-@pytest.mark.parametrize(
-    ("chart", "texts"),
-    [("histogram", ("starts", "escape", "from t =")), ("probabilities", ("upward crossings", "of the orbits still inside"))],
-)
-def test_bars_have_texts(with_statistics: ExplorerPage, chart: str, texts: tuple[str, ...]) -> None:
-    explorer = with_statistics
-    explorer.page.wait_for_function(_BAR, arg=chart)
-    expect(explorer.text("interior starts").last).to_be_visible()
-    x, y = explorer.page.evaluate(_BAR, chart)
-    explorer.page.mouse.move(x - 2, y)
-    explorer.page.mouse.move(x, y)
-    expect_tooltip(explorer, *texts)

@@ -13,7 +13,7 @@ from app.state.help_texts import HELP_TEXTS
 from app.views.maps.picture_grid import SHORT_TITLES
 from app.views.maps.well import TITLE
 from engine import CASES
-from plots.pictures.map_images import TITLES
+from plots.layers.table import TITLES
 from plots.pictures.palette import PALETTES
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
@@ -86,7 +86,7 @@ def phone(open_for_all: OpenExplorer) -> ExplorerPage:
 
 
 def test_the_page_opens_with_few_models_and_elements(wide: ExplorerPage) -> None:
-    assert wide.page.evaluate("() => Bokeh.documents[0]._all_models.size") <= 250
+    assert wide.page.evaluate("() => [...Bokeh.documents[0].all_models].length") <= 250
     assert wide.page.evaluate(_ELEMENTS) <= 1275
 
 
@@ -262,8 +262,8 @@ def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:
     assert explorer.page.evaluate(palette) == before
 
 
-def test_a_picture_fills_the_height_when_it_is_enlarged(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(1280, 720, QUICK)
+def test_a_picture_fills_the_height_when_it_is_enlarged(middling: ExplorerPage) -> None:
+    explorer = middling
     explorer.press(f"Enlarge, or show all: {TITLES['times']}")
     explorer.wait_for_view("focus=times")
     explorer.page.wait_for_function(f"() => ({_FIGURES})().times[4] > {0.7 * 720}")
@@ -279,6 +279,7 @@ def test_a_picture_fills_the_height_when_it_is_enlarged(open_explorer: OpenExplo
     explorer.page.keyboard.press("Escape")
     explorer.page.wait_for_function(f"() => new Set(Object.values(({_FIGURES})()).map(frame => frame[4])).size == 1")
     assert "focus" not in explorer.page.url
+    explorer.return_home()
 
 
 def help_text(explorer: ExplorerPage, name: str) -> Locator:

@@ -16,10 +16,11 @@ from playwright.sync_api import expect
 from app.state.presets import PRESETS
 from app.state.view import Analysis
 from app.state.view_state import ViewState
-from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS
+from app.views.components.analysis_choice import ANALYSIS_LABELS
 from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
 from engine.jobs.job import Job
+from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
 from plots.pictures.time_scale import fitted_scale
 from tests.app.state.opened_link import open_link
@@ -130,7 +131,7 @@ def expected_page(address: str) -> dict[str, Any]:
     state, problems = open_link(dict(parse_qsl(query)))
     assert not problems, problems
     shown = shown_in(state)
-    layers = {label: bool(getattr(state, name)) for name, label in LAYER_LABELS.items()}
+    layers = {layer.title: name in state.layers for name, layer in LAYERS.items()}
     analyses = {label: state.analysis is analysis for analysis, label in ANALYSIS_LABELS.items()}
     cases = {case: state.system.case == case for case in CASES}
     planes = {plane.title: state.plane is plane for plane in PLANES}
@@ -160,7 +161,7 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
     texts: dict[str, list[str]] = {}
     if shown.frame is not None:
         channels = [f"channel {k + 1}" for k in range(state.potential.channels)]
-        layers = {"bounded and chaotic": state.judge, "Enters by": state.origins}
+        layers = {"bounded and chaotic": "judge" in state.layers, "Enters by": "origins" in state.layers}
         times = state.lock_times or fitted_scale(shown.frame)
         texts[LEGEND] = [f"≤ {times.low:g}", *channels, *(name for name, is_on in layers.items() if is_on)]
     if shown.frame is not None and state.analysis is Analysis.STATISTICS:
@@ -224,7 +225,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
 
     plain = {f"case {case}": lambda case=case: explorer.pick(case) for case in CASES}
     plain |= {f"plane {plane.title}": lambda plane=plane: explorer.pick(plane.title) for plane in PLANES}
-    plain |= {f"layer {label}": switch(label) for label in LAYER_LABELS.values()}
+    plain |= {f"layer {layer.title}": switch(layer.title) for layer in LAYERS.values()}
     plain |= {f"analysis {label}": lambda label=label: explorer.pick(label) for label in ANALYSIS_LABELS.values()}
     plain |= {f"key {name}": key(name) for name in ("+", "-", "h", "ArrowLeft")}
     return plain | {

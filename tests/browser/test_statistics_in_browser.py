@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 from playwright.sync_api import expect
 
 from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
-from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-
-@pytest.fixture(scope="module")
-def opened(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
-    return open_for_all(link=f"{QUICK}&analysis=statistics")
+_BAR = """name => {
+    for (const view of Bokeh.index.all_views()) {
+        if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue
+        const renderer = view.model.renderers[0]
+        const box = view.canvas_view.el.getBoundingClientRect()
+        const {data} = renderer.data_source
+        const tall = values => [...values].indexOf(Math.max(...values))
+        const bar = tall(data.top ?? data.p)
+        const x = data.left ? Math.sqrt(data.left[bar] * data.right[bar]) : data.n[bar]
+        return [box.left + view.frame.x_scale.compute(x), box.top + view.frame.bbox.bottom - 8]
+    }
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +30,7 @@ def counted() -> EscapeMap:
 
 def test_the_statistics_are_those_of_the_map(explorer: ExplorerPage, counted: EscapeMap) -> None:
     statistics = compute_statistics(counted)
+    explorer.pick("Statistics")
     table = explorer.page.get_by_role("table", name="statistics")
     expect(table).to_contain_text("Interior starts in the whole view")
     for text in (percent(statistics.shares[1], 2), percent(statistics.direct_share, 2), f"{statistics.median_escape_time:.4g}"):
@@ -32,8 +38,6 @@ def test_the_statistics_are_those_of_the_map(explorer: ExplorerPage, counted: Es
 
 
 def test_a_box_opens_the_statistics_and_can_be_removed(explorer: ExplorerPage, counted: EscapeMap) -> None:
-    expect(explorer.button("Count the whole view")).to_be_hidden()
-    explorer.pick("Orbit")
     expect(explorer.page.get_by_role("table", name="statistics")).to_have_count(0)
     explorer.set_drag("Count")
     explorer.drag("basins", (-0.3, -0.2), (0.1, 0.4))
@@ -47,3 +51,18 @@ def test_a_box_opens_the_statistics_and_can_be_removed(explorer: ExplorerPage, c
     expect(explorer.text("Interior starts in the whole view")).to_be_visible()
     assert explorer.model_data("box")["left"] == []
     explorer.set_drag("Move")
+
+
+@pytest.mark.parametrize(
+    ("chart", "texts"),
+    [("histogram", ("starts", "escape", "from t =")), ("probabilities", ("upward crossings", "of the orbits still inside"))],
+)
+def test_bars_have_texts(explorer: ExplorerPage, chart: str, texts: tuple[str, ...]) -> None:
+    explorer.pick("Statistics")
+    explorer.page.wait_for_function(_BAR, arg=chart)
+    expect(explorer.text("interior starts").last).to_be_visible()
+    x, y = explorer.page.evaluate(_BAR, chart)
+    explorer.page.mouse.move(x - 2, y)
+    explorer.page.mouse.move(x, y)
+    for text in texts:
+        expect(explorer.page.locator(".bk-Tooltip").get_by_text(text).first).to_be_visible()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -90,6 +89,7 @@ def test_two_fingers_that_part_zoom_the_map(explorer: ExplorerPage) -> None:
 @pytest.mark.slow
 def test_a_finger_that_rests_shows_the_orbit_under_it(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_touched(open_explorer, 420)
+    explorer.start_engine()
     explorer.radio("Scroll").scroll_into_view_if_needed()
     card, session = explorer.page.locator(".orbit-card"), explorer.page.context.new_cdp_session(explorer.page)
     x, y = middle_of(explorer)
@@ -97,14 +97,8 @@ def test_a_finger_that_rests_shows_the_orbit_under_it(open_explorer: Callable[..
     def touch(kind: str, *points: dict[str, float]) -> None:
         session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": list(points)})
 
-    # Until the engine is there.
-    for _ in range(20):
-        touch("touchStart", {"x": float(x), "y": float(y)})
-        with suppress(AssertionError):
-            expect(card).to_be_visible(timeout=1500)
-        if card.is_visible():
-            break
-        touch("touchEnd")
+    touch("touchStart", {"x": float(x), "y": float(y)})
+    expect(card).to_be_visible()
     before, label = window(explorer), card.get_attribute("aria-label")
     touch("touchMove", {"x": float(x) + 40.0, "y": float(y) + 30.0})
     expect(card).not_to_have_attribute("aria-label", label or "")

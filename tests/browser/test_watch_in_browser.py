@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import expect
 
-from engine import CASES, classify_orbits, sample_starts
+from engine import CASES, Plane, classify_orbits, sample_starts
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
@@ -74,8 +74,9 @@ def test_the_link_brings_back_the_same_orbits(open_explorer: OpenExplorer) -> No
     assert inside(again) == inside(explorer)
 
 
-def test_a_slice_of_several_energies_says_why_there_is_nothing_to_watch(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link="?case=I&plane=x_h&t_max=100&resolution=112&analysis=watch")
+def test_a_slice_of_several_energies_says_why_there_is_nothing_to_watch(explorer: ExplorerPage) -> None:
+    explorer.pick("Watch")
+    explorer.pick(Plane.X_H.title)
     expect(explorer.text("Choose a slice of one energy")).to_be_visible()
     expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_disabled()
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable, Iterator
+from contextlib import redirect_stderr
+from io import StringIO
 
 import pytest
 
@@ -29,5 +31,37 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
         code = main([str(argument) for argument in arguments])
         captured = capsys.readouterr()
         return code, captured.out, captured.err
+
+    return run_command
+
+
+class Terminal(StringIO):
+    """A terminal that does something when a word is first written to it, such as the name of a stage of a computation."""
+
+    def __init__(self, word: str, action: Callable[[], None]) -> None:
+        super().__init__()
+        self._word, self._action = word, action
+        self._is_done = False
+
+    def isatty(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        if self._word in text and not self._is_done:
+            self._is_done = True
+            self._action()
+        return super().write(text)
+
+
+@pytest.fixture
+def run_in_terminal(run: Run, monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, str, str]]:
+    """Function that runs a command in a terminal, with an action at a word; exit code, stdout, and the last line of stderr."""
+    monkeypatch.setenv("TERM", "xterm")
+
+    def run_command(word: str, action: Callable[[], None], *arguments: object) -> tuple[int, str, str]:
+        terminal = Terminal(word, action)
+        with redirect_stderr(terminal):
+            code, out, _ = run(*arguments)
+        return code, out, terminal.getvalue().splitlines()[-1]
 
     return run_command

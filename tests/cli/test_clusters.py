@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import distributed
 import numpy as np
@@ -16,23 +16,32 @@ MAP = ("map", "I", "--energy", 0.13, "--resolution", 12, "--t-max", 1000, "--for
 ANALYSES = ("--judge", "--trust", "--origins")
 
 
-# Threads as workers, with messages as between processes; processes are in the long verification.
-@pytest.mark.parametrize("processes", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["threads", "processes"])
-def test_local_cluster_computes_the_same_map(processes: bool, run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    started: list[int] = []
+@pytest.fixture
+def scheduler() -> Iterator[str]:
+    """The address of a cluster whose workers are threads."""
+    with distributed.LocalCluster(
+        n_workers=1, processes=False, protocol="tcp", host="127.0.0.1", dashboard_address="127.0.0.1:0"
+    ) as cluster:
+        yield cluster.scheduler_address
 
-    def start(*, n_workers: int, **options: Any) -> Any:
-        started.append(n_workers)
-        return distributed.LocalCluster(n_workers=n_workers, **options, processes=processes, protocol="tcp", host="127.0.0.1")
 
-    monkeypatch.setattr("distributed.deploy.LocalCluster", start)
-    assert run(*MAP, *ANALYSES, "--output", tmp_path / "threads")[0] == 0
-    assert run(*MAP, *ANALYSES, "--local-cluster", 1, "--output", tmp_path / "cluster")[0] == 0
-    assert started == [1]
+def assert_same_map(run: Run, folder: Path, *place: object) -> None:
+    """A map that is computed somewhere is that of the threads of this process."""
+    assert run(*MAP, *ANALYSES, "--output", folder / "threads")[0] == 0
+    assert run(*MAP, *ANALYSES, *place, "--output", folder / "cluster")[0] == 0
     with (
-        xr.open_dataset(tmp_path / "threads.nc", engine="h5netcdf") as wanted,
-        xr.open_dataset(tmp_path / "cluster.nc", engine="h5netcdf") as found,
+        xr.open_dataset(folder / "threads.nc", engine="h5netcdf") as wanted,
+        xr.open_dataset(folder / "cluster.nc", engine="h5netcdf") as found,
     ):
         assert {"character", "trust", "origin"} < set(found.data_vars)
         for name in set(wanted.variables) - {"energy_error"}:
             np.testing.assert_array_equal(found[name], wanted[name])
+
+
+def test_a_cluster_computes_the_same_map(run: Run, tmp_path: Path, scheduler: str) -> None:
+    assert_same_map(run, tmp_path, "--scheduler", scheduler)
+
+
+@pytest.mark.slow
+def test_a_local_cluster_of_processes_computes_the_same_map(run: Run, tmp_path: Path) -> None:
+    assert_same_map(run, tmp_path, "--local-cluster", 1)

@@ -7,16 +7,13 @@ import subprocess
 import sys
 from importlib import metadata
 from pathlib import Path
-from typing import Any
 
 import pytest
 from typer import Context
 from typer.main import get_command
 
-from cli import map_analyses
 from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST, program
-from engine import CASES, EscapeMap
-from engine.maps.compute import run_map
+from engine import CASES
 from engine.maps.spec import DEFAULT_RESOLUTION
 from plots.printed.figure_style import FigureStyle
 from tests.cli.conftest import Run
@@ -105,14 +102,13 @@ def test_unwritable_output_exits_with_failed(run: Run, tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["taken.nc"]
 
 
-def test_failed_computation_writes_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*arguments: Any) -> EscapeMap:
+def test_failed_computation_writes_nothing(run_in_terminal: Run, tmp_path: Path) -> None:
+    def fail() -> None:
         raise RuntimeError("first line\nsecond line")
 
-    monkeypatch.setattr(map_analyses, "run_map", fail)
-    assert run(*MAP, "--output", tmp_path / "map") == (
-        FAILED, "", "escape-explorer: RuntimeError: first line second line\n",
-    )  # fmt: skip
+    code, out, line = run_in_terminal("map", fail, *MAP, "--output", tmp_path / "map")
+    assert (code, out) == (FAILED, "")
+    assert line.endswith("escape-explorer: RuntimeError: first line second line")
     assert not any(tmp_path.iterdir())
 
 
@@ -124,29 +120,23 @@ def test_missing_dask_is_reported_with_the_install_command(run: Run, tmp_path: P
     assert not any(tmp_path.iterdir())
 
 
-def test_ctrl_c_cancels_a_map_and_writes_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*arguments: Any) -> EscapeMap:
-        signal.raise_signal(signal.SIGINT)
-        return run_map(*arguments)
+# A map that takes minutes, whose stage has begun when the signals come.
+LONG = ("map", "III", "--energy", 0.26, "--resolution", 300, "--t-max", 1e7)
 
-    monkeypatch.setattr(map_analyses, "run_map", interrupted)
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_ctrl_c_cancels_a_map_and_a_second_one_ends_it_at_once(times: int, run_in_terminal: Run, tmp_path: Path) -> None:
     before = signal.getsignal(signal.SIGINT)
-    code, out, err = run(*MAP, "--trust", "--output", tmp_path / "map")
+
+    def interrupt() -> None:
+        for _ in range(times):
+            signal.raise_signal(signal.SIGINT)
+
+    code, out, line = run_in_terminal("map", interrupt, *LONG, "--trust", "--output", tmp_path / "map")
     assert (code, out) == (INTERRUPTED, "")
-    assert err == "escape-explorer: interrupted; nothing was written\n"
+    assert line.endswith("escape-explorer: interrupted; nothing was written")
     assert not any(tmp_path.iterdir())
     assert signal.getsignal(signal.SIGINT) is before
-
-
-def test_second_ctrl_c_interrupts_at_once(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def never_stops(*arguments: Any) -> EscapeMap:
-        signal.raise_signal(signal.SIGINT)
-        signal.raise_signal(signal.SIGINT)
-        raise AssertionError("not reached")
-
-    monkeypatch.setattr(map_analyses, "run_map", never_stops)
-    assert run(*MAP, "--output", tmp_path / "map") == (INTERRUPTED, "", "escape-explorer: interrupted; nothing was written\n")
-    assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(("word", "code"), [("mpa", INVALID_REQUEST), ("--help", 0), ("serve --help", 0)])
@@ -169,6 +159,12 @@ def test_options_have_the_defaults_of_the_request(run: Run) -> None:
     columns, rows = DEFAULT_RESOLUTION
     assert f"[default: {columns}x{rows}]" in out
     assert f"[default: {FigureStyle().dpi}]" in out
+
+
+def test_flags_are_shown_without_a_value(run: Run) -> None:
+    _, out, _ = run("map", "--help")
+    assert "--trust" in out
+    assert "<bool>" not in out
 
 
 @pytest.mark.parametrize("before", [(), ("--json",), ("--json", "--")])

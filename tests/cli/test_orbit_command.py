@@ -9,15 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from engine import (
-    CASES,
-    Plane,
-    compute_birkhoff_digits,
-    evaluate_indicators,
-    integrate_orbit,
-    judge_orbit,
-    start_states,
-)
+from engine import CASES, Plane, integrate_orbit, judge_orbit, start_states
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
+from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.palette import COLOUR_BLIND_SAFE
 from plots.texts.exports import orbits_csv
 from tests.cli.conftest import Run

@@ -31,19 +31,6 @@ def test_number_at_the_end_of_a_name_is_no_ending() -> None:
     assert name_files(Path("maps/h0.19"), ["nc", "png"], ["nc"]) == {"nc": Path("maps/h0.19.nc")}
 
 
-def test_failed_write_keeps_the_existing_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "a").write_text("before")
-
-    def fail(descriptor: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", fail)
-    with pytest.raises(OSError, match="No space"):
-        write_files({tmp_path / "a": "after"})
-    assert [path.name for path in tmp_path.iterdir()] == ["a"]
-    assert (tmp_path / "a").read_text() == "before"
-
-
 @pytest.mark.skipif(os.name != "posix", reason="file modes are POSIX")
 def test_written_files_have_the_default_mode(tmp_path: Path) -> None:
     (tmp_path / "plain").write_text("")

@@ -9,10 +9,8 @@ from pathlib import Path
 import pytest
 
 from cli.main import INTERRUPTED
-from engine import Plane
-from reproduction import members, quality
+from reproduction import quality
 from reproduction.figures.all_figures import FIGURES
-from reproduction.map_cache import MapCache
 from reproduction.quality import Quality
 from tests.cli.conftest import Run
 
@@ -46,15 +44,9 @@ def test_list_names_all_figures_and_writes_nothing(run: Run, tmp_path: Path, mon
     assert not any(tmp_path.iterdir())
 
 
-def test_ctrl_c_keeps_finished_figures(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def make(name: str, cache: MapCache) -> dict[str, str | bytes]:
-        if name == "I-xh":
-            signal.raise_signal(signal.SIGINT)
-            cache.map("I", Plane.X_PX, 0.13)
-        return {f"{name}.png": b"data"}
-
-    monkeypatch.setattr(members, "make_files", make)
-    code, out, err = run("reproduce", "I-potential", "I-xh", "--quick", "--output", tmp_path)
+def test_ctrl_c_keeps_finished_figures(run_in_terminal: Run, tmp_path: Path) -> None:
+    arguments = ("reproduce", "I-potential", "I-xh", "--quick", "--output", tmp_path)
+    code, out, line = run_in_terminal("I-xh", lambda: signal.raise_signal(signal.SIGINT), *arguments)
     assert (code, out) == (INTERRUPTED, "")
-    assert "1 of 2" in err
-    assert [path.name for path in tmp_path.iterdir()] == ["I-potential.png"]
+    assert "1 of 2" in line
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["I-potential.pdf", "I-potential.png"]

@@ -23,21 +23,21 @@ from engine import (
     Plane,
     Potential,
     Trust,
-    compute_birkhoff_digits,
     compute_map,
     compute_regularity,
     compute_separation,
     compute_trust,
-    default_window,
-    evaluate_indicators,
     find_divergent_start,
     find_lyapunov_orbits,
     find_stable_manifolds,
     integrate_orbit,
     judge_orbit,
     review_potential,
-    trace_zero_velocity_curve,
 )
+from engine.slices.default_window import default_window
+from engine.slices.limiting_curves import trace_zero_velocity_curve
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
+from engine.trajectories.chaos_indicators import evaluate_indicators
 from tests.contracts.scaling import Scaling
 
 EXACT = (Scaling(8.0, 4.0**-3), Scaling(2.0**-6, 1.0), Scaling(1.0, 4.0**8))

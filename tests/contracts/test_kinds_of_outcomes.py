@@ -8,9 +8,10 @@ import pytest
 from engine import Centre, MapSpec, Plane, Potential, compute_map, compute_origin_fates, parse_formula, write_formula
 from engine.systems import outcomes
 from engine.systems.outcomes import KINDS, EscapeCircle
-from engine.systems.stored_potential import describe_potential, read_potential
-from plots.pictures.image_columns import passage_column
-from plots.pictures.palette import OUTCOMES, PALETTES, end_places
+from engine.systems.provenance import describe_potential
+from engine.systems.stored_potential import read_potential
+from plots.layers.origins import ORIGINS
+from plots.pictures.palette import PALETTES, end_places
 from tests.contributing import run_example
 
 WELL = "½(x² + y²) − xy²"
@@ -63,7 +64,7 @@ def test_orbits_end_at_a_station_as_at_a_body_and_in_its_words_and_colour(statio
 def test_passages_from_a_station_have_codes_of_their_own(station: type[outcomes.End]) -> None:
     potential = parse_formula(WELL + "; station the dock (0.2, 0.3) 0.05")
     found = compute_origin_fates(MapSpec(potential, Plane.X_PX, 0.19, (20, 20), t_max=50.0))
-    columns = passage_column(found)
-    origins = (columns["passage"][0].astype(int) - len(OUTCOMES)) // (len(PALETTES["paper"].ends) + 1)
-    words = np.array(columns["origins"][0])[origins[(found.origin == 3) & (found.fate > 0)]]
-    assert set(words) == {"backward in time it arrives at the dock"}
+    assert ORIGINS.pixels is not None
+    columns = ORIGINS.pixels.columns(found, None)
+    codes = columns["passage"][0][(found.origin == 3) & (found.fate > 0)]
+    assert set(np.array(columns["passage_words"][0])[codes]) == {"backward in time it arrives at the dock"}

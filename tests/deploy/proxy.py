@@ -8,14 +8,14 @@ from __future__ import annotations
 import base64
 import os
 import shutil
-import socket
 import ssl
 import subprocess
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+
+from tests.browser.served_app import Output, free_port
 
 ROOT = Path(__file__).parents[2]
 NAME, PASSWORD = "visitor", "open sesame"
@@ -24,7 +24,7 @@ _CONFIGURATION = """
 daemon off;
 {user}
 pid {folder}/pid;
-error_log {folder}/error.log;
+error_log stderr notice;
 events {{}}
 http {{
     access_log off;
@@ -66,13 +66,6 @@ def authorization(password: str = PASSWORD) -> dict[str, str]:
     return {"Authorization": "Basic " + base64.b64encode(f"{NAME}:{password}".encode()).decode()}
 
 
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
-
-
 @contextmanager
 def proxied(program: str, folder: Path, port: int, backends: tuple[int, int]) -> Iterator[Proxy]:
     """Run nginx in front of two backends with a new certificate and password."""
@@ -82,13 +75,17 @@ def proxied(program: str, folder: Path, port: int, backends: tuple[int, int]) ->
     (folder / "passwords").write_text(f"{NAME}:{hashed}")
     (folder / "site.conf").write_text(_configured(proxy, folder, backends))
     (folder / "nginx.conf").write_text(_CONFIGURATION.format(folder=folder, user=_user(), header=ADDRESS_HEADER))
-    process = subprocess.Popen([program, "-e", str(folder / "error.log"), "-c", str(folder / "nginx.conf")])
+    command = [program, "-e", "stderr", "-c", str(folder / "nginx.conf")]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    assert process.stderr is not None
+    output = Output(process.stderr, folder / "error.log")
     try:
-        _wait_for_port(port, process)
+        output.wait_for("start worker process ")
         yield proxy
     finally:
         process.terminate()
-        process.wait(10)
+        process.wait(30)
+        output.close()
 
 
 def _user() -> str:
@@ -118,14 +115,3 @@ def _configured(proxy: Proxy, folder: Path, backends: tuple[int, int]) -> str:
         assert old in text, f"deploy/nginx.conf has no {old!r} any more"
         text = text.replace(old, new)
     return text
-
-
-def _wait_for_port(port: int, process: subprocess.Popen[bytes]) -> None:
-    last = time.monotonic() + 20.0
-    while process.poll() is None and time.monotonic() < last:
-        try:
-            socket.create_connection(("127.0.0.1", port), 1.0).close()
-            return
-        except OSError:
-            time.sleep(0.05)
-    raise RuntimeError(f"nginx does not listen on port {port}: {process.poll()}")

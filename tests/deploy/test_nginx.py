@@ -7,11 +7,7 @@ import http.client
 import http.server
 import json
 import re
-import subprocess
-import sys
 import threading
-import time
-import urllib.request
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -21,12 +17,12 @@ from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
 from tests.app.other_loop import run_on_new_loop
-from tests.deploy.proxy import ADDRESS_HEADER, ROOT, Proxy, authorization, free_port, nginx, proxied
+from tests.browser.served_app import PANEL, READY, free_port, started_app
+from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, nginx, proxied
 
 pytestmark = pytest.mark.skipif(nginx() is None, reason="nginx is not installed")
 # Starts the explorer; the other tests use servers that answer with their port.
 with_explorer = pytest.mark.slow
-START_SECONDS = 240.0
 FORGED = (
     "X-Forwarded-For",
     "X-Real-Ip",
@@ -58,28 +54,11 @@ def proxy_before_two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy
 
 @contextmanager
 def explorer(log: Path, port: int, origin: str) -> Iterator[None]:
-    command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={port}", "--use-xheaders"]
     # Pages without a connection count until the end of the tests.
-    command += [f"--allow-websocket-origin={origin}", "--unused-session-lifetime=3600000"]
-    with log.open("w") as output:
-        process = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=output)
-    try:
-        wait_until_ready(port, process)
+    options = ["--use-xheaders", f"--allow-websocket-origin={origin}", "--unused-session-lifetime=3600000"]
+    with started_app(log, *PANEL, *options, port=port) as running:
+        running.output.wait_for(READY)
         yield
-    finally:
-        process.terminate()
-        process.wait(60)
-
-
-def wait_until_ready(port: int, process: subprocess.Popen[bytes]) -> None:
-    last = time.monotonic() + START_SECONDS
-    while process.poll() is None and time.monotonic() < last:
-        try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{port}/readiness", timeout=30):
-                return
-        except OSError:
-            time.sleep(0.3)
-    raise RuntimeError(f"the server was not ready within {START_SECONDS:g} s, or ended: {process.poll()}")
 
 
 class PortHandler(http.server.BaseHTTPRequestHandler):

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import threading
 
-import pytest
-
 from engine import Potential
-from engine.integrator import bound_kernels
 from engine.integrator.bound_kernels import load_kernels
-from engine.integrator.jit.compiled_operations import CompiledOperations
+from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.warmup import (
     _Compilations,
     is_ready_for_maps,
@@ -51,22 +48,14 @@ def test_background_compilation_lets_maps_go_first() -> None:
     assert order == ["maps", "background"]
 
 
-@pytest.fixture
-def counted(monkeypatch: pytest.MonkeyPatch) -> CompiledOperations:
-    operations = CompiledOperations()
-    monkeypatch.setattr(bound_kernels, "compiled_operations", operations)
-    return operations
-
-
-def test_the_question_whether_a_potential_is_ready_generates_no_code(counted: CompiledOperations) -> None:
+def test_the_question_whether_a_potential_is_ready_generates_no_code() -> None:
     potential = Potential("asked", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (4, 3, 1e-3)))
     assert not is_ready_for_maps(potential)
     assert seconds_until_ready_for_maps(potential) > 0.0
-    assert counted.used == 0
+    assert compiled_operations.used == 0
 
 
-def test_a_potential_beyond_the_limit_of_compiled_code_is_not_ready(counted: CompiledOperations) -> None:
-    load_kernels(POTENTIAL.terms, POTENTIAL.channels)
-    counted.most = 0
+def test_a_potential_beyond_the_limit_of_compiled_code_is_not_ready() -> None:
+    compiled_operations.most = 0
     same_powers = Potential("refused", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, 0.7)))
     assert not is_ready_for_maps(same_powers)

@@ -18,20 +18,20 @@ from engine import (
     Coordinate,
     Fate,
     MapSpec,
+    ParameterAxis,
     Plane,
     SweepSpec,
+    System,
     compute_map,
     compute_statistics,
     compute_sweep,
-    find_lyapunov_orbits,
-    find_multipliers,
-    find_section_crossings,
     integrate_orbit,
     open_result,
     parse_formula,
     sample_orbits,
     start_states,
 )
+from engine.slices.slice_text import read_slice
 from engine.systems.outcomes import Centre
 
 LONGEST = 400
@@ -48,6 +48,7 @@ def names() -> dict[str, Any]:
         "stats": compute_statistics(whole), "sw": SweepSpec(case, Plane.X_PX, (0.3, 0.4), (10, 10), t_max=20.0),
         "other": compute_sweep(SweepSpec(case, Plane.X_PX, (0.4,), (12, 12), t_max=30.0)),
         "well": parse_formula("x² + y²"), "Centre": Centre, "np": np, "threading": threading, "axes": Figure().subplots(),
+        "EPSILON": ParameterAxis("epsilon", 0.5, 2.0, System("I")), "read_slice": read_slice,
     }  # fmt: skip
 
 
@@ -59,7 +60,7 @@ WRONG_CALLS = (
     ('MapSpec("III", Plane.X_PX, 0.45)', "potential='III': must be a Potential"),
     (
         'MapSpec(III, "x-px", 0.45)',
-        "plane='x-px': must be a Slice or one of (x, y), (x, px), (x, h), (y, py), (x, y), β = 1.5708",
+        "plane='x-px': must be a Slice or one of x_y, x_px, x_h, y_py, tangential",
     ),
     ('MapSpec(III, Plane.X_PX, "0.45")', "energy='0.45': must be one finite number on (x, px), at most 1e+09 in magnitude"),
     ("MapSpec(III, Plane.X_H, 0.45)", "energy=0.45: on (x, h) must be a pair (low, high) of finite numbers with low < high"),
@@ -68,11 +69,34 @@ WRONG_CALLS = (
     ("MapSpec(III, Plane.X_PX, 0.45, window=(1, 2))", "window=(1, 2): must be (x_low, x_high, ordinate_low, ordinate_high)"),
     ("MapSpec(III, Plane.X_PX, 0.45, t_max=0)", "t_max=0: must be above 0 and at most 1e+08"),
     ('MapSpec(III, Plane.X_PX, 0.45, use_evidence="no")', "use_evidence='no': must be True or False"),
+    ('MapSpec(III, Plane.X_PX, float("nan"))', "energy=nan: must be one finite number on (x, px), at most 1e+09 in magnitude"),
+    ("MapSpec(III, Plane.X_PX, (0.1, 0.2))", "energy=(0.1, 0.2): must be one finite number on (x, px), at most 1e+09 in"),
+    ("MapSpec(III, Plane.X_H, (0.2, 0.2))", "energy=(0.2, 0.2): on (x, h) must be a pair (low, high) of finite numbers with"),
+    ('MapSpec(III, Plane.X_H, (0.1, float("nan")))', "energy=(0.1, nan): on (x, h) must be a pair (low, high) of finite"),
+    ("MapSpec(III, Plane.X_PX, 0.45, (0, 10))", "resolution=(0, 10): must be (columns, rows), each from 1 to 4096"),
+    ("MapSpec(III, Plane.X_PX, 0.45, (10, 4097))", "resolution=(10, 4097): must be (columns, rows), each from 1 to 4096"),
+    ("MapSpec(III, Plane.X_PX, 0.45, (10.7, 10))", "resolution=(10.7, 10): must be (columns, rows), each from 1 to 4096"),
+    ('MapSpec(III, Plane.X_PX, 0.45, t_max=float("nan"))', "t_max=nan: must be above 0 and at most 1e+08"),
+    ("MapSpec(III, Plane.X_PX, 0.45, t_max=2e8)", "t_max=200000000.0: must be above 0 and at most 1e+08"),
+    ("MapSpec(III, Plane.X_PX, 0.45, window=(None, 1.0, 0.0, 1.0))", "window=(None, 1.0, 0.0, 1.0): must be (x_low, x_high,"),
+    (
+        "MapSpec(III, Plane.X_PX, 0.45, window=(0.3, 0.3 + 1e-14, 0.2, 0.2 + 1e-14)).find_window()",
+        "window=…: double precision ends here;",
+    ),
+    ("MapSpec(III, 3, 0.45)", "plane=3: must be a Slice or one of x_y, x_px, x_h, y_py, tangential"),
+    ('MapSpec(CASES["II"], Slice(C.X, EPSILON), 0.2)', "plane=(x, ε): its parameter is one of another system; must be one of"),
     ("compute_map(III)", "spec=…: must be a MapSpec"),
     ("compute_map(spec, executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("compute_map(spec, cancel=True)", "cancel=True: must be a threading.Event or None"),
+    ("compute_map(spec, execution=4)", "execution=4: must be an Execution"),
     ("compute_map(spec, on_frame=3)", "on_frame=3: must be a function or None"),
     ("compute_map(spec, resume=spec)", "resume=…: must be an EscapeMap or None"),
+    (
+        "compute_map(MapSpec(III, Plane.X_PX, 0.45, (20, 21), t_max=50.0), resume=m)",
+        "resume: a map with another resolution;",
+    ),
+    ("compute_map(MapSpec(III, Plane.X_PX, 0.46, (20, 20), t_max=50.0), resume=m)", "resume: a map with another energy; must"),
+    ("compute_map(MapSpec(III, Plane.X_PX, 0.45, (20, 20), t_max=49.0), resume=m)", "resume: a map with another t_max; must"),
     ("compute_regularity(spec)", "escape_map=…: must be an EscapeMap"),
     ("compute_statistics(spec)", "frame=…: must be an EscapeMap"),
     ("compute_basin_entropy(spec)", "labels of shape () and type object: must be integers, (rows, columns)"),
@@ -90,37 +114,67 @@ WRONG_CALLS = (
     ("judge_orbit(m)", "orbit=…: must be an Orbit"),
     ("judge_orbit(orbit, 3)", "digits=3: must be a BirkhoffDigits or None"),
     ('compute_separation(III, S, S, "end")', "t_end='end': must be above 0 and at most 1e+08"),
+    ('compute_separation(III, S, (0.0, 0.0, float("nan"), 1.0), 10.0)', "second=(0.0, 0.0, nan, 1.0): must be four finite"),
+    ("compute_separation(III, S, S, -1.0)", "t_end=-1.0: must be above 0 and at most 1e+08"),
     ('find_divergent_start(III, Plane.X_PX, 0.45, "a", 0.0)', "x='a': must be a finite number, at most 1e+09 in magnitude"),
-    ("find_multipliers(III, orbit)", "orbit=…: must be a LyapunovOrbit"),
-    ('find_multipliers(CASES["I"], find_lyapunov_orbits(III, 0.45)[0])', "potential=I: must be that of the orbit, III"),
+    ("find_divergent_start(III, Plane.X_PX, (0.1, 0.2), 0.1, 0.1)", "energy=(0.1, 0.2): must be one finite number on (x,"),
+    ('find_divergent_start(CASES["I"], Plane.X_PX, 0.2, 0.1, 0.9)', "x=0.1, px=0.9: forbidden on (x, px) at h=0.2; must have"),
+    ("find_divergent_start(III, Plane.X_Y, 0.3, 1.2, 1.2)", "x=1.2, y=1.2: outside on (x, y) at h=0.3; must have V ≤ h and"),
+    ('find_divergent_start(CASES["II"], Plane.X_H, (0.2, 0.4), 0.1, -0.1)', "x=0.1, h=-0.1: forbidden on (x, h) at h=-0.1;"),
+    ("find_divergent_start(III, Plane.X_PX, 0.45, 0.1, 0.1, furthest=0.0)", "furthest=0.0: must be a finite number above 1e-13"),
     (
-        'default_window(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1)',
+        'MapSpec(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1).find_window()',
         "px=100: no start on (x, y), px = 100 has a real py at energy=0.1; must be at most 0.447",
     ),
     (
-        "default_window(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3))",
+        "MapSpec(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3)).find_window()",
         "py=-2: no start on (x, h), py = -2, y = 0.5, px > 0 has a real px at energy=0.3; must be at most 0.5916 in magnitude",
     ),
-    ("default_window(well, Plane.X_PX, -1.0)", "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov"),
+    (
+        "MapSpec(well, Plane.X_PX, -1.0).find_window()",
+        "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov",
+    ),
     ("start_states(III, Plane.X_PX, 0.45, np.zeros(2), np.zeros(3))", "ordinate of shape (3,): must be shaped like x, (2,)"),
-    ("channel_family(2)", "n=2: must be an integer from 3 to 12"),
+    ('ParameterAxis("b", 0.0, 1.0, III)', "parameter 'b': must be one of the system, omega_1, omega_2, epsilon, rotation"),
+    (
+        'ParameterAxis("b", 0.0, 1.0, well)',
+        "system=x² + y²: its letters are not known; must be a System, or",
+    ),
     ("parse_formula(3)", "text=3: must be text"),
     ('parse_formula("")', "formula, character 1: the formula ends where a number, x, y, r or a bracket is expected"),
     ('parse_formula("tanh(x)")', "formula, character 1: 'tan' is not understood; allowed are numbers, x, y, r"),
     ('parse_formula("a x² + y²", parameters=3)', "parameters=3: must be a mapping or None"),
     ('Potential("p", "abc")', "terms='abc': must be ((i, j, c), …)"),
     ('III.with_parameters(epsilon="x")', "epsilon='x': must be a finite number, at most 1e+09 in magnitude"),
+    ("III.with_parameters(omega_1=0.0)", "omega_1=0.0: must be between 0.1 and 10"),
+    ("III.with_parameters(omega_2=11.0)", "omega_2=11.0: must be between 0.1 and 10"),
     ('System("IV").potential', "potential 'IV': did you mean 'I'? The names are I, II, III, C3, C4, C5, C6, C7, C8, HH, Barbani"),
     ('System("I", parameters=3)', "parameters=3: must be a mapping"),
     ("Slice(C.X, C.X)", "slice of x, x, py: each of x, y, px, py, theta, beta, h must be used at most once"),
     ('Slice("x", "y")', "abscissa='x': must be a Coordinate, a Direction or a ParameterAxis"),
     ("Slice(C.X, C.SPEED)", "slice of x, v, py: must have no axis and no fixed value of v, which only the energy decides"),
     ("Slice(C.X, C.PX, fixed=3)", "fixed=3: must be ((coordinate, value), …)"),
+    ("Slice(C.X, C.Y, fixed=((C.H, 0.1),))", "slice of x, y, h, py: each of x, y, px, py, theta, beta, h must be used at"),
+    ("Slice(C.PX, C.PY)", "slice of px, py, px: each of x, y, px, py, theta, beta, h must be used at most once"),
+    ("Slice(C.X, C.THETA, C.PX)", "slice of x, theta, px: px, which the energy decides, must not be set by an axis or an angle"),
+    ("Slice(C.X, C.THETA, fixed=((C.PX, 0.1),))", "slice of x, theta, px, v: with an angle the energy decides the speed; px,"),
+    ('Slice(C.X, Direction("u", x=2.0))', "slice of x, u, py: the directions of the axes must not be parallel"),
+    ("Slice(C.X, C.THETA, sign=-1)", "sign=-1: must be 1"),
+    ("Slice(C.X, C.Y, C.Y)", "solved=y: must be px, py or v"),
+    ("Slice(C.X, C.Y, sign=2)", "sign=2: must be 1 or -1"),
+    ('Slice(C.X, C.Y, fixed=((C.PX, float("inf")),))', "fixed px=inf: must be a finite number, at most 1e+09 in magnitude"),
+    ("Slice(EPSILON, EPSILON)", "slice of epsilon, epsilon, py: the axes must be different ones, at most one of them a"),
     ("Direction(3)", "key=3: must be text"),
+    ('Direction("x", x=1.0)', "direction 'x': its name must be an identifier and none of a coordinate"),
+    ('Direction("u")', "direction u: one of x, y, px, py must not be 0"),
     ('ParameterAxis("epsilon", 2, 1, System("I"))', "parameter epsilon from 2 to 1: the lower end must be below the upper end"),
-    ('ParameterAxis("epsilon", 1, 2, III)', "system=…: must be a System"),
+    ('ParameterAxis("mass", 0.5, 2.0, System("I"))', "parameter 'mass': must be one of the system, omega_1, omega_2,"),
+    ('ParameterAxis("epsilon", -1.0, 0.5, System("I"))', "parameter epsilon from -1 to 0.5: must be between 0.01 and 100"),
+    ('ParameterAxis("epsilon", 1, 2, 3)', "system=3: must be a System"),
     ("Window(0, 0, 0, 1)", "window x range 0 … 0: the lower edge must be below the upper edge"),
     ('Window("a", 1, 0, 1)', "window x edge='a': must be a finite number, at most 1e+09 in magnitude"),
+    ("Window(0.0, 1.0, 0.0, 0.0)", "window ordinate range 0.0 … 0.0: the lower edge must be below the upper edge"),
+    ('Window(0.0, 1.0, 0.0, float("inf"))', "window ordinate edge=inf: must be a finite number, at most 1e+09 in magnitude"),
     ("SweepSpec(III, Plane.X_PX, 0.3)", "values=0.3: must be a sequence of finite numbers"),
     ("SweepSpec(III, Plane.X_PX, [])", "values: 0 different ones; must be 1 to 10000 finite numbers"),
     ('SweepSpec(III, Plane.X_PX, "0.3")', "values='0.3': must be a sequence of finite numbers"),
@@ -144,11 +198,15 @@ WRONG_CALLS = (
     ("plan_sweep(sw, cores=0)", "cores=0: must be an integer from 1 to 1000000"),
     ("sample_orbits(III, [S], (0.0, 1.0), execution=4)", "execution=4: must be an Execution"),
     ("sample_orbits(III, S, (0.0, 1.0))", "states=(0.1, 0.0, 0.05, 0.6): must be (n, 4) finite numbers x, y, px, py, at most"),
-    ("sample_orbits(III, [S], 10.0)", "times of shape (): must be ascending from 0, (m,) or (1, m)"),
+    ("sample_orbits(III, [S], 10.0)", "times of shape (): must be (m,) or (1, m)"),
     ("sample_orbits(III, [S], (0.0, 1e9))", "times: the last one=1000000000.0: must be above 0 and at most 1e+07"),
+    ("sample_orbits(III, [S], (1.0, 0.5))", "times"),
+    ("sample_orbits(III, [S, S], np.zeros((3, 2)))", "times of shape (3, 2): must be (m,) or (2, m)"),
+    ("sample_orbits(III, [S], (0.0,))", "times: the last one=0.0: must be above 0 and at most 1e+07"),
     ("open_result(3)", "path=3: must be text or a path"),
     ("open_result(tmp)", "path=…: is a folder without zarr.json; must be a NetCDF file or a Zarr store of format 3"),
     ("compute_flux(III, -1.0)", "energy=-1.0: must be above the bottom of the well, 0"),
+    ('compute_flux(III, float("nan"))', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
     ("Execution(executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("Execution(cancel=3)", "cancel=3: must be a threading.Event or None"),
     ("Execution(on_progress=3)", "on_progress=3: must be a function of the share done, or None"),
@@ -158,7 +216,15 @@ WRONG_CALLS = (
     ('III.in_rotating_frame(float("nan"))', "rotation=nan: must be a finite number, at most 1e+09 in magnitude"),
     ("III.in_rotating_frame(0.1).in_rotating_frame(0.1)", "potential=III: must be one of a frame that does not rotate"),
     ('System("Hill", parameters={"rotation": 2.0}).potential', "parameters: 'rotation' is not a parameter of Hill; it has none"),
+    ('System("typed", "x y %").potential', "formula, character 5: '%' is not understood; allowed are numbers, x, y, r,"),
+    ('System("typed").potential', "formula, character 1: the formula ends where a number, x, y, r or a bracket is expected"),
+    ('System("I", parameters={"omega_1": 1e3}).potential', "omega_1=1000.0: must be between 0.1 and 10"),
+    ('System("typed", "½r² − a x y²", {"b": 2.0}).potential', "parameters: 'b' is not a letter of the formula; its letters"),
+    ('System("typed", "½r² − a x y²", {"a": 1e10}).potential', "a=10000000000.0: must be a finite number, at most 1e+09 in"),
     ('Potential("p", III.form, centres=3)', "centres=3: must be a sequence"),
+    ('Potential("p", ((2, 0, 1.0), (2, 0, 2.0)))', "terms=((2, 0, 1.0), (2, 0, 2.0)): each pair of exponents must occur only"),
+    ('Potential("p", ((-1, 0, 1.0),))', "terms: exponent of x=-1: must be an integer from 0 to 12"),
+    ('Potential("p", ((1, 0, float("nan")),))', "terms: coefficient=nan: must be a finite number, at most 1e+90 in magnitude"),
     ("III.with_outcomes([(0, 0, 1)])", "centres=(0, 0, 1): must be a Centre"),
     ("III.with_outcomes(escape_radius=0)", "escape_radius=0.0: must be from 1e-06 to 1e+06"),
     ('III.with_outcomes(escape_radius=float("nan"))', "escape_radius=nan: must be a number from 1e-06 to 1e+06"),
@@ -167,6 +233,11 @@ WRONG_CALLS = (
     ('parse_formula("−1/r; centre (x, 0) 1")', "formula, character 15: a place or a radius must be a number, without x and y"),
     ('integrate_orbit(parse_formula("1/x"), S)', "potential=x⁻¹: must have exits, or a closed well at the origin"),
     ('integrate_orbit(parse_formula("1/r; escape 9"), S)', "potential=(x² + y²)^(−1/2): must be defined everywhere within the "),
+    ("integrate_orbit(III, [S])", "state=[(0.1, 0.0, 0.05, 0.6)]: must be four finite numbers x, y, px, py, at most 1e+09 in"),
+    ('integrate_orbit(III, (float("nan"), 0, 0, 0))', "state=(nan, 0, 0, 0): must be four finite numbers x, y, px, py, at"),
+    ("integrate_orbit(III, None)", "state=None: must be four finite numbers x, y, px, py, at most 1e+09 in magnitude"),
+    ("integrate_orbit(III, S, 0.0)", "t_max=0.0: must be above 0 and at most 1e+07"),
+    ("integrate_orbit(III, S, 1e9)", "t_max=1000000000.0: must be above 0 and at most 1e+07"),
     (
         'find_stable_manifolds(System("Hill").potential, -2.0)',
         "potential=Hill: its frame rotates; stable manifolds are for frame",
@@ -175,7 +246,27 @@ WRONG_CALLS = (
         'classify_orbits(System("Hill").potential, -2.0, [(0.0, 0.0, 0.0, 1.0)])',
         "states: row 0 has energy -inf; must be energy=-",
     ),
+    ('classify_orbits(III, float("nan"), [S])', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
+    ("classify_orbits(III, 0.45, [[0.0, 0.0, 0.0]])", "states of shape (1, 3): must be (n, 4) with columns x, y, px, py"),
+    ('classify_orbits(III, 0.18625, [S, (float("nan"), 0, 0, 0)])', "states: row 1 has a number that is not finite or larger"),
+    ("classify_orbits(III, 0.18625, [S, (0, 0, 0, 0.1)])", "states: row 1 has energy 0.005…; must be energy=0.18625 to"),
+    ("classify_orbits(III, 0.18625 + 2e-9, [S])", "states: row 0 has energy 0.18625; must be energy=0.186250002 to within"),
+    ("classify_orbits(III, 0.18625, [S], 0.0)", "t_max=0.0: must be above 0 and at most 1e+08"),
     ('m.fractions(count_outside="no")', "count_outside='no': must be True or False"),
+    ('compute_uncertainty_exponent(MapSpec(CASES["I"], Slice(C.X, EPSILON), 0.2))', "spec: is on (x, ε); must be on a slice"),
+    ('sample_entrances(CASES["I"], 0.1, 10)', "energy=0.1: all exits are closed; must be above the escape energy 0.125"),
+    ('find_lyapunov_orbits(CASES["I"], float("nan"))', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
+    ('find_lyapunov_orbits(CASES["I"], 50.0)', "energy=50.0: no Lyapunov orbit was found across channel 1; choose another"),
+    ("sample_starts(III, 0.45, 0)", "count=0: must be an integer from 1 to 10000000"),
+    ("sample_starts(III, 0.45, 10, seed=-1)", "seed=-1: must be an integer from 0 to 9223372036854775807"),
+    ("sample_starts(III, 0.45, 10, plane=Plane.X_H)", "plane=(x, h): must have no axis h, as all starts have one energy"),
+    ('sample_starts(CASES["I"], 0.2, 10, plane=Slice(C.X, EPSILON))', "plane: is on (x, ε); must be on a slice of one"),
+    ("sample_starts(III, 0.45, 10, plane=Plane.X_Y, window=(5.0, 6.0, 5.0, 6.0))", "window=…: nothing of it is inside at"),
+    ('sample_starts(III, float("nan"), 10)', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
+    ('read_slice("x", "", System("I"))', "axes='x': must be one of x_y, x_px, x_h, y_py, tangential, or two axes such as x,py"),
+    ('read_slice("x,z", "", System("I"))', "axes='z': must be one of x, y, px, py, theta, beta, h, omega_1, omega_2,"),
+    ('read_slice("x,epsilon=a:2", "", System("I"))', "axes='epsilon=a:2': 'a' must be a number"),
+    ('read_slice("x,y", "z=1", System("I"))', "fix='z=1': must be one of x, y, px, py, theta, beta, v, h with a number, such"),
 )
 
 
@@ -229,19 +320,6 @@ def test_motion_without_a_well_is_not_called_bounded(formula: str) -> None:
 def test_a_misspelt_argument_is_answered_with_the_name_of_the_function() -> None:
     with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'$"):
         sample_orbits(CASES["III"], [(0.1, 0.0, 0.0, 0.3)], (0.0, 1.0), t_max=5.0)  # type: ignore[call-arg]
-
-
-def test_functions_of_a_potential_and_its_orbit_are_deprecated_and_agree_with_the_methods() -> None:
-    case = CASES["I"]
-    orbit, exit_orbit = integrate_orbit(case, (0.1, 0.0, 0.05, 0.3), 50.0), find_lyapunov_orbits(case, 0.19)[0]
-    for function, one in ((find_section_crossings, orbit), (find_multipliers, exit_orbit)):
-        name = function.__name__
-        with pytest.warns(
-            DeprecationWarning, match=rf"^{name}\(potential, orbit\) is deprecated: use orbit\.{name}\(\)$"
-        ) as caught:
-            found = function(case, one)
-        assert caught[0].filename == __file__
-        np.testing.assert_array_equal(found, getattr(one, name)())
 
 
 def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import signal
-import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from urllib.parse import quote
 
 import pytest
@@ -14,32 +12,28 @@ from playwright.sync_api import Browser, Page, expect
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import RunningApp, running_app
+from tests.conftest import TIMEOUT_MS
+from tests.waiting import wait_until
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 # Bounded orbits, whose integration takes longer than any test.
 LONG_MAP = "?case=III&h=0.26&resolution=900&t_max=1e%2B06&plane=x_y"
 HOSTILE = '<img src=x onerror="window.hit=1">'
-TIMEOUT_MS = 60_000
 # Longer than it takes to connect, and short enough for a test to wait for the end of the session.
 LIFETIME = ("--unused-session-lifetime", "3000", "--check-unused-sessions", "500")
 
 # Sends a value that the control itself would not.
 _SEND_INVALID_VALUE = """label => {
-    for (const model of Bokeh.documents[0]._all_models.values())
+    for (const model of Bokeh.documents[0].all_models)
         if (model.title === label) { model.value = 'not-an-option'; return true }
     return false
 }"""
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("served") / "log"
-
-
-@pytest.fixture(scope="module")
-def served(log: Path) -> Iterator[RunningApp]:
-    with running_app(log, *LIFETIME) as running:
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningApp]:
+    with running_app(tmp_path_factory.mktemp("served") / "log", *LIFETIME) as running:
         yield running
 
 
@@ -61,31 +55,22 @@ def open_page(chromium: Browser, served: RunningApp) -> Iterator[Callable[..., P
         context.close()
 
 
-def wait_for(condition: Callable[[], bool], seconds: float) -> float:
-    """Wait for a condition, and return the time in seconds."""
-    begun = time.monotonic()
-    while not condition():
-        assert time.monotonic() - begun < seconds, f"not within {seconds} s"
-        time.sleep(0.05)
-    return time.monotonic() - begun
-
-
 def test_closed_page_cancels_its_job_and_ends_its_session(open_page: Callable[..., Page], served: RunningApp) -> None:
     page = open_page(LONG_MAP)
-    wait_for(lambda: served.figure("jobs_in_flight") == 1, 60)
+    wait_until(lambda: served.figure("jobs_in_flight") == 1, 60)
     page.context.close()
-    wait_for(lambda: served.figure("websockets_open") == 0, 10)
-    assert wait_for(lambda: served.figure("jobs_in_flight") == 0, 10) < 1.0
-    wait_for(lambda: served.figure("sessions_open") == 0, 30)
+    wait_until(lambda: served.figure("websockets_open") == 0, 10)
+    assert wait_until(lambda: served.figure("jobs_in_flight") == 0, 10) < 1.0
+    wait_until(lambda: served.figure("sessions_open") == 0, 30)
 
 
-def test_failing_callback_does_not_affect_pages(open_page: Callable[..., Page], served: RunningApp, log: Path) -> None:
+def test_failing_callback_does_not_affect_pages(open_page: Callable[..., Page], served: RunningApp) -> None:
     broken, other = ExplorerPage(open_page(QUICK)), ExplorerPage(open_page(QUICK))
     for explorer in (broken, other):
         explorer.wait_until_complete()
     broken.open_fold("Quality and colours")
     assert broken.page.evaluate(_SEND_INVALID_VALUE, "t_max")
-    wait_for(lambda: "not-an-option" in log.read_text(), 30)
+    served.output.wait_for("not-an-option")
     for explorer, energy in ((other, "0.21"), (broken, "0.22")):
         explorer.forget_pixels()
         explorer.type_number("Exact h", energy)

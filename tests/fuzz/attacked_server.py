@@ -7,8 +7,8 @@ from pathlib import Path
 from tornado.httpclient import AsyncHTTPClient
 
 from tests.browser.served_app import RunningApp
-from tests.engine.jobs.inbox import wait_until
 from tests.page_channel import Channel
+from tests.waiting import wait_until
 
 ANSWER_SECONDS = 60.0
 LINK = "?case=I&h=0.3&resolution=48&t_max=100"

@@ -19,13 +19,11 @@ from engine import (
     Window,
     classify_orbits,
     compute_basin_entropy,
-    compute_birkhoff_digits,
     compute_map,
     compute_separation,
     compute_statistics,
     compute_uncertainty_exponent,
     compute_wada_test,
-    default_window,
     find_divergent_start,
     find_lyapunov_orbits,
     find_stable_manifolds,
@@ -34,11 +32,12 @@ from engine import (
     judge_orbit,
     plan_sweep,
     start_states,
-    trace_zero_velocity_curve,
 )
 from engine.foundations.validation import LONGEST_TIME
 from engine.measures.uncertainty_exponent import fit_uncertainty
-from engine.slices.limiting_curves import trace_equipotentials
+from engine.slices.default_window import default_window
+from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
 CASE = CASES["I"]

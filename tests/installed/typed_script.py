@@ -6,23 +6,26 @@ from typing import assert_type
 
 import numpy as np
 
+import escape_explorer
 from escape_explorer import (
     CASES,
     POTENTIALS,
     BasinEntropy,
+    Coordinate,
     DecayLaws,
     EscapeMap,
     Execution,
     Fate,
-    IndicatorVerdict,
     MapSpec,
     Orbit,
     Outcomes,
+    ParameterAxis,
     Plane,
     Potential,
     RegularityMap,
-    SweepPlan,
+    Slice,
     SweepSpec,
+    System,
     WadaTest,
     Window,
     classify_orbits,
@@ -31,15 +34,14 @@ from escape_explorer import (
     compute_regularity,
     compute_statistics,
     compute_wada_test,
-    evaluate_indicators,
     find_lyapunov_orbits,
     find_stable_manifolds,
     fit_decay_laws,
     integrate_orbit,
+    judge_orbit,
     parse_formula,
     plan_sweep,
     sample_starts,
-    trace_zero_velocity_curve,
 )
 
 EDGES = (-1.0, 1.0, -1.0, 1.0)
@@ -62,7 +64,7 @@ def follow(potential: Potential, energy: float) -> Orbit:
     starts = sample_starts(potential, energy, 10, plane=Plane.X_Y, window=EDGES, seed=1)
     assert_type(classify_orbits(potential, energy, starts, t_max=1e3, execution=Execution()), Outcomes)
     orbit = integrate_orbit(potential, starts[0], t_max=1e3)
-    assert_type(evaluate_indicators(orbit), tuple[IndicatorVerdict, ...])
+    print([finding.sentence for finding in judge_orbit(orbit, orbit.compute_birkhoff_digits()).findings])
     assert_type(orbit.fate, int)
     return orbit
 
@@ -70,7 +72,12 @@ def follow(potential: Potential, energy: float) -> Orbit:
 entropy, wada = measure(CASES["III"], 0.45)
 print(entropy.describe(), wada.describe())
 print(follow(parse_formula("½(x² + y²) − x²y"), 0.2).fate >= Fate.BOUNDED)
-assert_type(plan_sweep(SweepSpec(POTENTIALS["HH"], Plane.X_PX, np.linspace(0.2, 0.3, 2), window=EDGES, t_max=100.0)), SweepPlan)
+print(plan_sweep(SweepSpec(POTENTIALS["HH"], "x_px", [0.2, 0.3], window=EDGES, t_max=100.0)).describe())
+print(SweepSpec(POTENTIALS["HH"], Plane.X_PX, np.linspace(0.2, 0.3, 2), window=EDGES).count)
 print([orbit.period for orbit in find_lyapunov_orbits(CASES["I"], 0.19)])
 print(len(find_stable_manifolds(CASES["I"], 0.19, images=1, window=EDGES).arcs))
-print(len(trace_zero_velocity_curve(CASES["I"], Plane.X_PX, 0.19, EDGES)))
+assert_type(MapSpec(CASES["I"], "x_px", 0.19, window=EDGES).trace_zero_velocity_curve(), list[np.ndarray])
+print(Slice(Coordinate.X, Coordinate.PX, fixed=[(Coordinate.Y, 0.1)]).title)
+system = System.from_formula("½(x² + y²) − b x²y", b=0.5)
+print(MapSpec(system.potential, Slice(Coordinate.X, ParameterAxis("b", 0.5, 2.0, system.potential)), 0.3).outcomes)
+assert_type(escape_explorer.__version__, str)

@@ -42,16 +42,19 @@ def main() -> None:
     """Compute, draw and ask for what is missing."""
     escapes = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), t_max=100.0))
     escapes.plot()
-    escapes.to_xarray()
+    escapes.save("map.nc")
+    assert open_result("map.nc").spec == escapes.spec
     integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 100.0).plot()
     long_orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.0, 0.3), 2e4)
-    long_orbit.plot()
-    run_program("map", "I", "--energy", "0.3", "--resolution", "20", "--t-max", "100", "--output", "map.png")
-    assert Path("map.png").stat().st_size > 1000
-    Path("map.nc").touch()
+    long_orbit.plot(show="sali")
+    check_refusal(long_orbit.plot, "datashader", "page")
+    run_program("map", "III", "--energy", "0.45", "--resolution", "40", "--t-max", "100", "--output", "both")
+    assert Path("both.png").stat().st_size > 1000
+    assert (open_result("both.nc").fate == escapes.fate).all()
+    Path("netcdf4.nc").write_bytes(b"\x89HDF\r\n")
     check_refusal(escapes.to_holoviews, "holoviews", "page")
     check_refusal(lambda: escape_explorer.Explorer, "panel", "page")
-    check_refusal(lambda: open_result("map.nc"), "h5netcdf", "files")
+    check_refusal(lambda: open_result("netcdf4.nc"), "h5netcdf", "files")
     check_refusal(
         lambda: compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.3,), (9, 9), t_max=10.0), "sweep.zarr"), "zarr", "files"
     )

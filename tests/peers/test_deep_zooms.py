@@ -6,8 +6,9 @@ import heyoka as hy
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, default_window
+from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
 from engine.maps.trust import find_unlike_neighbours
+from engine.slices.default_window import default_window
 
 POTENTIAL, ENERGY, SIDE, T_MAX = CASES["II"], 0.25, 16, 300.0
 # All orbits that leave the well of Case II reach this radius, each on its own side of the plane.

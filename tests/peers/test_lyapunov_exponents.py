@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, Plane, Verdict, integrate_orbit, judge_orbit, start_states
+from engine import CASES, Plane, integrate_orbit, judge_orbit, start_states
 from engine.propagation.fates import is_chaotic
+from engine.trajectories.chaos_indicators import Verdict
 from tests.peers import taylor_heyoka
 
 T_MAX, INTERVAL, DISTANCE = 3000.0, 10.0, 1e-8

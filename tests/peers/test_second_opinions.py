@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, Plane, classify_orbits, default_window, start_states
+from engine import CASES, Plane, classify_orbits, start_states
+from engine.slices.default_window import default_window
 from tests.peers import taylor_heyoka
 from tests.peers.exit_lines import exit_lines
 

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * How pixels are written as codes; the server sends it, see `plots/pictures/image_columns.py`.
+ * How pixels are written as codes; the server sends it, see `app/browser/views.py`.
  *
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are no escapes
@@ -10,6 +10,7 @@
  * @property {number[]} leastCrossings  fewest crossings of each class
  * @property {number} undecided  code of pixels that are not decided
  * @property {number[]} withoutOrbit  codes of pixels without an orbit
+ * @property {string[]} layers  columns of the layers, which the server alone computes
  *
  * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
  */
@@ -46,8 +47,7 @@ export function pixelColumns(coding, view, pixels, like, compared) {
     crossing_class: [new Bytes(crossingClass.buffer, shape)],
     crossings: [new Floats(Float32Array.from(pixels.crossings).buffer, shape)],
     escape_time: [new Floats(pixels.time.buffer, shape)],
-    character: [none],
-    passage: [none],
+    ...Object.fromEntries(coding.layers.map(name => [name, [none]])),
     difference: [compared ? new Bytes(differences(coding, view, fate, compared).buffer, shape) : none],
     ends: [coding.words],
     x: [window.xLow],

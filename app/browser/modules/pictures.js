@@ -1,8 +1,6 @@
 // @ts-check
 /** The pictures on the screen: the well, and the maps. */
 
-const NAMES = ["basins", "times", "crossings", "characters", "origins", "differences"]
-
 /**
  * A picture: its view of Bokeh, and the box of its frame on the screen.
  *
@@ -11,8 +9,9 @@ const NAMES = ["basins", "times", "crossings", "characters", "origins", "differe
 
 /** The maps. @returns {Frame[]} */
 export function frames() {
-  const views = [...Bokeh.index.all_views()].filter(view => NAMES.includes(view.model.name))
-  views.sort((one, other) => NAMES.indexOf(one.model.name) - NAMES.indexOf(other.model.name))
+  // The server numbers the maps of the view, see `map_figure` in `app/views/components/plots.py`.
+  const views = [...Bokeh.index.all_views()].filter(view => view.model.tags?.[0] === "map")
+  views.sort((one, other) => one.model.tags[1] - other.model.tags[1])
   return views.map(withBox).filter(({box}) => box.width > 0)
 }
 

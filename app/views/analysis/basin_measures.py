@@ -23,10 +23,10 @@ from plots.pictures.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entr
 
 _LAW_POINTS = 200
 _PAIRS_TEXT = (
-    "<b>@share{custom}</b> of the pairs have different fates<br>at a separation of @separation{custom}@note<br>"
-    "95 % interval @low{custom} to @high{custom}"
+    "<b>@share{percent}</b> of the pairs have different fates<br>at a separation of @separation{number}@note<br>"
+    "95 % interval @low{percent} to @high{percent}"
 )
-_SURVIVAL_TEXT = "<b>@share{custom}</b> of the starts are still inside<br>at t = @t{custom}"
+_SURVIVAL_TEXT = "<b>@share{percent}</b> of the starts are still inside<br>at t = @t{number}"
 _NO_PAIRS: dict[str, list[Any]] = {name: [] for name in ("separation", "share", "low", "high", "colour", "note")}
 # Measures that do not count the starts of a box.
 _NOT_OF_BOX = ("Uncertainty exponent", "Flux")
@@ -157,8 +157,7 @@ class BasinMeasuresView:
         plot.add_glyph(self._line, Line(line_color=LAW_COLOURS["power law"], line_width=2, **style))
         plot.add_glyph(self.pairs, Segment(x0="separation", x1="separation", y0="low", y1="high", line_color="colour"))
         pairs = plot.add_glyph(self.pairs, Scatter(size=8, fill_color="colour", line_color=LIGHT.halo, **style))
-        formats = {"@share": "percent", "@low": "percent", "@high": "percent", "@separation": "number"}
-        plot.add_tools(chart_hover(_PAIRS_TEXT, formats, [pairs]))
+        plot.add_tools(chart_hover(_PAIRS_TEXT, [pairs]))
         return plot
 
     def _draw_survival(self) -> figure:
@@ -168,8 +167,8 @@ class BasinMeasuresView:
         )  # fmt: skip
         plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
         # The mouse finds lines between points, but not steps.
-        line, values = plot.add_glyph(self.steps, Line(x="t", y="share", line_alpha=0.0)), {"@share": "percent", "@t": "number"}
-        plot.add_tools(chart_hover(_SURVIVAL_TEXT, values, [line], mode="vline", line_policy="prev"))
+        line = plot.add_glyph(self.steps, Line(x="t", y="share", line_alpha=0.0))
+        plot.add_tools(chart_hover(_SURVIVAL_TEXT, [line], mode="vline", line_policy="prev"))
         for law, source in self._laws.items():
             plot.add_glyph(source, Line(x="t", y="share", line_color=LAW_COLOURS[law], line_width=2, line_dash="dashed"))
         return plot

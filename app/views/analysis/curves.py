@@ -36,7 +36,7 @@ _NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash":
 _DASH = "8 8"
 # Range of a logarithmic axis before there are numbers.
 _FIRST_DECADES = 1.0, 100.0
-_SHARES_TEXT = "<b>$snap_y{custom}</b> of the interior starts @fate<br>at $snap_x{custom}"
+_SHARES_TEXT = "<b>$snap_y{percent}</b> of the interior starts @fate<br>at $snap_x{number}"
 _SHARES = "shares"
 _NAMES = tuple(name for panel in CURVE_PANELS for name in panel.labels)
 _NO_POINTS: dict[str, list[float]] = {"value": [], **{f"{name}{end}": [] for name in _NAMES for end in ("", "_low", "_high")}}
@@ -192,8 +192,7 @@ class CurvesView:
     def _draw_shares(self) -> figure:
         plot = square_figure(_SHARES, SHARES_TITLE, x_axis_label=" ", x_range=self._axis, y_range=Range1d(0.0, 1.0))
         shares = plot.add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
-        values = {"$snap_x": "number", "$snap_y": "percent"}
-        plot.add_tools(chart_hover(_SHARES_TEXT, values, [shares], line_policy="nearest"))
+        plot.add_tools(chart_hover(_SHARES_TEXT, [shares], line_policy="nearest"))
         return plot
 
     def _draw_panel(self, panel: CurvePanel) -> figure:
@@ -206,10 +205,9 @@ class CurvesView:
             plot.add_glyph(self.points, Line(x="value", y=name, line_color=colour, line_width=2))
             plot.add_glyph(self.points, Segment(x0="value", x1="value", y0=low, y1=high, line_color=colour, line_alpha=0.6))
             marks = plot.add_glyph(self.points, Scatter(x="value", y=name, size=5, fill_color=colour, line_color=colour))
-            bars = f", {panel.bars} @{low}{{custom}} to @{high}{{custom}}" if panel.bars else ""
-            text = f"{panel.title}, {label}: <b>@{name}{{custom}}</b>{bars}<br>at @value{{custom}}"
-            formats = dict.fromkeys(("@value", f"@{name}", f"@{low}", f"@{high}"), "number")
-            plot.add_tools(chart_hover(text, formats, [marks], mode="vline"))
+            bars = f", {panel.bars} @{low}{{number}} to @{high}{{number}}" if panel.bars else ""
+            text = f"{panel.title}, {label}: <b>@{name}{{number}}</b>{bars}<br>at @value{{number}}"
+            plot.add_tools(chart_hover(text, [marks], mode="vline"))
         if panel.level is not None:
             line: dict[str, Any] = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
             plot.add_layout(Span(location=panel.level[0], dimension="width", **line))

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from html import escape
+from typing import Any
 
+import holoviews as hv
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource, FactorRange, Quad, Range1d, VBar
-from bokeh.plotting import figure
+from bokeh.models.dom import HTML
 
+from app.state.help_texts import title_with_help
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent, percent_range
-from app.views.components.plots import chart_hover, set_range, square_figure
+from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
@@ -23,14 +25,13 @@ from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
 CROSSINGS, PROBABILITY = "n", "p"
 """Columns of the second chart."""
 
-_TIMES_TEXT = "<b>@top{custom} starts</b> escape<br>from t = @left{custom} to @right{custom}"
+_TIMES_TEXT = "<b>@top{count} starts</b> escape<br>from t = @left{number} to @right{number}"
 _PROBABILITIES_TEXT = (
-    f"n = @{CROSSINGS} upward crossings:<br><b>@{PROBABILITY}{{custom}}</b> of the orbits still inside<br>"
+    f"n = @{CROSSINGS} upward crossings:<br><b>@{PROBABILITY}{{percent}}</b> of the orbits still inside<br>"
     "escape before the next one"
 )
 _NUMBERS = [str(n) for n in range(MOST_CROSSINGS + 1)]
-_BAR = {"fill_color": "#5b8db8", "line_color": None}
-_ASPECT = 1.1
+_BAR = "#5b8db8"
 
 
 class StatisticsView:
@@ -52,9 +53,6 @@ class StatisticsView:
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
         self.whole = button(COUNT_WHOLE, on_whole, visible=False)
         self.copy = copy_button(self._rows, on_copy)
-        self.times = ColumnDataSource({"left": [], "right": [], "top": []}, name="escape_times")
-        self.probabilities = ColumnDataSource({CROSSINGS: [], PROBABILITY: []}, name="escape_probabilities")
-        self._escape_times, self._counts = Range1d(1.0, 10.0), Range1d(0.0, 1.0)
 
     def activate(self, active: bool) -> None:
         """Count while the section is on the page."""
@@ -81,29 +79,14 @@ class StatisticsView:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Make the content of the section."""
+        prepare()
+        self._times = _plot(_draw_times(), "histogram", "Escape times")
+        _describe(self._times, _TIMES_TEXT)
+        self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escapes after n crossings")
+        _describe(self._probabilities, _PROBABILITIES_TEXT)
+        histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
         left = pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])
-        return [left, *(pn.pane.Bokeh(plot, margin=0) for plot in (self._draw_times(), self._draw_probabilities()))]
-
-    def _draw_times(self) -> figure:
-        plot = square_figure(
-            "histogram", "Escape times", aspect_ratio=_ASPECT, x_axis_type="log",
-            x_range=self._escape_times, y_range=self._counts, x_axis_label="escape time", y_axis_label="starts",
-        )  # fmt: skip
-        bars = plot.add_glyph(self.times, Quad(bottom=0.0, **_BAR))
-        formats = {"@left": "number", "@right": "number", "@top": "count"}
-        # Also when the mouse is above a low bar.
-        plot.add_tools(chart_hover(_TIMES_TEXT, formats, [bars], mode="vline"))
-        return plot
-
-    def _draw_probabilities(self) -> figure:
-        plot = square_figure(
-            "probabilities", "Escapes after n crossings", aspect_ratio=_ASPECT,
-            x_range=FactorRange(factors=_NUMBERS), y_range=Range1d(0.0, 1.0),
-            x_axis_label="upward crossings n", y_axis_label=PROBABILITY,
-        )  # fmt: skip
-        bars = plot.add_glyph(self.probabilities, VBar(x=CROSSINGS, top=PROBABILITY, width=0.8, **_BAR))
-        plot.add_tools(chart_hover(_PROBABILITIES_TEXT, {f"@{PROBABILITY}": "percent"}, [bars], mode="vline"))
-        return plot
+        return [left, histogram, probabilities]
 
     def _count(self) -> None:
         if self._frame is None or not self._active:
@@ -114,14 +97,15 @@ class StatisticsView:
         self._show_probabilities(statistics.escape_probabilities[: len(_NUMBERS)])
 
     def _show_times(self, edges: np.ndarray, counts: np.ndarray) -> None:
-        self.times.data = {"left": edges[:-1], "right": edges[1:], "top": counts}
-        set_range(self._escape_times, edges[0], edges[-1])
-        set_range(self._counts, 0.0, 1.05 * max(float(counts.max()), 1.0))
+        drawn = self._times.handles
+        drawn["source"].data = {"left": edges[:-1], "right": edges[1:], "top": counts}
+        drawn["x_range"].update(start=edges[0], end=edges[-1])
+        drawn["y_range"].update(start=0.0, end=1.05 * max(float(counts.max()), 1.0))
 
     def _show_probabilities(self, probabilities: np.ndarray) -> None:
         shown = np.zeros(len(_NUMBERS))
         shown[: len(probabilities)] = probabilities
-        self.probabilities.data = {CROSSINGS: _NUMBERS, PROBABILITY: shown}
+        self._probabilities.handles["source"].data = {CROSSINGS: _NUMBERS, PROBABILITY: shown}
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Name, colour and code of each fate in the table."""
@@ -166,5 +150,54 @@ def _facts(statistics: EscapeStatistics) -> dict[str, str]:
     }
 
 
+def _draw_times() -> hv.Histogram:
+    style = {"color": _BAR, "line_color": None, "logx": True, "xlabel": "escape time", "ylabel": "starts"}
+    return hv.Histogram((np.array([1.0, 10.0]), np.zeros(1))).opts(**style, **_frame())
+
+
+def _draw_probabilities() -> hv.Bars:
+    bars = hv.Bars([(number, 0.0) for number in _NUMBERS], (CROSSINGS, "upward crossings n"), (PROBABILITY, "p"))
+    style = {"color": _BAR, "line_color": None, "ylabel": "p", "ylim": (0.0, 1.0)}
+    return bars.opts(**style, **_frame())
+
+
+def _frame() -> dict[str, Any]:
+    fonts = {"labels": "12px", "ticks": "11px"}
+    return {
+        "responsive": True,
+        "aspect": 1.1,
+        "title": "",
+        "fontsize": fonts,
+        "toolbar": None,
+        "default_tools": [],
+        "hooks": [_simplify],
+    }
+
+
+def _simplify(plot: Any, _element: Any) -> None:
+    """Remove background and ticks, as in `square_figure`."""
+    plot.state.min_border_top = 28
+    plot.state.sizing_mode = "scale_width"
+    plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
+    plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
+
+
+def _plot(element: hv.Element, name: str, title: str) -> Any:
+    """Return the plot of an element with its help text. Changing its data is 20 times faster than drawing it again."""
+    plot = hv.renderer("bokeh").get_plot(element)
+    plot.state.elements = [HTML(html=title_with_help(title, name))]
+    return plot
+
+
+def _describe(plot: Any, text: str) -> None:
+    """Describe the bar under the mouse, even if the mouse is above a low bar."""
+    plot.state.add_tools(chart_hover(text, [plot.handles["glyph_renderer"]], mode="vline"))
+
+
 def _number(value: float) -> str:
     return f"{value:.4g}" if np.isfinite(value) else "nothing escaped"
+
+
+def prepare() -> None:
+    """Load the part of HoloViews that draws with Bokeh, which takes longer than a turn of the event loop may."""
+    hv.renderer("bokeh")

@@ -4,24 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from html import escape
+from typing import Any
 
 import panel as pn
 
-from app.state.view import IMAGE_CHOICES, LAYERS, Analysis, View
+from app.state.view import Analysis, View
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
-
-LAYER_LABELS = {
-    "judge": "Regular or chaotic",
-    "trust": "Pixels to trust",
-    "manifolds": "Stable manifolds",
-    "origins": "Origin and exit",
-}
-"""Labels of the layers of a view state."""
-
-IMAGE_LABELS = {f"Image {name}" if image == 1 else name.capitalize(): image for name, image in IMAGE_CHOICES.items()}
-"""Labels of the images of the manifolds, in a row."""
+from plots.layers.layer import Layer, Setting
+from plots.layers.table import LAYERS
 
 ANALYSIS_LABELS = {
     Analysis.ORBIT: "Orbit",
@@ -41,31 +33,42 @@ class LayerSwitches:
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
-        self.switches = {name: self._make(name) for name in LAYERS}
-        self._images: SegmentedControl | None = None
+        self.switches = {name: self._make(layer) for name, layer in LAYERS.items()}
+        # Choices are made when they are first wanted.
+        self._choices: dict[str, SegmentedControl] = {}
 
     def parts(self) -> list[pn.viewable.Viewable]:
-        """The switches and, while the manifolds are on, the choice of an image."""
-        return [*self.switches.values(), *([self._choose_image()] if self._state.manifolds else [])]
+        """The switches, and the choices of the layers that are on."""
+        on = (layer for layer in LAYERS.values() if layer.name in self._state.layers)
+        return [*self.switches.values(), *(self._choice(setting) for layer in on for setting in layer.settings)]
 
-    def _make(self, name: str) -> Switches:
+    def _make(self, layer: Layer) -> Switches:
         """The switch of a layer."""
-        on = [LAYER_LABELS[name]]
+        on = [layer.title]
         switch = Switches(label="Layer", options=on, margin=(0, 10, 4, 10))
-        self._state.follow(lambda is_on: switch.param.update(value=on if is_on else []), name)
-        switch.param.watch(lambda event: self._write(name, on=bool(event.new)), "value")
+        self._state.follow(lambda layers: switch.param.update(value=on if layer.name in layers else []), "layers")
+        switch.param.watch(lambda event: self._write(layer.name, on=bool(event.new)), "value")
         return switch
 
-    def _choose_image(self) -> SegmentedControl:
-        """The choice, made when it is first wanted."""
-        if self._images is None:
-            images = SegmentedControl(label="Image of the manifolds", options=IMAGE_LABELS, margin=(6, 10))
-            self._images = bind(images, self._state, "images")
-        return self._images
+    def _choice(self, setting: Setting) -> SegmentedControl:
+        """The choice of a setting, which writes to the view state and follows it."""
+        if setting.name not in self._choices:
+            first, *others = ((name.capitalize(), value) for name, value in setting.choices.items())
+            labels = dict([(f"{setting.word} {first[0]}", first[1]), *others])
+            choice = self._choices[setting.name] = SegmentedControl(label=setting.title, options=labels, margin=(6, 10))
+            self._state.follow(lambda settings: choice.param.update(value=settings[setting.name]), "settings")
+            choice.param.watch(lambda event: self._write_setting(setting, event.new), "value")
+        return self._choices[setting.name]
 
     def _write(self, name: str, *, on: bool) -> None:
         with pn.io.hold():
-            self._state.param.update({name: on})
+            self._state.switch_layer(name, on=on)
+
+    def _write_setting(self, setting: Setting, value: Any) -> None:
+        # None: the widget follows the state.
+        if value in setting.choices.values():
+            with pn.io.hold():
+                self._state.param.update(settings={**self._state.settings, setting.name: value})
 
 
 class ComparisonSwitch:

@@ -10,8 +10,8 @@ from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
 from app.views.components.plots import batched_additions
-from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits, trace_zero_velocity_curve
-from engine.slices.limiting_curves import trace_equipotentials
+from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits
+from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
 from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, LineColours, Palette

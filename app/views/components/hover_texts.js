@@ -21,27 +21,30 @@ export function fateName(code, names, {ends}) {
  * What is known of a pixel, in lines. Columns of layers that are off, and of maps that they are not computed for, have other sizes.
  *
  * @param {number} pixel
- * @param {{maps: Columns, doubts: Columns, compared: Columns}} columns  of the pictures, of the layer of trust, and of the other view
- * @param {{bounded: number, first: number, firstEvidence: number, ends: number}} codes  the first of each kind, and the number of ends
- * @param {{evidence: string[], characters: string[], trusts: string[], fates: string[]}} words  by code
+ * @param {{maps: Columns, compared: Columns}} columns  of the pictures, and of the other view
+ * @param {{bounded: number, first: number, firstEvidence: number}} codes  the first of each kind
+ * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words  by code;
+ *   those of the layers by their columns, empty if the map has its own, and what the numbers in other columns of layers are
  */
-export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
+export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const fates = maps.fate[0]
   const fate = fates[pixel]
   if (fate < codes.bounded) return ""
   const known = (/** @type {any} */ image) => (image?.length === fates.length ? image[pixel] : undefined)
   const time = maps.escape_time[0][pixel]
   const crossings = maps.crossings[0][pixel]
-  const passage = known(maps.passage[0]) - codes.first
-  const origin = Math.floor(passage / codes.ends)
   const lines = [
     Number.isFinite(time) && `escape time ${time.toPrecision(5)}`,
     fate > codes.bounded
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
       : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
-    words.characters[known(maps.character[0]) - codes.first],
-    passage >= 0 && maps.origins[0][origin],
-    words.trusts[known(doubts.trust[0])],
+    ...Object.entries(words.layers).map(([column, sentences]) => {
+      const ofMap = sentences.length ? sentences : maps[`${column}_words`][0]
+      return ofMap[known(maps[column][0])]
+    }),
+    ...Object.entries(words.values).map(
+      ([column, name]) => Number.isFinite(known(maps[column][0])) && `${name} ${known(maps[column][0]).toPrecision(5)}`,
+    ),
     known(maps.difference[0]) >= codes.first &&
       isSamePlace(maps, compared) &&
       `other view: ${fateName(known(compared.fate[0]), words.fates, compared)}`,

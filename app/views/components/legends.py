@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from html import escape
 
-from engine import Outcome
-from plots.pictures.palette import Entry, Palette, end_places, short_label
+from app.views.components.numbers import grouped
+from plots.layers.legend import ColourScale, ColourTable, Legend
+from plots.pictures.palette import Entry, Mark, short_label
+
+# Colours of a scale that the browser interpolates.
+_STEPS = 12
 
 
 def patch(colour: str, label: str = "") -> str:
@@ -16,7 +20,7 @@ def patch(colour: str, label: str = "") -> str:
 
 def legend_items(entries: Iterable[Entry]) -> str:
     """HTML of the entries of a legend."""
-    return "".join(patch(entry.colour, escape(entry.label)) for entry in entries)
+    return "".join(patch(_background(entry), escape(entry.label)) for entry in entries)
 
 
 def chips(entries: Iterable[Entry]) -> str:
@@ -30,17 +34,42 @@ def legend(entries: Iterable[Entry]) -> str:
     return f"<div class='legend'>{legend_items(entries)}</div>"
 
 
-def passage_legend(palette: Palette, outcomes: Sequence[Outcome]) -> str:
-    """HTML of the table of passage colours: a row for each outcome backward in time, a column for each forward."""
-    name = {place + 1: escape(short_label(end.label)) for place, end in zip(end_places(outcomes), outcomes, strict=True)}
-    name |= {0: "bounded"}
-    ends = tuple(name)
-    head = "".join(f"<th scope=col>{name[fate]}</th>" for fate in ends)
+def picture_legend(of: Legend) -> str:
+    """HTML of the legend in the frame of a picture, where there is little room."""
+    scale = _scale(of.scale) if of.scale is not None else ""
+    sentence = f" <span>{escape(of.sentence)}</span>" if of.sentence else ""
+    return f"<div class='legend'>{_classes(of)}{scale}{sentence}{legend_items(of.over)}</div>"
+
+
+def _classes(of: Legend) -> str:
+    if of.table is not None:
+        return _table(of.table)
+    return chips([*of.entries, *of.others]) if of.is_short else legend_items(of.entries)
+
+
+def _background(entry: Entry) -> str:
+    """The colour of an entry, or its chessboard, as a CSS background."""
+    if entry.mark is not Mark.CHESSBOARD:
+        return entry.colour
+    return f"repeating-conic-gradient({entry.colour} 0 25%, {entry.second_colour} 0 50%) 0 0/6px 6px"
+
+
+def _scale(scale: ColourScale) -> str:
+    colours = scale.colours
+    stops = ",".join(colours[round(step * (len(colours) - 1) / _STEPS)] for step in range(_STEPS + 1))
+    bar = f"<i class='scale' style='background:linear-gradient(90deg,{stops})'></i>"
+    return f"<span>≤ {_number(scale.low)} {bar} ≥ {_number(scale.high)}{' (locked)' if scale.is_locked else ''}</span>"
+
+
+def _number(value: float) -> str:
+    return grouped(value) if value == round(value) else f"{value:g}"
+
+
+def _table(table: ColourTable) -> str:
+    names = [escape(name) for name in table.names]
+    head = "".join(f"<th scope=col>{name}</th>" for name in names)
     rows = "".join(
-        f"<tr><th scope=row>{name[origin]}</th>"
-        + "".join(f"<td>{patch(palette.passage_colour(origin, fate))}</td>" for fate in ends)
-        + "</tr>"
-        for origin in ends
+        f"<tr><th scope=row>{name}</th>{''.join(f'<td>{patch(colour)}</td>' for colour in colours)}</tr>"
+        for name, colours in zip(names, table.colours, strict=True)
     )
-    caption = "<caption>Enters by (rows), leaves by (columns)</caption>"
-    return f"<table class='passages'>{caption}<tr><td></td>{head}</tr>{rows}</table>"
+    return f"<table class='passages'><caption>{escape(table.caption)}</caption><tr><td></td>{head}</tr>{rows}</table>"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -28,6 +29,8 @@ HOVER_TEXTS = Path(__file__).with_name("hover_texts.js")
 
 HOVER_FORMATS = {name: callback_code(HOVER_TEXTS, f"{name}(value)") for name in ("number", "count", "percent")}
 """JavaScript that writes a `value`: four digits, a whole number in groups of digits, a share."""
+
+_HOVER_VALUE = re.compile(r"([@$]\w+)\{(\w+)\}")
 
 HISTORY_ASPECT = 1.9
 """Width over height of the figures against the time of orbits."""
@@ -152,20 +155,19 @@ def set_decades(edges: Range1d, low: float, high: float) -> None:
     set_range(edges, 10.0 ** math.floor(math.log10(low)), 1.3 * high)
 
 
-def chart_hover(text: str, formats: Mapping[str, str], renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
+def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
     """A tool that describes the points of a chart under the mouse, in words.
 
     Parameters
     ----------
     text
-        HTML with the values as ``@column{custom}`` or ``$variable{custom}``.
-    formats
-        Name in `HOVER_FORMATS` for each of these values, with its @ or $.
+        HTML with the values as ``@column{format}`` or ``$variable{format}``; the format is a name in `HOVER_FORMATS`.
     renderers
         What is described.
     **options
         Of `bokeh.models.HoverTool`.
     """
-    formatters = {value: CustomJSHover(code=HOVER_FORMATS[kind]) for value, kind in formats.items()}
-    tooltips = f'<div style="font-size:11px;line-height:14px;color:var(--ui-ink)">{text}</div>'
+    formatters = {value: CustomJSHover(code=HOVER_FORMATS[name]) for value, name in _HOVER_VALUE.findall(text)}
+    html = _HOVER_VALUE.sub(r"\1{custom}", text)
+    tooltips = f'<div style="font-size:11px;line-height:14px;color:var(--ui-ink)">{html}</div>'
     return HoverTool(tooltips=tooltips, formatters=formatters, renderers=list(renderers), visible=False, **options)

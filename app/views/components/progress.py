@@ -1,17 +1,17 @@
-"""Progress of the map: a bar, a line of text, and the button that stops or continues it, or offers to test its pixels."""
+"""Progress of the map: a bar, a line of text, and the button that stops or continues it, or offers a layer."""
 
 from __future__ import annotations
 
 import math
 import time
 from collections.abc import Callable
+from functools import partial
 from html import escape
 
 import numpy as np
 import panel as pn
 
 from app.state.glossary import with_terms
-from app.views.components.analysis_choice import LAYER_LABELS
 from app.views.components.numbers import grouped, percent
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
@@ -19,11 +19,9 @@ from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number
 from engine.propagation.fates import UNRESOLVED
 from engine.systems.outcomes import Exit
+from plots.layers.table import LAYERS
 
-STOP, CONTINUE, TEST = "Stop", "Continue", LAYER_LABELS["trust"]
-
-# Share of pixels lost to rounding from which the text says so.
-_NOTED_SHARE = 0.01
+STOP, CONTINUE = "Stop", "Continue"
 
 
 class ProgressView:
@@ -33,12 +31,13 @@ class ProgressView:
     ----------
     on_cancel, on_resume
         Called when the button is pressed while the map is computed, and after it has been stopped.
-    on_test
-        Called when the button is pressed of a map that double precision does not support.
+    on_layer
+        Called with the name of a layer that is offered for a map when its button is pressed.
     """
 
-    def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None], on_test: Callable[[], None]) -> None:
-        self._actions = {STOP: on_cancel, CONTINUE: on_resume, TEST: on_test}
+    def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None], on_layer: Callable[[str], None]) -> None:
+        offers = {layer.title: partial(on_layer, name) for name, layer in LAYERS.items()}
+        self._actions: dict[str, Callable[[], None]] = {STOP: on_cancel, CONTINUE: on_resume, **offers}
         # Time and undecided share at the beginning of the last stage.
         self._last_stage: tuple[float, float] | None = None
         self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=3, margin=0, css_classes=["progress"])
@@ -66,9 +65,9 @@ class ProgressView:
     def show(self, frame: EscapeMap) -> None:
         """Show how far a frame is, and the shares of a complete map."""
         text = with_terms(_result(frame)) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
-        offers_test = _is_rounded(frame)
-        self._set(running=not frame.complete, label=TEST if offers_test else STOP, text=text)
-        self.button.styles = keep_place(shown=offers_test or not frame.complete)
+        offered = [layer.title for layer in LAYERS.values() if layer.is_offered(frame)]
+        self._set(running=not frame.complete, label=next(iter(offered), STOP), text=text)
+        self.button.styles = keep_place(shown=bool(offered) or not frame.complete)
         self.bar.value = int(100 * frame.progress)
 
     def stop(self) -> None:
@@ -128,13 +127,9 @@ def _result(frame: EscapeMap) -> str:
     )
 
 
-def _is_rounded(frame: EscapeMap) -> bool:
-    return frame.rounded_share is not None and frame.rounded_share >= _NOTED_SHARE
-
-
 def _rounding(frame: EscapeMap) -> str:
     """A warning of a deep zoom whose pixels double precision does not support."""
-    if not _is_rounded(frame):
+    if not frame.is_rounded:
         return ""
     assert frame.rounded_share is not None
     return f" At the limit of double precision: about {percent(frame.rounded_share, 0)} of the pixels depend on rounding errors."

@@ -9,9 +9,9 @@ from bokeh.plotting import figure
 
 from app.views.components.curve_layers import CurveLayers
 from app.views.maps.hover import fate_hover
-from app.views.maps.map_legend import OtherView
 from app.views.maps.map_ranges import MapRanges
 from engine import EscapeMap, Slice
+from plots.layers.picture import OtherView
 from plots.pictures.image_columns import NO_LAYER, difference_column, map_columns
 from plots.pictures.palette import Palette
 
@@ -47,7 +47,7 @@ class ComparedMap:
     def show(self, frame: EscapeMap, title: str) -> None:
         """Show the other map."""
         self.other = OtherView(title, frame.spec.outcomes, frame.spec.plane.axis_symbols)
-        columns = map_columns(frame, characters=False)
+        columns = map_columns(frame)
         self.source.data = {name: columns[name] for name in _IMAGE}
         self._outlines.show(frame.spec)
 

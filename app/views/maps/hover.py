@@ -6,27 +6,12 @@ from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
 from app.browser.javascript import callback_code
 from app.views.components.plots import HOVER_TEXTS
-from engine import Evidence, Fate, Regularity, Trust
+from engine import Evidence, Fate
 from engine.propagation.evidence import describe_evidence
-from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER
+from plots.layers.table import LAYERS
+from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES
 
-TRUST = {
-    Trust.LIKE_NEIGHBOURS: "not tested: like all its neighbours",
-    Trust.CONFIRMED: "confirmed: unchanged when computed again",
-    Trust.DOUBTFUL: "doubtful: depends on rounding",
-    Trust.NOT_TESTED: "trust: not tested yet",
-}
-"""What is known of a pixel while the layer "Pixels to trust" is on."""
-
-CHARACTER = {
-    Regularity.REGULAR: "regular",
-    Regularity.CHAOTIC: "chaotic",
-    Regularity.NO_SIGN_OF_CHAOS: "no sign of chaos until t_max",
-    Regularity.NOT_JUDGED: "regular or chaotic: not known yet",
-}
-"""What is known of a bounded orbit while the layer "Regular or chaotic" is on."""
-
-_COLUMNS = "{maps: maps.data, doubts: doubts.data, compared: compared.data}"
+_COLUMNS = "{maps: maps.data, compared: compared.data}"
 _DETAILS = callback_code(HOVER_TEXTS, f"pixelDetails(special_vars.image_index.flat_index, {_COLUMNS}, codes, words)")
 _FATE = callback_code(HOVER_TEXTS, "fateName(value, names, maps.data)")
 _PLACE = callback_code(HOVER_TEXTS, "coordinate(value, range)")
@@ -61,9 +46,7 @@ def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> 
     }
 
 
-def pixel_hover(
-    source: ColumnDataSource, doubts: ColumnDataSource, compared: ColumnDataSource, x: Range1d, ordinate: Range1d
-) -> HoverTool:
+def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
     """A tool that describes the orbit under the mouse; the caller adds to its renderers.
 
     One formatter reads all columns, as Bokeh does not call formatters for NaN, the escape time of bounded orbits.
@@ -71,9 +54,7 @@ def pixel_hover(
     Parameters
     ----------
     source
-        Columns of `plots.pictures.image_columns.map_columns`.
-    doubts
-        Column ``trust`` of `Trust` codes; empty while that layer is off.
+        Columns of `plots.pictures.image_columns.map_columns` and of the layers.
     compared
         Pixels of the view with which this one is compared.
     x, ordinate
@@ -83,15 +64,15 @@ def pixel_hover(
         "bounded": list(OUTCOMES).index(Fate.BOUNDED),
         "first": len(OUTCOMES),
         "firstEvidence": len(OUTCOMES) + len(CROSSING_CLASSES),
-        "ends": len(PAPER.ends) + 1,
     }
+    layers = [layer.pixels for layer in LAYERS.values() if layer.pixels is not None]
     words = {
         "evidence": [describe_evidence(code) for code in Evidence],
-        "characters": [CHARACTER.get(code, "") for code in Regularity],
-        "trusts": [TRUST.get(code, "") for code in Trust],
+        "layers": {pixels.column: list(pixels.sentences) for pixels in layers if pixels.values is None},
+        "values": {pixels.value_column: pixels.value_name for pixels in layers if pixels.values is not None},
         "fates": _FATES,
     }
-    arguments = {"maps": source, "doubts": doubts, "compared": compared, "codes": codes, "words": words}
+    arguments = {"maps": source, "compared": compared, "codes": codes, "words": words}
     formatters = _fate_and_place(source, x, ordinate) | {"@crossing_class": CustomJSHover(args=arguments, code=_DETAILS)}
     text = _TEXT.format(details=_DETAILS_TEXT)
     return HoverTool(tooltips=text, formatters=formatters, attachment="vertical", show_arrow=False, renderers=[])

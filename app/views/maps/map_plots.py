@@ -27,21 +27,23 @@ from bokeh.plotting import figure
 
 from app.state.view import PICTURES
 from app.views.components.curve_layers import CurveLayers
-from app.views.components.numbers import percent
+from app.views.components.legends import picture_legend
 from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
 from app.views.maps.comparison import ComparedMap
 from app.views.maps.hover import pixel_hover
-from app.views.maps.map_legend import LegendContents, map_legend
 from app.views.maps.map_ranges import MapRanges, TwoFingers
 from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from app.views.maps.picture_grid import PictureGrid
 from app.views.maps.well import WellView
-from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
+from engine import EscapeMap, MapSpec, Window
 from engine.foundations.wording import format_number
-from plots.pictures.image_columns import NO_LAYER, character_column, passage_column
-from plots.pictures.map_images import COMPARISON_TITLES, CROSSED_BY_MANIFOLDS, DOUBTED, PAINTED, TITLES
+from plots.layers.map_images import LAYER_COLUMNS, result_columns
+from plots.layers.picture import ShownMap
+from plots.layers.table import LAYERS, map_legend
+from plots.layers.table import PICTURES as ENTRIES
+from plots.pictures.image_columns import NO_LAYER
 from plots.pictures.palette import PAPER, Palette
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
 
@@ -53,9 +55,6 @@ PICTURES_ALONE = ("well", "basins", "times", "crossings")
 
 PICTURES_COMPARED = ("basins", "compared", "well", "differences")
 """Those of a view that is compared with another one."""
-
-_TITLES = TITLES | COMPARISON_TITLES
-
 
 # A window that is hardly smaller than the whole interior, such as that of a neighbouring energy, is not called enlarged.
 _LEAST_MAGNIFICATION = 1.5
@@ -95,7 +94,7 @@ class MapsView:
     def __init__(self, actions: MapActions, *, alone: bool = False) -> None:
         self._actions = actions
         self.source = ColumnDataSource(_blank(), name="maps")
-        self.well, self.outlines, self.overlays, self.marks = WellView(), CurveLayers(), Overlays(), Markers()
+        self.well, self.outlines, self.overlays, self.marks = WellView(), CurveLayers(), Overlays(self.source), Markers()
         self._palette = PAPER
         self._time_mapper = LogColorMapper(nan_color="rgba(0,0,0,0)")
         # Scales of the escape times: that of the map in view, and the one that is kept instead.
@@ -103,12 +102,13 @@ class MapsView:
         self._locked_times: TimeScale | None = None
         self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
-        self._regularity_text = ""
+        # Results of the layers that are shown, which may be incomplete.
+        self._results: dict[str, Any] = {}
         self._fates: frozenset[int] = frozenset()
         self.ranges = MapRanges(actions.zoom, actions.rest)
         edges = self.ranges.x, self.ranges.ordinate
         self.compared = ComparedMap(self.ranges)
-        self._hover = pixel_hover(self.source, self.overlays.doubts, self.compared.source, *edges)
+        self._hover = pixel_hover(self.source, self.compared.source, *edges)
         self._fingers = TwoFingers(*edges)
         self._drags: dict[Drag, Any] = {Drag.PAN: PanTool()}
         self._toolbar = _toolbar(self._drags[Drag.PAN], self._hover, self.compared.hover)
@@ -143,7 +143,7 @@ class MapsView:
         """Paint a frame; the ranges follow a new window."""
         if frame.spec != self._spec:
             self.ranges.follow(frame.spec.find_window())
-            self._spec, self._regularity_text = frame.spec, ""
+            self._spec, self._results = frame.spec, {}
             self.describe()
         if frame.stride == 1:
             self._fitted_times = fitted_scale(frame)
@@ -175,31 +175,33 @@ class MapsView:
         self._time_mapper.update(low=self.times.low, high=self.times.high)
         self._show_legends()
 
-    def show_origins(self, origins: OriginFateMap) -> None:
-        """Paint through which channels orbits enter and leave."""
-        self.source.data = {**self.source.data, **passage_column(origins)}
-
-    def show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
-        """Paint which bounded orbits are regular and which are chaotic, as far as known."""
-        self.source.data = {**self.source.data, **character_column(frame, regularity)}
-        bounded = frame.fate == Fate.BOUNDED
-        self._regularity_text = _describe_regularity(regularity, regularity.character[bounded])
-        self.grid.mark_empty("characters", empty=not bounded.any())
+    def show_layer(self, name: str, frame: EscapeMap, result: Any) -> None:
+        """Show the result of a layer on its map, as far as it is known."""
+        layer = LAYERS[name]
+        self._results[name] = result
+        if layer.pixels is not None:
+            self.source.data = {**self.source.data, **result_columns(name, frame, result)}
+        self.overlays.show(name, result)
+        if layer.picture is not None:
+            self.grid.mark_empty(layer.picture.name, empty=layer.is_empty(frame))
         self._show_legends()
 
-    def remove_layer(self, column: str) -> None:
-        """Remove the column of a layer, ``character`` or ``passage``, which the hover text would still describe."""
-        if self.source.data[column][0].size > 1:
-            self.source.data = {**self.source.data, column: NO_LAYER}
+    def remove_layer(self, name: str) -> None:
+        """Remove what a layer shows, which the hover text would still describe."""
+        self._results.pop(name, None)
+        self.overlays.remove(name)
+        pixels = LAYERS[name].pixels
+        if pixels is not None and self.source.data[pixels.column][0].size > 1:
+            self.source.data = {**self.source.data, **dict.fromkeys(pixels.column_names, NO_LAYER)}
+        self._show_legends()
 
     def set_palette(self, palette: Palette) -> None:
         """Set all colours."""
         self._palette = palette
         self._time_mapper.palette = list(palette.escape_time)
         for name in MAPS:
-            colours = PAINTED[name][1]
-            codes: list[str] = getattr(palette, colours)
-            self._mappers[name].update(palette=codes, low=-0.5, high=len(codes) - 0.5)
+            colours = list(ENTRIES[name].colours(palette))
+            self._mappers[name].update(palette=colours, low=-0.5, high=len(colours) - 0.5)
         self.marks.set_palette(palette)
         self.outlines.set_palette(palette)
         self.compared.set_palette(palette)
@@ -255,28 +257,19 @@ class MapsView:
         notes = label_axes(self.figures.values(), spec.plane.axis_symbols, spec.find_window())
         if self.ranges.magnification > _LEAST_MAGNIFICATION:
             notes.append(f"{format_number(float(f'{self.ranges.magnification:.2g}'))} times enlarged")
-        contents = LegendContents(
-            spec,
-            self._palette,
-            self.times,
-            self._locked_times is not None,
-            self._regularity_text,
-            self._fates,
-            self.compared.other,
-        )
-        overlays = self.overlays.entries()
+        other, is_locked = self.compared.other, self._locked_times is not None
+        shown = ShownMap(spec, self._palette, self.times, self._fates, is_locked, self._results, other)
         for name in self.grid.shown:
             if name == "well":
                 self.well.describe()
             else:
-                shown = overlays if name in DOUBTED else []
-                other = self.compared.other if name == "compared" else None
-                axes = spec.plane.axis_symbols if other is None else other.axes
-                annotate_picture(self.figures[name], _TITLES[name], axes, map_legend(name, contents, shown), notes)
+                axes = other.axes if name == "compared" and other is not None else spec.plane.axis_symbols
+                legend = picture_legend(map_legend(name, shown))
+                annotate_picture(self.figures[name], ENTRIES[name].title, axes, legend, notes)
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
-        plot = self.figures[name] = map_figure(name, _TITLES[name], self.ranges.x, self.ranges.ordinate)
+        plot = self.figures[name] = map_figure(name, ENTRIES[name].title, self.ranges.x, self.ranges.ordinate)
         plot.toolbar = self._toolbar
         self._paint(name)
         self._fingers.follow_on(plot)
@@ -293,17 +286,19 @@ class MapsView:
 
     def _paint(self, name: str) -> None:
         """Add the images and lines of a picture, from back to front."""
-        plot, (column, _) = self.figures[name], PAINTED[name]
+        plot, picture = self.figures[name], ENTRIES[name]
         if name == "compared":
             self.compared.draw(plot, self._mappers[name])
             self.marks.draw(plot, sections=False)
             return
-        image = plot.add_glyph(self.source, Image(image=column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
-        if name == "times":
+        # What the browser draws by itself, see modules/pictures.js.
+        plot.tags = ["map", MAPS.index(name)]
+        image = plot.add_glyph(self.source, Image(image=picture.column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
+        if picture.has_times:
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
         self._hover.renderers = [*self._hover.renderers, image]
         self.outlines.draw(plot, full=False)
-        self.overlays.draw(plot, doubts=name in DOUBTED, manifolds=name in CROSSED_BY_MANIFOLDS)
+        self.overlays.draw(plot, name)
         self.marks.draw(plot, sections=name == "basins")
 
 
@@ -318,20 +313,10 @@ def _toolbar(pan: PanTool, *hovers: HoverTool) -> Toolbar:
     return Toolbar(tools=[pan, wheel, CrosshairTool(overlay=spans), *hovers], active_drag=pan, active_scroll=wheel)
 
 
-def _describe_regularity(regularity: RegularityMap, bounded: np.ndarray) -> str:
-    """The share of chaotic orbits among the bounded pixels (n,), or the progress of the analysis."""
-    if not bounded.size:
-        return "No bounded orbits."
-    if regularity.complete:
-        unsure = percent(regularity.share_of(Regularity.NO_SIGN_OF_CHAOS))
-        return f"{percent(regularity.chaotic_share)} of the bounded orbits are chaotic, {unsure} show no sign of chaos."
-    return f"{percent(np.mean(bounded == Regularity.NOT_JUDGED))} of the bounded orbits left …"
-
-
 def _blank() -> dict[str, list[Any]]:
     """A picture of one undecided pixel."""
     codes = np.zeros((1, 1), np.uint8)
-    images = ("fate", "crossing_class", "crossings", "character", "passage", "difference")
+    images = ("fate", "crossing_class", "crossings", *LAYER_COLUMNS, "difference")
     columns: dict[str, list[Any]] = {name: [codes] for name in images}
     columns |= {"escape_time": [np.full((1, 1), np.nan, np.float32)]}
     return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "energy": [np.nan], "complete": [False], "ends": [[]]}

@@ -9,18 +9,9 @@ from bokeh.plotting import figure
 
 from app.views.components.plots import FigurePane, set_borders
 from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
-from plots.pictures.map_images import ON_DEMAND
+from plots.layers.table import LAYER_OF, PICTURES
 
-SHORT_TITLES = {
-    "well": "Well",
-    "basins": "Basins",
-    "times": "Times",
-    "crossings": "Crossings",
-    "characters": "Chaos",
-    "origins": "Origins",
-    "compared": "Other",
-    "differences": "Differ",
-}
+SHORT_TITLES = {"well": "Well"} | {name: picture.short_title for name, picture in PICTURES.items() if name != "curves"}
 """Titles of all pictures, in their order, where there is little room."""
 
 FIRST = "basins"
@@ -95,7 +86,7 @@ class PictureGrid:
     @property
     def _picked(self) -> str:
         """The picture that is larger than the others: the enlarged one, or else that of the last layer that shows something."""
-        layers = [name for name in self._panes if name in ON_DEMAND and name not in self._empty]
+        layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty]
         return self._enlarged if self._enlarged in self._panes else [FIRST, *layers][-1]
 
     def _place(self) -> None:

@@ -16,8 +16,9 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.numbers import grouped
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, copy_button, flex_row, number_rows
-from engine import Coordinate, IndicatorVerdict, Orbit, Slice
+from engine import Coordinate, Orbit, Slice
 from engine.slices.section import SECTION
+from engine.trajectories.chaos_indicators import IndicatorVerdict
 from plots.pictures.orbit_curves import initial_state
 from plots.pictures.palette import Palette
 

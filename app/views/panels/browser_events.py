@@ -14,7 +14,7 @@ import param
 from panel.custom import JSComponent
 
 from app.state.view import PICTURES
-from plots.pictures.map_images import TITLES
+from plots.layers.table import TITLES
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
 """The picture that a key enlarges, or reduces again."""

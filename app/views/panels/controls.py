@@ -107,7 +107,7 @@ class Controls:
         self.layers = LayerSwitches(state)
         self.comparison = ComparisonSwitch(state, actions.compare, actions.swap)
         layers = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)
-        state.param.watch(lambda *events: layers.rebuild(), ["manifolds", "compared"])
+        state.param.watch(lambda *events: layers.rebuild(), ["layers", "compared"])
         self._folds = [Fold("Quality and colours", self._build_quality), layers]
         self._follow_system()
         self._follow_plane()

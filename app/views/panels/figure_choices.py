@@ -10,8 +10,8 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from engine import EscapeMap, Sweep
 from engine.slices.energies import highest_energy
-from plots.pictures.map_analyses import NO_ANALYSES, MapAnalyses
-from plots.pictures.map_images import ON_DEMAND, TITLES
+from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.table import LAYER_OF, TITLES
 from plots.printed.figure_files import (
     curves_figure_bytes,
     map_figure_bytes,
@@ -59,8 +59,7 @@ def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
 
 
 def _map_choices(frame: EscapeMap, shown: ShownResults, state: ViewState) -> dict[str, Make]:
-    available = {"characters": shown.analyses.regularity, "origins": shown.analyses.origins}
-    pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or available[name] is not None)]
+    pictures = [name for name in TITLES if name != "curves" and (name not in LAYER_OF or LAYER_OF[name].name in shown.analyses)]
 
     def make(names: Sequence[str], format: FigureFormat, style: FigureStyle) -> bytes:
         return map_figure_bytes(frame, names, palette, format, style, analyses=shown.analyses, starts=starts, times=times)

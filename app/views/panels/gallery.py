@@ -11,7 +11,7 @@ import param
 from panel.custom import JSComponent
 
 from app.state.presets import GROUPS, PRESETS, Preset
-from plots.pictures.map_images import TITLES
+from plots.layers.table import TITLES
 
 INVITATION = "Each pixel of the basins is a start, and its colour the exit through which its orbit escapes. Views to begin with:"
 HINT = "Each card opens a view with orbits to compare. Its caption appears here."

@@ -34,7 +34,8 @@ from numba.core.serialize import dumps
 
 from engine.foundations.cache_files import SUFFIX, cache_folder, delete_cached, read_cached, write_cached
 
-_PACKAGE = Path(__file__).parents[1]
+PACKAGE = Path(__file__).parents[1]
+"""Where all source is that compiled kernels contain copies of."""
 
 log = logging.getLogger(__name__)
 
@@ -47,7 +48,7 @@ class KernelCache(_Cache):
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._name = f"{function.__module__}.{function.__qualname__}"
-        self._source = _hash_package(_PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
+        self._source = _hash_package(PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
 
     @property
     def cache_path(self) -> str:
@@ -107,7 +108,7 @@ def _hash_package(folder: Path) -> str:
 @functools.cache
 def program_digest() -> str:
     """A hash of the sources of the kernels and of the versions of what compiles them."""
-    return hashlib.sha256(repr((_hash_package(_PACKAGE), _versions())).encode()).hexdigest()[:24]
+    return hashlib.sha256(repr((_hash_package(PACKAGE), _versions())).encode()).hexdigest()[:24]
 
 
 @functools.cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.formulas.formula_writer import write_formula
 from engine.systems.merged_channels import name_channels
 from engine.systems.potential import Potential
+from engine.systems.provenance import describe_potential
 from engine.systems.review.classified_points import CriticalPoint, PointKind, other_well
 from engine.systems.review.energy_ranges import energy_range
 from engine.systems.review.refusals import find_points_or_refusal
@@ -75,6 +76,10 @@ class PotentialReview(Result):
     def energies(self) -> EnergyRange:
         """Energies to explore: multiples of the escape energy; not for a potential that is refused."""
         return energy_range(self.potential, self.highest_energy, [point.energy for point in self.critical_points])
+
+    def provenance(self) -> dict[str, Any]:
+        """The potential and the version."""
+        return super().provenance() | describe_potential(self.potential)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Place, kind, energy and channel of each critical point."""

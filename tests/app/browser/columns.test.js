@@ -24,6 +24,7 @@ const coding = {
   leastCrossings: [0, 1, 2, 3, 11],
   undecided: 0,
   withoutOrbit: [2, 3],
+  layers: ["passage"],
 }
 const window = {xLow: -1, xHigh: 1, ordinateLow: -2, ordinateHigh: 2}
 const scene = {slice, energy: 0.3, window, most: 224}

@@ -23,9 +23,9 @@ from engine import (
     Window,
     compute_map,
     compute_trust,
-    default_window,
 )
 from engine.propagation.portable_system import make_portable_system
+from engine.slices.default_window import default_window
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from tests.node import needs_node, run_node

@@ -17,7 +17,6 @@ from engine import (
     System,
     classify_orbits,
     compute_flux,
-    default_window,
     find_lyapunov_orbits,
     sample_entrances,
     sample_orbits,
@@ -25,6 +24,7 @@ from engine import (
 )
 from engine.exits.interior import find_outside_channels
 from engine.propagation.portable_system import make_portable_system
+from engine.slices.default_window import default_window
 from engine.systems.review.potential_review import review_system
 from tests.node import needs_node, run_node
 from tests.peers.taylor_heyoka import equations

@@ -13,19 +13,21 @@ from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, RegularityMap, compute_map
 from engine.jobs.manager import Jobs
-from engine.jobs.map_jobs import regularity_job
+from plots.layers.regularity import REGULARITY
+
+ON = frozenset({REGULARITY.name})
 
 
 class Session:
     """A session with one follow-up analysis, regularity."""
 
     def __init__(self) -> None:
-        self.state, self.jobs = ViewState(judge=True), Jobs()
+        self.state, self.jobs = ViewState(layers=ON), Jobs()
         self.results: list[tuple[EscapeMap, RegularityMap]] = []
         self.problems: list[str] = []
         self.changed = threading.Condition()
-        self.request: Callable[[EscapeMap], Any] = lambda frame: regularity_job(frame.spec)
-        follow_up = FollowUp(lambda frame: self.request(frame) if self.state.judge else None, self.show, ("judge",))
+        self.request: Callable[[EscapeMap], Any] = lambda frame: REGULARITY.job(frame.spec, {})
+        follow_up = FollowUp(lambda frame: self.request(frame) if self.state.layers else None, self.show, ("layers",))
         self.requests = FollowUpRequests(self.state, self.jobs, [follow_up], self.fail, lambda function: function)
 
     def fail(self, sentence: str) -> None:
@@ -58,11 +60,11 @@ def bounded_map(energy: float, t_max: float = 100.0) -> EscapeMap:
 
 
 def test_maps_are_analysed_while_that_is_wanted(session: Session) -> None:
-    session.state.judge = False
+    session.state.layers = frozenset()
     frame = bounded_map(0.2)
     session.requests.follow(frame)
     assert session.jobs.in_flight == 0
-    session.state.judge = True
+    session.state.layers = ON
     regularity = session.wait_for_result(frame)
     assert np.any(frame.fate == Fate.BOUNDED)
     assert np.all(regularity.character[frame.fate == Fate.BOUNDED] != Regularity.NOT_JUDGED)
@@ -73,13 +75,13 @@ def test_maps_are_analysed_while_that_is_wanted(session: Session) -> None:
 
 def test_an_analysis_is_cancelled_when_it_is_no_longer_wanted(session: Session) -> None:
     session.requests.follow(bounded_map(0.12, t_max=1e5))
-    session.state.judge = False
+    session.state.layers = frozenset()
     assert session.jobs.in_flight == 0
 
 
 def test_a_late_result_is_not_shown(session: Session) -> None:
     held: list[Callable[[], None]] = []
-    follow_up = FollowUp(lambda frame: regularity_job(frame.spec), session.show)
+    follow_up = FollowUp(lambda frame: REGULARITY.job(frame.spec, {}), session.show)
     arrived = threading.Event()
 
     def lock(function: Callable[..., None]) -> Callable[..., None]:
@@ -100,7 +102,7 @@ def test_a_late_result_is_not_shown(session: Session) -> None:
 
 def test_an_error_gives_a_message(session: Session) -> None:
     bad = MapSpec(CASES["I"], Plane.X_PX, 50.0, (8, 8), (-0.1, 0.1, -0.1, 0.1))
-    session.request = lambda frame: regularity_job(bad)
+    session.request = lambda frame: REGULARITY.job(bad, {})
     session.requests.follow(bounded_map(0.2))
     with session.changed:
         assert session.changed.wait_for(lambda: bool(session.problems), 60)

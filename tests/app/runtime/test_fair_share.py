@@ -40,16 +40,17 @@ def test_only_the_steps_of_a_coroutine_count() -> None:
     clock = Clock()
     share = FairShare(clock.monotonic, clock.monotonic)
 
-    async def work(other: asyncio.Event) -> str:
+    async def work(begun: asyncio.Event, other: asyncio.Event) -> str:
         clock.now += BURST_SECONDS
+        begun.set()
         await other.wait()
         clock.now += 1.0
         return "done"
 
     async def scenario() -> None:
-        other = asyncio.Event()
-        task = asyncio.ensure_future(share.count(work(other)))
-        await asyncio.sleep(0.0)
+        begun, other = asyncio.Event(), asyncio.Event()
+        task = asyncio.ensure_future(share.count(work(begun, other)))
+        await begun.wait()
         clock.now += 1.0
         other.set()
         assert await task == "done"
@@ -69,8 +70,9 @@ def test_a_counted_coroutine_can_fail_and_be_cancelled() -> None:
     async def fail() -> None:
         raise OSError("no")
 
-    async def wait() -> None:
+    async def wait(begun: asyncio.Event) -> None:
         try:
+            begun.set()
             await asyncio.Event().wait()
         except asyncio.CancelledError:
             seen.append("cancelled")
@@ -79,8 +81,9 @@ def test_a_counted_coroutine_can_fail_and_be_cancelled() -> None:
     async def scenario() -> None:
         with pytest.raises(OSError, match="no"):
             await FairShare().count(fail())
-        task = asyncio.ensure_future(FairShare().count(wait()))
-        await asyncio.sleep(0.0)
+        begun = asyncio.Event()
+        task = asyncio.ensure_future(FairShare().count(wait(begun)))
+        await begun.wait()
         task.cancel()
         with pytest.raises(asyncio.CancelledError):
             await task

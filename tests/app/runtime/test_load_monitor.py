@@ -2,18 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
-
-from app.runtime import load_monitor
 from app.runtime.load_monitor import HIGH_SECONDS, LONGEST_SECONDS, TICK_SECONDS, LoadMonitor
 from tests.app.clock import Clock
-
-
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    made = Clock()
-    monkeypatch.setattr(load_monitor, "time", made)
-    return made
 
 
 def tick(monitor: LoadMonitor, clock: Clock, seconds: float) -> None:
@@ -21,15 +11,17 @@ def tick(monitor: LoadMonitor, clock: Clock, seconds: float) -> None:
     monitor.tick()
 
 
-def test_load_is_normal_without_delay(clock: Clock) -> None:
-    monitor = LoadMonitor()
+def test_load_is_normal_without_delay() -> None:
+    clock = Clock()
+    monitor = LoadMonitor(clock.monotonic)
     for _ in range(5):
         tick(monitor, clock, TICK_SECONDS)
     assert not monitor.is_high()
 
 
-def test_load_is_high_after_a_late_tick_and_decays(clock: Clock) -> None:
-    monitor = LoadMonitor()
+def test_load_is_high_after_a_late_tick_and_decays() -> None:
+    clock = Clock()
+    monitor = LoadMonitor(clock.monotonic)
     tick(monitor, clock, 0.0)
     tick(monitor, clock, TICK_SECONDS + 4.0 * HIGH_SECONDS)
     high = [monitor.is_high()]
@@ -40,8 +32,9 @@ def test_load_is_high_after_a_late_tick_and_decays(clock: Clock) -> None:
     assert high == [True] * 20 + [False] * 10
 
 
-def test_persistent_high_load_is_interrupted(clock: Clock) -> None:
-    monitor = LoadMonitor()
+def test_persistent_high_load_is_interrupted() -> None:
+    clock = Clock()
+    monitor = LoadMonitor(clock.monotonic)
     tick(monitor, clock, 0.0)
     high = []
     for _ in range(40):

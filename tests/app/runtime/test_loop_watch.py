@@ -49,12 +49,9 @@ def test_a_stack_that_waits_has_no_cause() -> None:
 
 
 @pytest.mark.parametrize("late", [SLOW_SECONDS, 3.0])
-def test_a_slow_turn_is_logged_and_counted(
-    late: float, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_slow_turn_is_logged_and_counted(late: float, caplog: pytest.LogCaptureFixture) -> None:
     clock, metrics = Clock(), ServerMetrics()
-    monkeypatch.setattr("app.runtime.load_monitor.time", clock)
-    watch = LoopWatch(LoadMonitor(), metrics.loop_delays)
+    watch = LoopWatch(LoadMonitor(clock.monotonic), metrics.loop_delays)
     watch.tick()
     with caplog.at_level(logging.INFO, "bokeh"):
         clock.now += TICK_SECONDS + late
@@ -67,13 +64,9 @@ def test_a_slow_turn_is_logged_and_counted(
     assert message.endswith(f" ms of its own, with 0 ms of garbage collection; cause: {WAITING}")
 
 
-def test_garbage_collections_on_the_thread_of_the_loop_are_measured(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_garbage_collections_on_the_thread_of_the_loop_are_measured(caplog: pytest.LogCaptureFixture) -> None:
     clock, metrics = Clock(), ServerMetrics()
-    monkeypatch.setattr("app.runtime.load_monitor.time", clock)
-    monkeypatch.setattr("app.runtime.loop_watch.time", clock)
-    watch = LoopWatch(LoadMonitor(), metrics.loop_delays)
+    watch = LoopWatch(LoadMonitor(clock.monotonic), metrics.loop_delays, clock.thread_time)
     elsewhere = threading.Thread(target=watch.on_collection, args=["start", {}])
     watch.tick()
     with caplog.at_level(logging.INFO, "bokeh"):

@@ -2,20 +2,10 @@
 
 from __future__ import annotations
 
-import pytest
-
-from app.runtime import overload
 from app.runtime.overload import CALM_SECONDS, LATE_SECONDS, WINDOW_SECONDS, OverloadMonitor
 from tests.app.clock import Clock
 
 LIMIT = 0.5
-
-
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    made = Clock()
-    monkeypatch.setattr(overload, "time", made)
-    return made
 
 
 def run(monitor: OverloadMonitor, clock: Clock, seconds: int, delay: float) -> None:
@@ -25,8 +15,9 @@ def run(monitor: OverloadMonitor, clock: Clock, seconds: int, delay: float) -> N
         monitor.add(delay)
 
 
-def test_overload_begins_after_enough_late_seconds(clock: Clock) -> None:
-    monitor = OverloadMonitor(LIMIT)
+def test_overload_begins_after_enough_late_seconds() -> None:
+    clock = Clock()
+    monitor = OverloadMonitor(LIMIT, clock.monotonic)
     run(monitor, clock, 100, LIMIT)
     assert not monitor.is_overloaded()
     # Each delay of 0.6 s ends at a whole second, and so belongs to two of them.
@@ -36,16 +27,18 @@ def test_overload_begins_after_enough_late_seconds(clock: Clock) -> None:
     assert monitor.is_overloaded()
 
 
-def test_a_long_delay_belongs_to_all_its_seconds(clock: Clock) -> None:
-    monitor = OverloadMonitor(LIMIT)
+def test_a_long_delay_belongs_to_all_its_seconds() -> None:
+    clock = Clock()
+    monitor = OverloadMonitor(LIMIT, clock.monotonic)
     monitor.add(LATE_SECONDS - 2.0)
     assert not monitor.is_overloaded()
     monitor.add(1000.0)
     assert monitor.is_overloaded()
 
 
-def test_overload_ends_below_the_load_at_which_it_begins(clock: Clock) -> None:
-    monitor = OverloadMonitor(LIMIT)
+def test_overload_ends_below_the_load_at_which_it_begins() -> None:
+    clock = Clock()
+    monitor = OverloadMonitor(LIMIT, clock.monotonic)
     run(monitor, clock, WINDOW_SECONDS, 0.6)
     run(monitor, clock, WINDOW_SECONDS - CALM_SECONDS - 1, 0.0)
     assert monitor.is_overloaded()

@@ -8,6 +8,7 @@ import pytest
 
 from app.runtime.process_state import ProcessState, process_state
 from app.runtime.settings import Settings
+from engine.jobs.manager import Jobs
 
 
 def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., ProcessState]) -> None:
@@ -17,19 +18,26 @@ def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., Proce
     assert (stats.cache_limit, stats.orbits_limit, stats.threads) == (1000, 2000, 3)
 
 
-def test_delays_of_the_loop_count_and_pause_the_background() -> None:
-    state = ProcessState(Settings(longest_delay=0.5))
-    assert not state.is_overloaded()
-    state.load.delay = 0.7
-    state.adapt_to_load()
-    assert state.overload.delay == pytest.approx(0.7)
+class LateJobs(Jobs):
+    """Jobs whose first frames wait for given times, one for each look at the load."""
+
+    def __init__(self, *waits: float) -> None:
+        super().__init__()
+        self.waits, self.spared = list(waits), list[bool]()
+
+    def take_first_frame_wait(self) -> float:
+        return self.waits.pop(0)
+
+    def spare_first_frames(self, spared: bool) -> None:
+        self.spared.append(spared)
 
 
-def test_one_thread_is_kept_for_first_frames_as_soon_as_one_is_late(monkeypatch: pytest.MonkeyPatch) -> None:
-    state, kept, wait = ProcessState(Settings(longest_delay=0.5)), list[bool](), [0.1, 0.6, 0.1]
-    monkeypatch.setattr(state.jobs, "take_first_frame_wait", lambda: wait.pop(0))
-    monkeypatch.setattr(state.jobs, "spare_first_frames", kept.append)
-    for _ in range(3):
+def test_one_thread_is_kept_for_first_frames_as_soon_as_one_is_late_by_waits_and_delays_of_the_loop() -> None:
+    state, jobs = ProcessState(Settings(longest_delay=0.5)), LateJobs(0.1, 0.4, 0.1)
+    state.jobs = jobs
+    for delay in (0.0, 0.3, 0.0):
+        state.load.delay = delay
         state.adapt_to_load()
-    assert kept == [False, True, True]
+    assert state.overload.delay == pytest.approx(0.7)
+    assert jobs.spared == [False, True, True]
     assert not state.overload.is_overloaded()

@@ -6,7 +6,6 @@ import asyncio
 import gc
 import threading
 import weakref
-from collections.abc import Callable
 from typing import Any
 
 import panel as pn
@@ -32,40 +31,48 @@ def is_held(session: ServerSession) -> bool:
     return session.document.callbacks.hold_value == "combine"
 
 
-async def wait_for(condition: Callable[[], Any]) -> None:
-    async with asyncio.timeout(10):
-        while not condition():
-            await asyncio.sleep(0.001)
+class Calls:
+    """Keeps the arguments of calls on the event loop, which can be awaited."""
+
+    def __init__(self) -> None:
+        self._calls = asyncio.Queue[Any]()
+
+    def add(self, value: Any) -> None:
+        self._calls.put_nowait(value)
+
+    async def take(self, count: int) -> list[Any]:
+        """The next calls."""
+        async with asyncio.timeout(60):
+            return [await self._calls.get() for _ in range(count)]
 
 
-def test_calls_of_threads_run_on_the_loop_with_lock_and_document() -> None:
+def test_calls_of_threads_run_on_the_loop_with_the_document_whose_changes_are_held() -> None:
     async def scenario() -> None:
-        (session, _owner), seen = await new_session(), list[Any]()
+        (session, _owner), calls = await new_session(), Calls()
         with set_curdoc(session.document):
             call = SessionCallbacks(session.document).every(
-                lambda value: seen.append(
-                    (value, threading.get_ident(), session._lock.locked(), pn.state.curdoc, is_held(session))
-                )
+                lambda value: calls.add((value, threading.get_ident(), pn.state.curdoc, is_held(session)))
             )
         for value in range(3):
             await asyncio.to_thread(call, value)
-        await wait_for(lambda: len(seen) == 3)
-        assert seen == [(value, threading.get_ident(), True, session.document, True) for value in range(3)]
+        assert await calls.take(3) == [(value, threading.get_ident(), session.document, True) for value in range(3)]
 
     run_on_new_loop(scenario)
 
 
-def test_of_waiting_calls_only_the_latest_runs() -> None:
+def test_of_calls_that_wait_for_the_lock_only_the_latest_runs() -> None:
     async def scenario() -> None:
-        (session, _owner), seen = await new_session(), list[int]()
-        call = SessionCallbacks(session.document).latest(seen.append)
-        async with session._lock:
+        (session, _owner), calls = await new_session(), Calls()
+        call = SessionCallbacks(session.document).latest(calls.add)
+
+        async def call_often() -> None:
             for value in range(5):
                 await asyncio.to_thread(call, value)
-            await asyncio.sleep(0.01)
-        await wait_for(lambda: seen)
-        await asyncio.sleep(0.01)
-        assert seen == [4]
+
+        await session.with_document_locked(call_often)
+        first = await calls.take(1)
+        call(5)
+        assert first + await calls.take(1) == [4, 5]
 
     run_on_new_loop(scenario)
 
@@ -74,9 +81,9 @@ def test_a_call_of_a_thread_while_changes_are_held_is_not_lost() -> None:
     """Held events are copied and then replaced, as Panel and Bokeh do: ``Document.locked_callback`` loses such a call."""
 
     async def scenario() -> None:
-        (session, _owner), seen = await new_session(), list[str]()
+        (session, _owner), calls = await new_session(), Calls()
         document = session.document
-        call = SessionCallbacks(document).latest(seen.append)
+        call = SessionCallbacks(document).latest(calls.add)
 
         def change() -> None:
             document.hold()
@@ -89,20 +96,18 @@ def test_a_call_of_a_thread_while_changes_are_held_is_not_lost() -> None:
             document.unhold()
 
         await session.with_document_locked(change)
-        await wait_for(lambda: seen)
-        assert seen == ["frame"]
+        assert await calls.take(1) == ["frame"]
 
     run_on_new_loop(scenario)
 
 
 def test_failed_call_does_not_stop_the_next(caplog: pytest.LogCaptureFixture) -> None:
     async def scenario() -> None:
-        (session, _owner), seen = await new_session(), list[float]()
-        call = SessionCallbacks(session.document).every(lambda value: seen.append(1.0 / value))
+        (session, _owner), calls = await new_session(), Calls()
+        call = SessionCallbacks(session.document).every(lambda value: calls.add(1.0 / value))
         call(0.0)
         call(2.0)
-        await wait_for(lambda: seen)
-        assert seen == [0.5]
+        assert await calls.take(1) == [0.5]
 
     run_on_new_loop(scenario)
     assert "ZeroDivisionError" in caplog.text
@@ -115,7 +120,11 @@ def test_calls_after_the_session_are_dropped() -> None:
         document = weakref.ref(session.document)
         session.destroy()
         call(1)
-        await asyncio.sleep(0.01)
+        # What the call has begun ends before.
+        begun = asyncio.Event()
+        asyncio.get_running_loop().call_soon(begun.set)
+        await begun.wait()
+        await asyncio.gather(*asyncio.all_tasks() - {asyncio.current_task()})
         assert seen == []
         return document
 

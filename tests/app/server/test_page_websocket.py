@@ -14,7 +14,7 @@ from bokeh.application.handlers import FunctionHandler
 from bokeh.document import Document
 from bokeh.models import Slider
 from bokeh.server import session as bokeh_session
-from bokeh.server import tornado as bokeh_tornado
+from bokeh.server import urls
 from bokeh.server.server import Server
 from bokeh.server.session import ServerSession
 from panel.io.application import Application
@@ -26,7 +26,7 @@ from app.browser.bokeh_patches.inline_callbacks import call_inline
 from app.runtime.fair_share import BURST_SECONDS, SHARE
 from app.runtime.process_state import ProcessState
 from app.server.page_websocket import DELAYED_NOTICE, PageWebSocket
-from app.server.url_patterns import PageHandler
+from app.server.url_patterns import install_handlers
 from app.views.components.notice import Notice
 from tests.app.other_loop import run_on_new_loop
 from tests.page_channel import Channel
@@ -34,13 +34,11 @@ from tests.page_channel import Channel
 # More than the buffers of a connection hold.
 LONG = "x" * 8 * 2**20
 
-PATTERNS = [("/?", PageHandler), ("/ws", PageWebSocket)]
-
 
 @pytest.fixture
-def state(start_state: Callable[..., ProcessState], monkeypatch: pytest.MonkeyPatch) -> ProcessState:
+def state(start_state: Callable[..., ProcessState]) -> ProcessState:
     """The state of a process."""
-    monkeypatch.setattr(bokeh_tornado, "per_app_patterns", PATTERNS)
+    install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
     return start_state()
 
 

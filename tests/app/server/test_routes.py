@@ -9,6 +9,7 @@ from bokeh.application import Application
 from bokeh.server.tornado import BokehTornado
 
 from app.server.routes import accepted_hosts, served_routes
+from tests.app.server.login import server_with_login
 from tests.app.server.mounted_routes import ROOT, mounted_routes
 
 
@@ -59,6 +60,5 @@ def test_served_routes_have_the_prefix_of_the_server(application: BokehTornado) 
     assert "/app" not in routes
 
 
-def test_routes_of_a_login_are_served(application: BokehTornado, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(type(application.auth_provider), "endpoints", [("/login", object)])
-    assert "/maps/login" in served_routes(application)
+def test_routes_of_a_login_are_served() -> None:
+    assert "/maps/login" in served_routes(server_with_login("/maps"))

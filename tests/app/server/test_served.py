@@ -5,12 +5,8 @@ from __future__ import annotations
 import gzip
 import http.client
 import json
-import os
 import re
 import signal
-import socket
-import subprocess
-import sys
 import time
 import urllib.error
 import urllib.request
@@ -26,10 +22,9 @@ from bokeh.util.token import generate_jwt_token, generate_session_id
 from app.browser.module_files import ADDRESS, KERNELS_ADDRESS
 from engine.integrator.portable_kernels import kernel_module
 from tests.app.other_loop import run_on_new_loop
+from tests.browser.served_app import RunningApp, started_app
 from tests.page_channel import Channel
 
-ROOT = Path(__file__).parents[3]
-START_SECONDS = 240
 # Bounded orbits, which take longer than any test.
 LONG_MAP = {"case": "III", "h": "0.26", "resolution": "900", "t_max": "1e+06", "plane": "x_y"}
 MARKUP = {"V": '"><script>1</script>', "h": "0.25"}
@@ -39,14 +34,13 @@ MARKUP = {"V": '"><script>1</script>', "h": "0.25"}
 class Served:
     """A server on the loopback interface with at most two sessions."""
 
-    port: int
-    process: subprocess.Popen[bytes]
+    running: RunningApp
     log: Path
     pages: list[str] = field(default_factory=list)
     stopped_at: float = 0.0
 
     def get(self, path: str, **headers: str) -> tuple[int, str, http.client.HTTPMessage]:
-        request = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", headers=headers)
+        request = urllib.request.Request(f"{self.running.root}{path}", headers=headers)
         try:
             with urllib.request.urlopen(request, timeout=60) as answer:
                 return answer.status, answer.read().decode(), answer.headers
@@ -55,36 +49,19 @@ class Served:
                 return refusal.code, refusal.read().decode(), refusal.headers
 
     def metric(self, name: str) -> float:
-        lines = dict(line.rsplit(" ", 1) for line in self.get("/metrics")[1].splitlines() if not line.startswith("#"))
-        return float(lines[f"escape_explorer_{name}"])
+        return self.running.figure(name)
 
-    def wait_for(self, path: str, status: int) -> None:
-        end = time.monotonic() + START_SECONDS
-        while time.monotonic() < end and self.process.poll() is None:
-            try:
-                if self.get(path)[0] == status:
-                    return
-            except OSError:
-                pass
-            time.sleep(0.1)
-        raise TimeoutError(f"{path} did not return {status}: {self.log.read_text()}")
+    @property
+    def host(self) -> str:
+        return self.running.root.removeprefix("http://")
 
 
 @contextmanager
 def serving(log: Path, *command: str) -> Iterator[Served]:
     """Run a command that serves the page."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    environment = {**os.environ, "ESCAPE_EXPLORER_LOG": "json", "ESCAPE_EXPLORER_MOST_SESSIONS": "2"}
-    arguments = [sys.executable, "-m", *command, "--address", "127.0.0.1", "--port", str(port)]
-    with log.open("wb") as output:
-        process = subprocess.Popen(arguments, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL, stderr=output)
-    try:
-        yield Served(port, process, log)
-    finally:
-        process.kill()
-        process.wait(30)
+    variables = {"ESCAPE_EXPLORER_LOG": "json", "ESCAPE_EXPLORER_MOST_SESSIONS": "2"}
+    with started_app(log, *command, variables=variables) as running:
+        yield Served(running, log)
 
 
 @pytest.fixture(scope="module")
@@ -98,14 +75,14 @@ def _default_sigint() -> Iterator[None]:
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory, _default_sigint: None) -> Iterator[Served]:
     with serving(tmp_path_factory.mktemp("served") / "log", "cli", "serve") as server:
-        server.wait_for("/liveness", 200)
         yield server
 
 
 def test_server_answers_during_compilation_and_is_ready_afterwards(served: Served) -> None:
     status, text, _ = served.get("/readiness")
     assert (status, json.loads(text)["sentence"]) in {(503, "The integrators are being compiled."), (200, "Ready.")}
-    served.wait_for("/readiness", 200)
+    served.running.output.wait_for('"ready"')
+    assert served.get("/readiness")[0] == 200
     assert served.metric("kernels_ready") == 1
 
 
@@ -142,7 +119,9 @@ def test_kernels_can_be_kept_and_are_compressed_for_those_who_ask(served: Served
 
 def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None:
     assert served.get("/metrics")[2]["Content-Type"].startswith("text/plain; version=")
-    assert "Open sessions" in served.get("/status")[1]
+    page = served.get("/status")[1]
+    assert "<p>Ready.</p>" in page
+    assert "Open sessions" in page
 
 
 @pytest.mark.parametrize(
@@ -176,7 +155,7 @@ def test_other_hosts_are_refused(path: str, host: str, status: int, served: Serv
 
 def test_token_of_another_server_is_refused(served: Served) -> None:
     token = generate_jwt_token(generate_session_id(), signed=False, extra_payload={"arguments": {"h": ["0" * 2**20]}})
-    assert upgrade(served, token, f"http://localhost:{served.port}") == 403
+    assert upgrade(served, token, f"http://{served.host}") == 403
     assert served.metric("sessions_created_total") == 0
 
 
@@ -192,6 +171,7 @@ def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
     # The page asks again by itself.
     assert f"http-equiv=refresh content={headers['Retry-After']}>" in text
     assert served.get("/readiness")[0] == 503
+    assert "<p>All 2 places are taken.</p>" in served.get("/status")[1]
     assert served.metric("sessions_open") == 2
     assert served.metric("pages_refused_total") == 1
 
@@ -205,14 +185,15 @@ def test_websocket_of_another_origin_is_refused(served: Served) -> None:
     token = re.search(r'"token":"([^"]+)"', served.pages[0])
     assert token is not None
     assert upgrade(served, token[1], "https://elsewhere.example") == 403
-    assert upgrade(served, token[1], f"http://localhost:{served.port}") == 101
+    assert upgrade(served, token[1], f"http://{served.host}") == 101
 
 
 def check_stop(served: Served, number: signal.Signals) -> None:
     """A signal ends the server within five seconds, with a whole log."""
     run_on_new_loop(lambda: stop_during_a_map(served, number))
-    assert served.process.wait(30) == 0
+    assert served.running.process.wait(30) == 0
     assert time.monotonic() - served.stopped_at < 5.0
+    served.running.output.close()
     check_log(served)
 
 
@@ -223,7 +204,6 @@ def test_ctrl_c_stops_the_server_during_a_computation(served: Served) -> None:
 @pytest.mark.slow
 def test_the_end_of_a_service_stops_panel_during_a_computation(tmp_path: Path) -> None:
     with serving(tmp_path / "log", "panel", "serve", "app") as server:
-        server.wait_for("/liveness", 200)
         server.pages = [server.get(f"/app?{urlencode(LONG_MAP)}")[1]]
         check_stop(server, signal.SIGTERM)
 
@@ -241,7 +221,7 @@ def upgrade(served: Served, token: str, origin: str) -> int:
     """Status of a request for a WebSocket."""
     headers = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "x"}
     # urllib would send "Connection: close".
-    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=60)
+    connection = http.client.HTTPConnection(served.host, timeout=60)
     try:
         connection.request("GET", "/app/ws", headers={**headers, "Origin": origin, "Sec-WebSocket-Protocol": f"bokeh, {token}"})
         return connection.getresponse().status
@@ -258,7 +238,7 @@ def check_nonce(page: str, policy: str) -> None:
 
 async def stop_during_a_map(served: Served, number: signal.Signals) -> None:
     """Request a long map and send a signal while it is computed."""
-    channel = await Channel.connect(f"http://127.0.0.1:{served.port}/app", served.pages[0])
+    channel = await Channel.connect(served.running.address, served.pages[0])
     async for kind, _ in channel.messages():
         if kind == "ACK":
             channel.send("PULL-DOC-REQ", {})
@@ -266,6 +246,6 @@ async def stop_during_a_map(served: Served, number: signal.Signals) -> None:
             channel.emit("document_ready")
         elif kind == "PATCH-DOC" and served.stopped_at == 0.0 and served.metric("jobs_in_flight") >= 1:
             served.stopped_at = time.monotonic()
-            served.process.send_signal(number)
+            served.running.process.send_signal(number)
     channel.close()
     assert served.stopped_at, "the map was never started"

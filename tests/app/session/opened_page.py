@@ -5,14 +5,16 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
+from typing import Any
 from urllib.parse import urlencode
 
-from bokeh.application import Application
-from bokeh.application.handlers import FunctionHandler
+import param
+from bokeh.application.handlers.document_lifecycle import DocumentLifecycleHandler
 from bokeh.document import Document
-from bokeh.server.callbacks import PeriodicCallback
+from bokeh.events import DocumentReady
 from bokeh.server.contexts import ApplicationContext
 from bokeh.server.session import ServerSession
+from panel.io.application import Application
 from panel.io.state import set_curdoc
 from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
@@ -20,6 +22,24 @@ from app.session.explorer import Explorer
 from app.session.page import explorer_page
 
 NO_LINK: Mapping[str, str] = {}
+SECONDS = 60.0
+"""Longest wait, on a busy machine."""
+
+
+# Bokeh calls other handlers in a thread.
+class PageBuilder(DocumentLifecycleHandler):
+    """Builds the page of a session on the event loop, and calls `prepare` before."""
+
+    def __init__(self, prepare: Callable[[Explorer], None]) -> None:
+        super().__init__()
+        self._prepare = prepare
+        self.explorer: Explorer | None = None
+
+    def modify_document(self, doc: Document) -> None:
+        with set_curdoc(doc):
+            self.explorer = Explorer()
+            self._prepare(self.explorer)
+            explorer_page(self.explorer).server_doc(doc)
 
 
 @asynccontextmanager
@@ -27,42 +47,49 @@ async def opened_page(
     link: Mapping[str, str] = NO_LINK, prepare: Callable[[Explorer], None] = lambda explorer: None
 ) -> AsyncIterator[tuple[Explorer, ServerSession]]:
     """The explorer and the session of a page that is opened with a link; `prepare` is called before it is built."""
-    built: list[tuple[Explorer, Document]] = []
-
-    def build(document: Document) -> None:
-        with set_curdoc(document):
-            built.append((Explorer(), document))
-            prepare(built[0][0])
-            explorer_page(built[0][0]).server_doc(document)
-
-    context = ApplicationContext(Application(FunctionHandler(build)))
-    # Else Bokeh builds the page in a thread.
-    context._can_initialize_document_in_worker = lambda: False  # type: ignore[method-assign]
+    builder = PageBuilder(prepare)
     line = RequestStartLine("GET", f"/app?{urlencode(link)}", "HTTP/1.1")
     request = HTTPServerRequest(start_line=line, headers=HTTPHeaders({"Host": "localhost"}))
+    context = ApplicationContext(Application(builder), url="/app")
     session = await context.create_session_if_needed("session", request)  # type: ignore[arg-type]
-    [(explorer, document)] = built
+    explorer = builder.explorer
+    assert explorer is not None
     try:
-        with set_curdoc(document):
+        with set_curdoc(session.document):
             yield explorer, session
     finally:
         explorer.close()
+        await run_callbacks(session)
+        await on_loop(session, session.destroy)
 
 
-async def settle(document: Document) -> None:
-    """Wait until no callback is due or under way, also none that another one began: the loop ends after that."""
-    for each in document.session_callbacks:
-        if isinstance(each, PeriodicCallback):
-            document.remove_periodic_callback(each)
-    quiet = 0
-    async with asyncio.timeout(30.0):
-        while quiet < 10:
-            quiet = 0 if document.session_callbacks or len(asyncio.all_tasks()) > 1 else quiet + 1
-            await asyncio.sleep(0.01)
+async def on_loop(session: ServerSession, function: Callable[[], object]) -> None:
+    """Call a function with the session's lock."""
+
+    # Unlike a function, a coroutine is not run in a thread.
+    async def call() -> None:
+        function()
+
+    await session.with_document_locked(call)
 
 
-async def wait_for(condition: Callable[[], bool]) -> None:
-    """Wait until a condition holds."""
-    async with asyncio.timeout(30.0):
-        while not condition():
-            await asyncio.sleep(0.01)
+async def tell_ready(session: ServerSession) -> None:
+    """As a browser does that shows the page."""
+    await on_loop(session, lambda: session.document.callbacks.trigger_event(DocumentReady()))
+
+
+async def wait_for(watched: param.Parameterized, name: str, condition: Callable[[Any], bool]) -> None:
+    """Wait until a parameter has a value of which a condition holds."""
+    changed, loop = asyncio.Event(), asyncio.get_running_loop()
+    watcher = watched.param.watch(lambda event: loop.call_soon_threadsafe(changed.set), name)
+    async with asyncio.timeout(SECONDS):
+        while not condition(getattr(watched, name)):
+            changed.clear()
+            await changed.wait()
+    watched.param.unwatch(watcher)
+
+
+async def run_callbacks(session: ServerSession) -> None:
+    """Run the callbacks that wait for the session's lock, and those that they begin: the lock is given in turn."""
+    for _ in range(2):
+        await session.with_document_locked(lambda: None)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,12 +12,14 @@ import pytest
 
 from app.job_clients.follow_up_requests import FollowUpRequests
 from app.session.analysis_presenter import AnalysisPresenter
-from app.state.view import Analysis
+from app.state.view import Analysis, default_settings
 from app.state.view_state import ViewState
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES
-from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map, compute_uncertainty_exponent
+from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map
 from engine.jobs.manager import Jobs
-from plots.pictures.map_analyses import MapAnalyses
+from plots.layers.map_analyses import MapAnalyses
+from plots.layers.table import LAYERS
+from plots.pictures.palette import CLEAR
 from tests.app.map_actions import make_maps
 from tests.app.session.session_lock import context_of, locked_by
 
@@ -96,51 +97,67 @@ def begin(open_sessions: list[Session], jobs: Jobs) -> Callable[..., Session]:
 def test_doubtful_pixels_are_marked_until_they_are_switched_off_or_the_map_is_another(
     begin: Callable[..., Session], frame: EscapeMap
 ) -> None:
-    session = begin(trust=True)
+    session = begin(layers=frozenset({"trust"}))
     session.show(frame)
-    session.wait_for(lambda: session.analyses.trust is not None)
-    trust = session.analyses.trust
-    assert trust is not None
-    marks = session.maps.overlays.doubts
-    np.testing.assert_array_equal(marks.data["doubt"][0] > 0, trust.trust == Trust.DOUBTFUL)
+    session.wait_for(lambda: "trust" in session.analyses)
+    over = LAYERS["trust"].over
+    assert over is not None
+    assert over.pixel_colours is not None
+    marks = np.array(over.pixel_colours)[session.maps.source.data["trust"][0]]
+    np.testing.assert_array_equal(marks != CLEAR, session.analyses["trust"].trust == Trust.DOUBTFUL)
     assert "doubtful" in session.presenter.notes.object
     session.presenter.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (112, 112), t_max=1e3))
-    assert (session.analyses, marks.data["doubt"]) == (MapAnalyses(), [])
+    assert session.analyses == MapAnalyses()
     session.show(frame)
-    session.wait_for(lambda: session.analyses.trust is not None)
-    session.state.trust = False
-    assert (session.analyses, marks.data["doubt"], session.presenter.notes.object) == (MapAnalyses(), [], "")
+    session.wait_for(lambda: "trust" in session.analyses)
+    session.state.layers = frozenset()
+    shown = session.maps.source.data["trust"][0].size
+    assert (session.analyses, shown, session.presenter.notes.object) == (MapAnalyses(), 1, "")
 
 
 def test_manifolds_are_drawn_over_their_section_all_or_one_image(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(manifolds=True, images=1)
+    session = begin(layers=frozenset({"manifolds"}), settings={**default_settings(), "images": 1})
     session.show(compute_map(MapSpec(CASES["II"], Plane.X_Y, 0.25, (16, 16), t_max=100.0)))
     assert session.jobs.in_flight == 0
+    assert "drawn on maps forward in time there only" in session.presenter.notes.object
     session.show(frame)
-    session.wait_for(lambda: session.analyses.manifolds is not None)
+    session.wait_for(lambda: "manifolds" in session.analyses)
     numbers = []
     for image in (1, 2, 0):
-        session.state.images = image
-        assert session.analyses.manifolds is not None
-        shown = session.analyses.manifolds.arcs
+        session.state.settings = {**session.state.settings, "images": image}
+        shown = session.analyses["manifolds"].arcs
         assert {arc.image for arc in shown} == ({image} if image else {1, 2, 3})
         numbers.append(len(shown))
-        assert len(session.maps.overlays.manifolds.data["xs"]) == len(shown)
+        assert len(session.maps.overlays.curves["manifolds"].data["xs"]) == len(shown)
     assert 0 < numbers[0] < numbers[1] < numbers[2]
 
 
 def test_origins_and_regularity_have_pictures_while_they_are_switched_on(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(origins=True, judge=True)
+    session = begin(layers=frozenset({"origins", "judge"}))
     session.maps.show(frame, {**session.maps.source.data})
     session.show(frame)
-    session.wait_for(lambda: session.analyses.origins is not None and session.analyses.regularity is not None)
+    session.wait_for(lambda: {*session.analyses} == {"origins", "judge"})
     assert session.maps.source.data["passage"][0].shape == frame.fate.shape
     grid = session.maps.grid.layout()
     pictures = len(grid.objects)
-    session.state.origins = False
+    session.state.layers = frozenset({"judge"})
     assert len(grid.objects) == pictures - 1
-    session.state.judge = False
+    session.state.layers = frozenset()
     assert session.analyses == MapAnalyses()
+
+
+def test_a_result_of_other_settings_is_not_shown(begin: Callable[..., Session], frame: EscapeMap) -> None:
+    session = begin(layers=frozenset({"descriptor"}))
+    session.maps.show(frame, {**session.maps.source.data})
+    session.show(frame)
+    session.wait_for(lambda: "descriptor" in session.analyses)
+    assert session.maps.source.data["descriptor_value"][0].shape == frame.fate.shape
+    with session.changed:
+        session.state.settings = {**session.state.settings, "descriptor_power": 1.0}
+        assert "descriptor" not in session.analyses
+        assert session.maps.source.data["descriptor_value"][0].size == 1
+    session.wait_for(lambda: "descriptor" in session.analyses)
+    assert session.analyses["descriptor"].power == 1.0
 
 
 def test_basins_are_measured_and_laws_are_fitted_in_the_box(begin: Callable[..., Session], frame: EscapeMap) -> None:
@@ -152,20 +169,6 @@ def test_basins_are_measured_and_laws_are_fitted_in_the_box(begin: Callable[...,
     whole = float(measures.steps.data["share"][0])
     session.state.box = Window(-0.2, 0.3, -0.2, 0.2)
     session.wait_for(lambda: len(measures.steps.data["t"]) > 0 and float(measures.steps.data["share"][0]) != whole)
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("frame")
-def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        "app.session.analysis_presenter.compute_uncertainty_exponent", partial(compute_uncertainty_exponent, work=1e7)
-    )
-    session = begin(analysis=Analysis.MEASURES)
-    session.presenter.measures.button.clicks += 1
-    assert session.presenter.measures.button.disabled
-    session.wait_for(lambda: "α =" in session.presenter.measures.text.object)
-    assert not session.presenter.measures.button.disabled
-    assert len(session.presenter.measures.pairs.data["share"]) > 5
 
 
 @pytest.mark.usefixtures("frame")

@@ -2,53 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine
+import inspect
+import sys
+from collections.abc import Callable, Coroutine, Iterator
 from typing import Any
 from urllib.parse import urlencode
 
 import pytest
 
 from app.session.explorer import Explorer
-from app.state import system_review as review_module
-from engine import CASES, Plane, System, Window
-from engine.systems import system as system_module
-from engine.systems import well as well_module
-from engine.systems.forms import polynomial_form as polynomial_module
+from app.state.system_review import review_catalogue_entry
+from engine import CASES, Plane, System, Window, parse_formula
+from engine.systems.forms.polynomial_form import find_critical_points
+from engine.systems.forms.stored_points import stored_points
+from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
+from engine.systems.well import find_maxima_beside, leads_out_of_well
 from tests.app.other_loop import run_on_new_loop
-from tests.app.session.opened_page import opened_page, settle, wait_for
+from tests.app.session.opened_page import opened_page, tell_ready, wait_for
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
-# Whatever takes time; a potential has no other costly quantities.
-SLOW = [
-    (system_module, "parse_formula"),
-    (review_module, "review_system"),
-    (polynomial_module, "find_critical_points"),
-    (well_module, "leads_out_of_well"),
-    (well_module, "find_maxima_beside"),
-]
+# Whatever takes time, or reads from the disk what did; a potential has no other costly quantities.
+_FUNCTIONS = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
+SLOW = [inspect.unwrap(function).__code__ for function in _FUNCTIONS]
+STARTED, TOOL = sys.monitoring.events.PY_START, 4
 
 
 @pytest.fixture
-def called(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def called() -> Iterator[list[str]]:
     """The slow functions that are called in this process."""
     called: list[str] = []
     # As when the server starts.
     for case in CASES:
-        review_module.review_catalogue_entry(case)
-
-    def recording(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        def call(*arguments: Any, **options: Any) -> Any:
-            called.append(name)
-            return function(*arguments, **options)
-
-        return call
-
-    monkeypatch.setattr(well_module, "stored_points", lambda kind, terms, find: find())
-    for module, name in SLOW:
-        monkeypatch.setattr(module, name, recording(name, getattr(module, name)))
-    return called
+        review_catalogue_entry(case)
+    sys.monitoring.use_tool_id(TOOL, "slow functions")
+    sys.monitoring.register_callback(TOOL, STARTED, lambda code, offset: called.append(code.co_name))
+    for code in SLOW:
+        sys.monitoring.set_local_events(TOOL, code, STARTED)
+    yield called
+    for code in SLOW:
+        sys.monitoring.set_local_events(TOOL, code, sys.monitoring.events.NO_EVENTS)
+    sys.monitoring.free_tool_id(TOOL)
 
 
 def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[Any, Any, None]]) -> None:
@@ -56,9 +51,8 @@ def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[
 
     async def run() -> None:
         async with opened_page(parameters) as (explorer, session):
-            explorer.links.begin(explorer._begin_view)
+            await tell_ready(session)
             await check(explorer)
-        await settle(session.document)
 
     run_on_new_loop(run)
 
@@ -67,10 +61,14 @@ def said(explorer: Explorer) -> str:
     return str(explorer.notice.layout().object)
 
 
+async def wait_until_said(explorer: Explorer, text: str) -> None:
+    await wait_for(explorer.notice.layout(), "object", lambda html: text in html)
+
+
 def test_a_circular_potential_in_a_link_is_refused_in_another_process(called: list[str]) -> None:
     async def check(explorer: Explorer) -> None:
         assert "Reviewing" in explorer.progress.text.object
-        await wait_for(lambda: "Ignored the potential in the link" in said(explorer))
+        await wait_until_said(explorer, "Ignored the potential in the link")
         assert "circular potential" in said(explorer)
         assert (explorer.state.system.case, explorer.state.t_max) == ("I", 1e3)
 
@@ -84,7 +82,7 @@ def test_a_link_is_shown_whole_when_its_potential_has_passed(called: list[str]) 
     async def check(explorer: Explorer) -> None:
         state = explorer.state
         assert (state.system.case, state.resolution, state.starts) == ("I", 112, ())
-        await wait_for(lambda: state.system.case == TYPED)
+        await wait_for(explorer.state, "system", lambda system: system.case == TYPED)
         assert (state.plane, state.energy, state.starts) == (Plane.X_Y, 0.4, ((0.1, 0.2),))
         assert state.window == Window(-1.0, 1.0, -0.5, 0.5)
         assert explorer.links.history.entry == 0
@@ -95,7 +93,7 @@ def test_a_link_is_shown_whole_when_its_potential_has_passed(called: list[str]) 
 
 def test_a_view_to_compare_with_that_is_refused_is_told_beside_other_problems() -> None:
     async def check(explorer: Explorer) -> None:
-        await wait_for(lambda: "Ignored the view in the link" in said(explorer))
+        await wait_until_said(explorer, "Ignored the view in the link")
         assert "Ignored palette=none" in said(explorer)
         assert "the formula ends" in said(explorer)
         assert explorer.state.compared is None
@@ -107,11 +105,11 @@ def test_entries_of_the_browsers_history_are_reviewed_in_another_process(called:
     async def check(explorer: Explorer) -> None:
         explorer.links.navigate("?" + urlencode(CIRCULAR | {"h": "0.5", "resolution": "112"}), 0, 0)
         assert "Reviewing" in explorer.progress.text.object
-        await wait_for(lambda: "Ignored the potential in the link" in said(explorer))
+        await wait_until_said(explorer, "Ignored the potential in the link")
         assert (explorer.state.system.case, explorer.state.energy, explorer.state.resolution) == ("I", 0.19, 224)
         assert "Reviewing" not in explorer.progress.text.object
         explorer.links.navigate("?" + urlencode(LEGAL | {"h": "0.5"}), 0, 0)
-        await wait_for(lambda: explorer.state.system.case == TYPED)
+        await wait_for(explorer.state, "system", lambda system: system.case == TYPED)
         assert explorer.state.energy == 0.5
 
     with_page({}, check)
@@ -123,7 +121,7 @@ def test_a_choice_made_during_a_review_is_kept() -> None:
         explorer.controls.case.value = "III"
         # Reviewed after the link.
         explorer.links.navigate("?" + urlencode({"case": TYPED, "V": "x +"}), 0, 0)
-        await wait_for(lambda: "Ignored the potential in the link" in said(explorer))
+        await wait_until_said(explorer, "Ignored the potential in the link")
         assert explorer.state.system == System("III")
 
     with_page(LEGAL, check)

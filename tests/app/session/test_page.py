@@ -29,9 +29,10 @@ def alive(built: list[weakref.ref[Explorer]]) -> list[Explorer]:
 
 def test_a_closed_page_is_freed() -> None:
     built = [build() for _ in range(2)]
-    deadline = time.monotonic() + 20.0  # a cancelled computation ends within moments, not at once
+    # A cancelled computation ends within moments, not at once.
+    deadline = time.monotonic() + 60.0
     while alive(built) and time.monotonic() < deadline:
-        time.sleep(0.1)
+        pass
     assert alive(built) == []
 
 

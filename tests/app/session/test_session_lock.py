@@ -6,21 +6,19 @@ for every change of a bare model that is not held, and the click is lost.
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
 from typing import Any
 
 import pytest
-from bokeh.server.session import ServerSession
 
 from app.session.explorer import Explorer
-from app.state.view import LAYERS, Analysis
-from app.views.components.analysis_choice import LAYER_LABELS
+from app.state.view import Analysis
 from app.views.maps.map_toolbar import Drag
 from engine import Plane
+from plots.layers.table import LAYERS
 from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
-from tests.app.session.opened_page import opened_page
+from tests.app.session.opened_page import opened_page, run_callbacks
 
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
@@ -34,8 +32,8 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     lambda explorer: explorer.state.param.update(palette="safe"),
     *(
         lambda explorer, name=name, on=on: explorer.controls.layers.switches[name].param.update(value=on)
-        for name in LAYERS
-        for on in ([LAYER_LABELS[name]], [])
+        for name, layer in LAYERS.items()
+        for on in ([layer.title], [])
     ),
     # As the tabs do.
     *(lambda explorer, analysis=analysis: explorer.state.param.update(analysis=analysis) for analysis in Analysis),
@@ -43,13 +41,6 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     *(lambda explorer, name=name: explorer.drawers.buttons.param.update(value=[name]) for name in ("gallery", "share", "help")),
     lambda explorer: explorer.set_dark(True),
 ]
-
-
-async def run_callbacks(session: ServerSession) -> None:
-    """Run the callbacks that have been scheduled."""
-    await asyncio.sleep(0.1)
-    while session._lock.locked():
-        await asyncio.sleep(0.01)
 
 
 def with_page(change: Callable[[Explorer], Any]) -> None:

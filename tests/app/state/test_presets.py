@@ -33,7 +33,7 @@ from engine import (
     sample_starts,
     start_states,
 )
-from plots.pictures.map_images import TITLES
+from plots.layers.table import TITLES
 from plots.pictures.palette import MOST_ORBITS
 
 THUMBNAILS = Path(app.__file__).parent / "static" / "gallery"
@@ -93,6 +93,13 @@ def test_a_preset_is_a_valid_view_with_a_link_and_a_small_picture(preset: Preset
         assert picture.size == (160, 160)
 
 
+def test_examples_show_the_analyses_that_they_explain() -> None:
+    assert view_of("threads").manifolds
+    assert view_of("passages").origins
+    assert view_of("doubt").trust
+    assert view_of("owl").judge
+
+
 def test_a_server_with_limits_shows_every_preset(start_state: Callable[..., ProcessState]) -> None:
     start_state(longest_t_max=1e3, largest_resolution=112)
     for preset in PRESETS:
@@ -140,6 +147,10 @@ FATES = {
 @pytest.mark.parametrize("key", FATES)
 def test_fates_agree_with_the_caption(key: str) -> None:
     assert fates(view_of(key)) == FATES[key]
+
+
+def test_the_example_on_stable_manifolds_shows_them() -> None:
+    assert "manifolds=yes" in write_link(ViewState(**view_of("threads").values()))
 
 
 def test_shares_agree_with_the_caption() -> None:

@@ -14,7 +14,6 @@ from engine import (
     MapSpec,
     Plane,
     Potential,
-    compute_birkhoff_digits,
     compute_flux,
     compute_map,
     compute_regularity,
@@ -31,6 +30,7 @@ from engine.periodic.exit_entry_points import find_entry_points
 from engine.periodic.unstable_manifold import UnstableManifold
 from engine.propagation.evidence import Evidence
 from engine.systems.outcomes import Centre
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 
 ROTATING = parse_formula("½(x² + y²) + ½(x² + y²) - x² y").in_rotating_frame(0.5)
 ENERGY = 1.2 * ROTATING.escape_energy

@@ -35,7 +35,9 @@ BENT_FIRST_WALL = Potential(
     "", ((2, 0, 0.6224), (0, 2, 0.9494), (1, 1, 0.4554), (4, 1, -0.3154), (2, 1, -0.1768), (0, 5, -0.5513))
 )
 
-each_well = pytest.mark.parametrize(("potential", "factor"), [(BENT_WALL, 2.0), (JUMP, 2.0), (SLOW_END, 1.25)])
+each_well = pytest.mark.parametrize(
+    ("potential", "factor"), [(BENT_WALL, 2.0), (JUMP, 2.0), pytest.param(SLOW_END, 1.25, marks=pytest.mark.slow)]
+)
 
 
 def orbits_of(potential: Potential, factor: float) -> tuple[LyapunovOrbit, ...]:

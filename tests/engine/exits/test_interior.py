@@ -43,7 +43,7 @@ def test_a_start_in_an_outer_region_behind_an_exit_line_is_outside() -> None:
     ("potential", "energy"),
     [
         (CURLED, 0.0649),
-        (CURLED_QUINTIC, 0.435296),
+        pytest.param(CURLED_QUINTIC, 0.435296, marks=pytest.mark.slow),
         (CASES["II"], 0.17),
         (CASES["III"], 1.0),
     ],

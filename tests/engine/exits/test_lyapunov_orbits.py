@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, parse_formula
+from engine import CASES, Potential, find_lyapunov_orbits, parse_formula
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.integrator.kernels.events import REACH, exit_distance
 from engine.systems.known_potentials import POTENTIALS
@@ -20,14 +20,6 @@ ESCAPE_ENERGY = {"I": 1 / 8, "II": 1 / 6, "III": 1 / 4}
 OMEGA = {"I": np.sqrt(2), "II": np.sqrt(3), "III": np.sqrt(2)}
 each_energy = pytest.mark.parametrize(("name", "energy"), ENERGIES)
 each_case = pytest.mark.parametrize("name", CASES)
-
-
-def assert_same_path(x: np.ndarray, y: np.ndarray, orbit: LyapunovOrbit, atol: float) -> None:
-    """Equal up to the direction of motion."""
-    half = orbit.x.size // 2 + 1
-    path, expected = np.array([x, y])[:, :half], np.array([orbit.x, orbit.y])[:, :half]
-    error = min(np.abs(path - expected).max(), np.abs(path[:, ::-1] - expected).max())
-    assert error < atol
 
 
 @each_energy
@@ -51,43 +43,9 @@ def test_period_converges_to_that_of_the_linearized_saddle(name: str) -> None:
 
 
 @each_case
-def test_orbit_shrinks_to_the_saddle_at_the_escape_energy(name: str) -> None:
-    above = 1e-8
-    for orbit in find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] + above):
-        distance = np.hypot(
-            orbit.x - CASES[name].saddles[orbit.channel - 1, 0], orbit.y - CASES[name].saddles[orbit.channel - 1, 1]
-        )
-        # At rest ω_q² q²/2 is the energy above the saddle.
-        assert distance.max() == pytest.approx(np.sqrt(2 * above) / OMEGA[name], rel=1e-3)
-
-
-def rotated(x: np.ndarray, y: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
-    return np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
-
-
-@pytest.mark.parametrize("channel", [2, 3])
-def test_case_2_orbits_are_rotated_by_120_degrees(channel: int) -> None:
-    orbits = find_lyapunov_orbits(CASES["II"], 0.5)
-    path = rotated(orbits[0].x, orbits[0].y, (channel - 1) * 2 * np.pi / 3)
-    assert_same_path(*path, orbits[channel - 1], 1e-11)
-
-
-@pytest.mark.parametrize(("channel", "x_sign", "y_sign"), [(2, -1, 1), (3, -1, -1), (4, 1, -1)])
-def test_case_3_orbits_are_mirror_images(channel: int, x_sign: int, y_sign: int) -> None:
-    orbits = find_lyapunov_orbits(CASES["III"], 1.0)
-    assert_same_path(x_sign * orbits[0].x, y_sign * orbits[0].y, orbits[channel - 1], 1e-11)
-
-
-@each_case
 @pytest.mark.parametrize("below", [0.0, 0.1])
 def test_no_orbits_at_or_below_the_escape_energy(name: str, below: float) -> None:
     assert find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] - below) == ()
-
-
-@pytest.mark.parametrize("energy", [np.nan, 50.0])
-def test_an_energy_without_exits_is_refused(energy: float) -> None:
-    with pytest.raises(ValueError, match=f"energy={energy}"):
-        find_lyapunov_orbits(CASES["I"], energy)
 
 
 @each_energy
@@ -120,6 +78,7 @@ def test_exits_of_a_separable_well_are_straight() -> None:
     np.testing.assert_allclose(orbit.x + orbit.y, -1.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_strongly_curved_exit_is_found_up_to_twice_the_escape_energy() -> None:
     # Polynomials of degree 16 deviate from this orbit by 2e-10.
     terms = ((2, 0, 1.1195), (0, 2, 0.3893), (1, 5, -0.6884), (2, 1, 0.8214), (4, 0, -0.2547), (3, 0, 0.5214))

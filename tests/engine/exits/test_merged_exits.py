@@ -13,10 +13,21 @@ from engine import (
     classify_orbits,
     compute_map,
     find_lyapunov_orbits,
+    parse_formula,
 )
+from engine.exits.brake_orbits import BrakeOrbit
 from engine.exits.exit_rows import exit_curves
 from engine.exits.interior import find_outside_channels
-from engine.integrator.kernels.events import crossed_exit, exit_distance
+from engine.exits.merged_orbits import has_returns
+from engine.integrator.kernels.events import (
+    CURVE_COLUMNS,
+    HALF_WIDTH,
+    ORIGIN_X,
+    OUTWARD_X,
+    REACH,
+    crossed_exit,
+    exit_distance,
+)
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 
@@ -60,7 +71,6 @@ def test_the_orbit_leads_from_rest_to_rest_and_its_ends_enclose_the_saddles() ->
     start = [orbit.x[0], orbit.y[0], 0.0, 0.0]
     end = solve_ivp(equations(potential), (0.0, 0.5 * orbit.period), start, "DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
     np.testing.assert_allclose(end, [orbit.x[100], orbit.y[100], 0.0, 0.0], rtol=0, atol=1e-9)
-    assert abs(orbit.find_multipliers()[0]) > 10.0
     ends, saddles = orbit.half_path[[0, -1]], potential.saddles[np.array([orbit.channel, *orbit.others]) - 1]
     share = (saddles - ends[0]) @ (ends[1] - ends[0]) / np.sum((ends[1] - ends[0]) ** 2)
     assert np.all((share > 0.0) & (share < 1.0))
@@ -70,6 +80,7 @@ def test_orbits_that_have_crossed_do_not_come_back() -> None:
     potential = SYMMETRIC
     energy = above(potential)
     orbit = next(orbit for orbit in find_lyapunov_orbits(potential, energy) if orbit.others)
+    assert abs(orbit.find_multipliers()[0]) > 10.0
     exits, no_gates = orbit.curve[None], np.array([[0.0, 0.0, -1.0]])
     random = np.random.default_rng(3)
     farthest = 3.0 * np.hypot(*potential.saddles.T).max()
@@ -90,6 +101,17 @@ def test_orbits_that_have_crossed_do_not_come_back() -> None:
         x, y = path.y[:2]
         assert path.status == 1
         assert not any(crossed_exit(x[i + 1], y[i + 1], x[i], y[i], exits, no_gates) for i in range(x.size - 1))
+
+
+def test_an_orbit_that_comes_back_into_the_well_returns() -> None:
+    # Left of x = −0.5 the energy of the motion along x is above the saddle at x = 1: orbits that leave to the left at
+    # x = −0.6 are thrown back by the wall, pass it inward, and go out of the well on the right.
+    potential, energy, place = parse_formula("½x² − x³/3 + ½y²"), 0.5, -0.6
+    across = np.sqrt(2.0 * (energy - float(potential.value(place, 0.0))))
+    path = np.array([np.full(101, place), -across * np.cos(np.linspace(0.0, np.pi, 101))])[:, ::-1]
+    line = np.zeros(CURVE_COLUMNS)
+    line[[ORIGIN_X, OUTWARD_X, HALF_WIDTH, REACH]] = place, -1.0, across, across
+    assert has_returns(potential, energy, BrakeOrbit(1.0, path), line)
 
 
 def test_most_orbits_of_the_inner_well_leave_as_just_below_the_maximum() -> None:

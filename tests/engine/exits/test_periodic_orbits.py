@@ -8,15 +8,14 @@ from scipy.optimize import brentq
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
 from engine.exits.periodic_orbits import PeriodicOrbit, find_orbit_in_rotating_frame
-from engine.systems.known_potentials import POTENTIALS
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
-from tests.engine.exits.test_lyapunov_orbits import ENERGIES
 from tests.peers.random_systems import random_well
 
 WELLS = [
-    *((CASES[name], h) for name, h in ENERGIES),
-    *((POTENTIALS[name], factor * POTENTIALS[name].escape_energy) for name in ("C5", "Barbanis") for factor in (1.1, 2.0)),
-    *((random_well(seed), factor * random_well(seed).escape_energy) for seed in (4, 9) for factor in (1.02, 2.0)),
+    (CASES["I"], 0.1251),
+    (CASES["II"], 0.5),
+    (CASES["III"], 1.0),
+    (random_well(9), 2.0 * random_well(9).escape_energy),
 ]
 each_well = pytest.mark.parametrize(("potential", "energy"), WELLS)
 # Channel 1 is beyond the smaller body, L2, channel 2 is L1.
@@ -65,11 +64,7 @@ def test_brake_orbits_are_found_by_continuation_too(potential: Potential, energy
     ("channel", "jacobi", "period", "stability"),
     [
         (L1, 3.15273107702723, 2.8325231152377177, 964.064108375553),
-        (L1, 3.08822007759733, 3.208925672981277, 485.414013814097),
-        (L1, 2.9598499076413, 5.323648857835835, 76.1891993736543),
         (L1, 2.91113555914615, 6.525492852637634, 53.6707952348081),
-        (L2, 3.16393725780824, 3.3894933326727212, 675.385278577229),
-        (L2, 3.05538226005407, 3.84882135824887, 216.77243118681),
         (L2, 2.95787377644491, 5.640853006654308, 61.0217545317533),
     ],
 )
@@ -141,7 +136,7 @@ def first_orbit(potential: Potential, energy: float) -> LyapunovOrbit:
     return find_lyapunov_orbits(potential, energy)[0]
 
 
-@pytest.mark.parametrize("potential", [hill(), CASES["III"], POTENTIALS["C5"]], ids=lambda potential: potential.name)
+@pytest.mark.parametrize("potential", [hill(), CASES["II"], CASES["III"]], ids=lambda potential: potential.name)
 def test_multipliers_of_a_lyapunov_orbit_are_those_of_the_same_orbit_by_continuation(potential: Potential) -> None:
     energy = -2.0 if potential.rotation else 1.5 * potential.escape_energy
     found = first_orbit(potential, energy).find_multipliers()

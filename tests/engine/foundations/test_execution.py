@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
+from contextlib import redirect_stderr
+from io import StringIO
 
 import numpy as np
 import pytest
@@ -52,29 +54,20 @@ def long_call(*, on_frame: object = None, execution: Execution = DEFAULT_EXECUTI
     return execution.on_progress
 
 
-@pytest.fixture
-def terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+class Terminal(StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
 
 
-@pytest.mark.usefixtures("terminal")
-class TestBar:
-    def test_is_shown_in_a_terminal(self) -> None:
+def test_a_bar_is_shown_in_a_terminal_where_nobody_follows_the_progress() -> None:
+    with redirect_stderr(Terminal()), ThreadPoolExecutor(1) as thread:
         assert callable(long_call())
-
-    def test_is_not_shown_beside_other_reports(self) -> None:
         assert long_call(on_frame=print) is None
         assert long_call(execution=Execution(on_progress=print)) is print
-
-    def test_is_not_shown_by_other_threads(self) -> None:
-        found: list[object] = []
-        thread = threading.Thread(target=lambda: found.append(long_call()))
-        thread.start()
-        thread.join()
-        assert found == [None]
-
-
-def test_without_a_terminal_there_is_no_bar() -> None:
+        # Calls of other threads write no bars between those of this one.
+        assert thread.submit(long_call).result() is None
     assert long_call() is None
 
 

@@ -13,7 +13,19 @@ import xarray as xr
 
 import engine
 import escape_explorer
-from engine import CASES, Evidence, MapSpec, Plane, SweepSpec, compute_map, compute_sweep, integrate_orbit, open_result
+from engine import (
+    CASES,
+    Evidence,
+    MapSpec,
+    Plane,
+    SweepSpec,
+    compute_map,
+    compute_sweep,
+    find_lyapunov_orbits,
+    integrate_orbit,
+    open_result,
+)
+from engine.foundations.former_names import FORMER_NAMES
 
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (12, 10), t_max=200.0, use_evidence=False)
 SWEEP = SweepSpec(CASES["III"], Plane.X_PX, (0.3, 0.4, 0.5), (12, 10), t_max=300.0, measures=("maps",))
@@ -28,6 +40,31 @@ def test_former_public_names_stand_for_the_present_ones(old: str, new: str, pack
     with pytest.warns(DeprecationWarning, match=f"^{old} is deprecated: use {new}$") as caught:
         assert getattr(package, old) is getattr(engine, new)
     assert caught[0].filename == __file__
+
+
+@pytest.mark.parametrize("name", FORMER_NAMES)
+def test_a_former_public_name_works_for_a_release_with_a_warning(name: str) -> None:
+    assert name not in engine.__all__
+    with pytest.warns(DeprecationWarning, match=f"^{name} is deprecated: use "):
+        assert getattr(engine, name) is not None
+
+
+def test_the_former_functions_of_orbits_are_their_methods() -> None:
+    orbit, exit_orbit = integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=20.0), find_lyapunov_orbits(CASES["I"], 0.19)[0]
+    with pytest.warns(DeprecationWarning, match="use Orbit.find_section_crossings"):
+        crossings = engine.find_section_crossings(CASES["II"], orbit)  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(crossings, orbit.find_section_crossings())
+    with pytest.warns(DeprecationWarning, match="use LyapunovOrbit.find_multipliers"):
+        multipliers = engine.find_multipliers(CASES["I"], exit_orbit)  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(multipliers, exit_orbit.find_multipliers())
+
+
+def test_the_former_functions_of_orbits_refuse_another_potential() -> None:
+    exit_orbit = find_lyapunov_orbits(CASES["III"], 0.45)[0]
+    with pytest.warns(DeprecationWarning, match="find_multipliers"):
+        find_multipliers = engine.find_multipliers  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="potential=I: must be that of the orbit, III"):
+        find_multipliers(CASES["I"], exit_orbit)
 
 
 def test_the_former_request_of_curves_is_one_of_a_sweep() -> None:

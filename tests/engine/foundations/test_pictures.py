@@ -2,33 +2,27 @@
 
 from __future__ import annotations
 
-import importlib.metadata
-from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from engine import CASES
-from engine.foundations import pictures
-
-
-@pytest.fixture(autouse=True)
-def forgotten() -> Iterator[None]:
-    pictures.load_pictures.cache_clear()
-    yield
-    pictures.load_pictures.cache_clear()
+from engine.foundations.pictures import load_pictures
 
 
 def test_the_installed_package_draws_results() -> None:
     assert "<img" in CASES["I"]._repr_html_()
 
 
-def test_any_package_can_draw_results(monkeypatch: pytest.MonkeyPatch) -> None:
-    entry = importlib.metadata.EntryPoint("mine", "types:SimpleNamespace.__name__", pictures.GROUP)
-    monkeypatch.setattr(pictures, "entry_points", lambda group: [entry] if group == pictures.GROUP else [])
-    assert pictures.load_pictures() == "SimpleNamespace"
+def test_any_package_can_draw_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "mine-1.0.dist-info"
+    package.mkdir()
+    (package / "METADATA").write_text("Name: mine\nVersion: 1.0\n")
+    (package / "entry_points.txt").write_text("[mine.pictures]\nmine = types:SimpleNamespace.__name__\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert load_pictures("mine.pictures") == "SimpleNamespace"
 
 
-def test_without_a_package_that_draws_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pictures, "entry_points", lambda group: [])
+def test_without_a_package_that_draws_the_error_says_what_to_install() -> None:
     with pytest.raises(RuntimeError, match="install escape-explorer"):
-        CASES["I"].plot()
+        load_pictures("of no package")

@@ -1,77 +1,60 @@
-"""Datasets of results: indexed by different values, with units, and written as NetCDF and read back unchanged."""
+"""Every result: a few lines of text, read-only arrays also in copies, and a dataset that NetCDF keeps."""
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable
+import copy
+import pickle
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from engine import (
-    CASES,
-    MapSpec,
-    Plane,
-    Result,
-    classify_orbits,
-    compute_basin_entropy,
-    compute_birkhoff_digits,
-    compute_map,
-    compute_separation,
-    compute_statistics,
-    compute_wada_test,
-    find_divergent_start,
-    find_lyapunov_orbits,
-    find_stable_manifolds,
-    fit_decay_laws,
-    integrate_orbit,
-    judge_orbit,
-    parse_formula,
-    review_potential,
-    sample_starts,
-)
+from tests.results import ENERGY, POTENTIAL, RESULTS, result_of
 
-POTENTIAL, STATE = CASES["I"], (0.1, 0.0, 0.05, 0.6)
+# Plain dataclasses of numbers, whose text is that of any dataclass.
+PLAIN = {"potential", "verdict", "divergent start", "entropy"}
 
 
-@functools.cache
-def orbit() -> Result:
-    return integrate_orbit(POTENTIAL, STATE, t_max=10.0)
+def arrays_of(result: Any) -> Iterator[np.ndarray]:
+    """The arrays of a result, and of the results in it; a map keeps the state of its orbits, which is no result."""
+    if isinstance(result, np.ndarray):
+        yield result
+    elif isinstance(result, tuple):
+        for part in result:
+            yield from arrays_of(part)
+    elif is_dataclass(result) and not isinstance(result, type):
+        for field in fields(result):
+            if field.name != "batch":
+                yield from arrays_of(getattr(result, field.name))
 
 
-RESULTS: dict[str, Callable[[], Result | None]] = {
-    "potential": lambda: POTENTIAL,
-    "review": lambda: review_potential(POTENTIAL),
-    "review of a degenerate potential": lambda: review_potential(parse_formula("x⁴ + y⁴")),
-    "review of a curve of critical points": lambda: review_potential(parse_formula("(x² + y² − 1)²")),
-    "orbit": orbit,
-    "verdict": lambda: judge_orbit(integrate_orbit(POTENTIAL, STATE, t_max=10.0)),
-    "outcomes": lambda: classify_orbits(POTENTIAL, 0.2, sample_starts(POTENTIAL, 0.2, 50), t_max=20.0),
-    "Lyapunov orbit": lambda: find_lyapunov_orbits(POTENTIAL, 0.2)[0],
-    "manifolds": lambda: find_stable_manifolds(POTENTIAL, 0.19, images=1),
-    "separation": lambda: compute_separation(POTENTIAL, STATE, (0.1, 0.0, 0.05, 0.60001), 10.0),
-    "digits": lambda: compute_birkhoff_digits(POTENTIAL, (0.1, 0.0, 0.05, 0.3), 2e3),
-    "divergent start": lambda: find_divergent_start(POTENTIAL, Plane.X_PX, 0.2, 0.1, 0.0, 50.0),
-    "statistics": lambda: compute_statistics(compute_map(SPEC)),
-    "decay laws": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC))),
-    "entropy": lambda: compute_basin_entropy(compute_map(SPEC)),
-    "Wada test": lambda: compute_wada_test(compute_map(SPEC)),
-}
-SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.5, (20, 20), t_max=50.0)
+@pytest.mark.parametrize("name", [name for name in RESULTS if name not in PLAIN])
+def test_a_result_takes_a_few_short_lines(name: str) -> None:
+    result = result_of(name)
+    lines = repr(result).splitlines()
+    assert lines[0].startswith(type(result).__name__)
+    assert len(lines) <= 7
+    assert max(map(len, lines)) <= 100
 
 
-@functools.cache
-def dataset(name: str) -> xr.Dataset:
-    result = RESULTS[name]()
-    assert result is not None
-    return result.to_xarray()
+@pytest.mark.parametrize("name", RESULTS)
+def test_arrays_are_read_only_also_in_copies_as_between_processes(name: str) -> None:
+    result = result_of(name)
+    copies = pickle.loads(pickle.dumps(result)), copy.deepcopy(result)
+    for each in copies:
+        for original, copied in zip(arrays_of(result), arrays_of(each), strict=True):
+            assert not original.flags.writeable
+            assert not copied.flags.writeable
+            np.testing.assert_array_equal(copied, original)
 
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_datasets_have_unique_indexes_and_meanings_and_are_kept_by_netcdf(name: str, tmp_path: Path) -> None:
-    expected = dataset(name)
+    expected = result_of(name).to_xarray()
     assert all(index.is_unique for index in expected.indexes.values())
     assert [str(key) for key, one in expected.variables.items() if one.dtype.kind in "iuf" and not one.attrs] == []
     expected.to_netcdf(tmp_path / "result.nc", engine="h5netcdf")
@@ -80,16 +63,28 @@ def test_datasets_have_unique_indexes_and_meanings_and_are_kept_by_netcdf(name: 
         assert found.attrs.keys() == expected.attrs.keys()
 
 
-def test_path_of_a_lyapunov_orbit_has_its_times() -> None:
-    exit_orbit = find_lyapunov_orbits(POTENTIAL, 0.2)[1]
+def test_most_results_have_arrays() -> None:
+    assert sum(any(True for _ in arrays_of(result_of(name))) for name in RESULTS) >= 13
+
+
+def test_a_map_says_what_it_is_in_five_lines() -> None:
+    text = repr(result_of("map"))
+    assert len(text.splitlines()) <= 5
+    for part in ("potential III", "plane (x, px)", "energy 0.36", "channel 3 0.", "bounded 0.", "fate escape_time", "30 × 40"):
+        assert part in text
+
+
+def test_the_path_of_a_lyapunov_orbit_has_its_times() -> None:
+    exit_orbit: Any = result_of("Lyapunov orbit")
     path = exit_orbit.to_xarray()
     # It starts on an exit, where rounding decides whether an integrated orbit is outside; its speed follows from the energy.
     velocity = [np.gradient(path[name], path["t"], edge_order=2) for name in ("x", "y")]
-    expected = np.sqrt(2.0 * np.maximum(0.2 - POTENTIAL.value(path["x"], path["y"]), 0.0))
-    np.testing.assert_allclose(np.hypot(*velocity), expected, atol=1e-3)
+    expected = np.sqrt(2.0 * np.maximum(ENERGY - POTENTIAL.value(path["x"], path["y"]), 0.0))
+    np.testing.assert_allclose(np.hypot(*velocity), expected, atol=2e-3)
     assert float(path["t"][-1]) == exit_orbit.period
 
 
 def test_codes_say_what_they_mean() -> None:
-    assert dataset("outcomes")["fate"].attrs["codes"].startswith("0: bounded; -1: forbidden")
-    assert dataset("outcomes").sizes == {"orbit": 50}
+    outcomes = result_of("outcomes").to_xarray()
+    assert outcomes["fate"].attrs["codes"].startswith("0: bounded; -1: forbidden")
+    assert outcomes.sizes == {"orbit": 50}

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable
 from typing import Any
 
 from engine.jobs.manager import Jobs
+from tests.waiting import wait_until
 
 
 class Inbox:
@@ -27,13 +26,6 @@ class Inbox:
     def error(self, error: Exception) -> None:
         self.errors.append(error)
         self.done.set()
-
-
-def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.01)
-    assert condition()
 
 
 def wait_until_idle(jobs: Jobs, seconds: float = 20.0) -> None:

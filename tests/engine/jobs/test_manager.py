@@ -25,14 +25,13 @@ from engine import (
     integrate_orbit,
 )
 from engine.foundations.execution import Execution
-from engine.jobs import manager as manager_module
-from engine.jobs import map_priority, scheduler
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.jobs.map_jobs import map_job, regularity_job
+from engine.jobs.map_jobs import map_job
 from engine.jobs.orbit_semaphore import SMALL_JOB
 from tests.app.clock import Clock
-from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
+from tests.engine.jobs.inbox import Inbox, wait_until_idle
+from tests.waiting import wait_until
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
 SEARCH = Job(find_divergent_start, (CASES["I"], Plane.X_PX, 0.2, -0.2, 0.1, 500.0))
@@ -53,7 +52,7 @@ def compute_cached_map(jobs: Jobs) -> EscapeMap:
 def test_regularity_uses_the_cached_map() -> None:
     jobs, second = Jobs(), Inbox()
     first = compute_cached_map(jobs)
-    jobs.request(regularity_job(QUICK), second.result, second.error)
+    jobs.request(Job(compute_regularity, (map_job(QUICK),)), second.result, second.error)
     assert second.done.wait(30)
     expected = compute_regularity(first)
     np.testing.assert_array_equal(second.results[-1].character, expected.character)
@@ -155,7 +154,7 @@ def test_stop_ends_all_jobs_without_callbacks() -> None:
 
 def test_making_a_job_computes_nothing() -> None:
     potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.3579)))
-    assert regularity_job(MapSpec(potential, Plane.X_PX, 0.1)).orbits_held == 224 * 224
+    assert Job(compute_regularity, (map_job(MapSpec(potential, Plane.X_PX, 0.1)),)).orbits_held == 224 * 224
     assert set(vars(potential)) == {field.name for field in fields(Potential)}
 
 
@@ -204,12 +203,12 @@ def test_all_pages_of_an_account_share_a_turn(queue: Queue) -> None:
     jobs, begun, end, order = Jobs(threads=2), threading.Event(), threading.Event(), list[str]()
     jobs.request(Job(wait_for, (begun, end), queue=queue), Inbox().result, Inbox().error)
     assert begun.wait(30)
-    queued, inboxes = jobs._limited_calls if queue is Queue.LIMITED else jobs._compilations, list[Inbox]()
+    inboxes = list[Inbox]()
     for account, client in (("crowd", 1), ("crowd", 2), ("crowd", 3), ("other", 4)):
         inboxes.append(Inbox())
         job = Job(order.append, (f"{account} {client}",), queue=queue)
         jobs.request(job, inboxes[-1].result, inboxes[-1].error, client=client, account=account)
-        wait_until(lambda: queued.pending_calls == len(inboxes))
+        wait_until(lambda: jobs.stats().calls_waiting == len(inboxes))
     end.set()
     assert all(inbox.done.wait(30) for inbox in inboxes)
     assert order == ["crowd 1", "other 4", "crowd 2", "crowd 3"]
@@ -228,7 +227,8 @@ def test_first_frames_are_computed_while_background_is_paused(paused: Jobs) -> N
     jobs, inbox = paused, Inbox()
     jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
     assert inbox.first.wait(30)
-    assert not inbox.done.wait(0.5)
+    wait_until(lambda: jobs.stats().calls_waiting > 0)
+    assert not inbox.done.is_set()
     jobs.pause_background(False)
     assert inbox.done.wait(60)
 
@@ -242,14 +242,6 @@ def test_cancelled_map_ends_while_background_is_paused(paused: Jobs) -> None:
     assert jobs.stats().calls_waiting == 0
 
 
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    made = Clock()
-    for module in (manager_module, map_priority, scheduler):
-        monkeypatch.setattr(module, "time", made)
-    return made
-
-
 def show_a_frame(clock: Clock, waits: int, *, execution: Execution, on_frame: Callable[[Any], None]) -> str:
     """A map that needs 2 s of a processor until its first frame, has to wait for it, and takes long afterwards."""
     clock.compute(1)
@@ -261,8 +253,9 @@ def show_a_frame(clock: Clock, waits: int, *, execution: Execution, on_frame: Ca
     return "map"
 
 
-def test_the_wait_for_a_first_frame_is_measured_without_its_own_computation(clock: Clock) -> None:
-    jobs, inbox = Jobs(threads=1), Inbox()
+def test_the_wait_for_a_first_frame_is_measured_without_its_own_computation() -> None:
+    clock = Clock()
+    jobs, inbox = Jobs(threads=1, clock=clock), Inbox()
     jobs.request(Job(show_a_frame, (clock, 3), queue=Queue.FIRST_FRAME), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     wait_until_idle(jobs)
@@ -270,16 +263,18 @@ def test_the_wait_for_a_first_frame_is_measured_without_its_own_computation(cloc
     assert jobs.take_first_frame_wait() == 0.0
 
 
-def test_only_maps_have_a_first_frame(clock: Clock) -> None:
-    jobs, inbox = Jobs(threads=1), Inbox()
+def test_only_maps_have_a_first_frame() -> None:
+    clock = Clock()
+    jobs, inbox = Jobs(threads=1, clock=clock), Inbox()
     jobs.request(Job(show_a_frame, (clock, 3)), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     wait_until_idle(jobs)
     assert (inbox.errors, jobs.take_first_frame_wait()) == ([], 0.0)
 
 
-def test_maps_that_wait_for_a_thread_count(clock: Clock) -> None:
-    jobs, begun, end, inbox = Jobs(threads=1), threading.Event(), threading.Event(), Inbox()
+def test_maps_that_wait_for_a_thread_count() -> None:
+    clock = Clock()
+    jobs, begun, end, inbox = Jobs(threads=1, clock=clock), threading.Event(), threading.Event(), Inbox()
     jobs.request(Job(wait_for, (begun, end), queue=Queue.LONG_CALL), Inbox().result, Inbox().error)
     assert begun.wait(30)
     jobs.request(map_job(QUICK), inbox.result, inbox.error)
@@ -291,8 +286,14 @@ def test_maps_that_wait_for_a_thread_count(clock: Clock) -> None:
     assert jobs.take_first_frame_wait() == 4.0
 
 
-def test_large_maps_that_wait_for_each_other_do_not_count(clock: Clock) -> None:
-    jobs, begun, end, inbox = Jobs(threads=1, most_orbits=2 * SMALL_JOB), threading.Event(), threading.Event(), Inbox()
+def test_large_maps_that_wait_for_each_other_do_not_count() -> None:
+    clock = Clock()
+    jobs, begun, end, inbox = (
+        Jobs(threads=1, most_orbits=2 * SMALL_JOB, clock=clock),
+        threading.Event(),
+        threading.Event(),
+        Inbox(),
+    )
     jobs.request(Job(wait_for, (begun, end), orbits=2 * SMALL_JOB), Inbox().result, Inbox().error)
     assert begun.wait(30)
     jobs.request(Job(show_a_frame, (clock, 3), queue=Queue.FIRST_FRAME, orbits=2 * SMALL_JOB), inbox.result, inbox.error)

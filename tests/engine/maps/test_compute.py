@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
-from engine import CASES, Fate, MapSpec, Plane, compute_map, compute_trust
+from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map
+from engine.maps.compute import LARGEST_RUN
+from engine.maps.result import PIXEL_ARRAYS
+from engine.maps.row_blocks import BlockStack
+from engine.maps.stages import run_stages
 
 SPECS = [
     MapSpec(CASES["III"], Plane.X_PX, 0.4, (30, 31), t_max=300.0),
@@ -16,33 +21,53 @@ SPECS = [
 
 
 @pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.plane.title)
-def test_map_computed_in_blocks_is_bit_identical(spec: MapSpec, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = compute_map(spec)
-    monkeypatch.setattr("engine.maps.compute.LARGEST_RUN", 150)
-    monkeypatch.setattr("engine.maps.stages.LONGEST_PAUSE", 0.0)
+def test_map_computed_in_blocks_is_bit_identical(spec: MapSpec) -> None:
     shares: list[float] = []
-    in_blocks = compute_map(spec, lambda frame: shares.append(frame.progress))
+    work = BlockStack(spec.in_well_units(), 150)
+    run_stages(work, Execution(on_progress=shares.append))
+    in_blocks, whole = work.result().restored(spec), compute_map(spec)
     assert in_blocks.complete
-    for name in ("fate", "escape_time", "crossings", "energy_error", "outside", "evidence"):
-        np.testing.assert_array_equal(getattr(in_blocks, name), getattr(whole, name))
+    for name in PIXEL_ARRAYS:
+        np.testing.assert_array_equal(getattr(in_blocks, name), getattr(whole, name), err_msg=name)
     assert len(shares) >= 5
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
 
 
-def test_cancelled_map_holds_the_blocks_computed_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.maps.compute.LARGEST_RUN", 150)
+def test_cancelled_blocks_hold_what_is_computed_so_far() -> None:
     cancel = threading.Event()
-    result = compute_map(SPECS[0], lambda _frame: cancel.set(), cancel)
+    work = BlockStack(SPECS[0].in_well_units(), 150)
+    run_stages(work, Execution(cancel=cancel, on_progress=lambda _share: cancel.set()))
+    result = work.result()
     assert not result.complete
     assert np.any(result.fate >= 1)
     assert np.any(result.fate == Fate.NOT_COMPUTED)
 
 
-def test_map_with_trust() -> None:
-    spec = MapSpec(CASES["II"], Plane.X_PX, 0.2, (40, 40), t_max=500.0)
-    whole = compute_map(spec, with_trust=True)
-    np.testing.assert_array_equal(whole.trust, compute_trust(compute_map(spec)).trust)
-    dataset = whole.to_xarray()
-    np.testing.assert_array_equal(dataset["trust"], whole.trust)
-    assert "3: doubtful" in dataset["trust"].attrs["codes"]
+def test_a_large_map_is_computed_in_blocks_which_keep_no_states() -> None:
+    columns = 1024
+    rows = LARGEST_RUN // columns + 1
+    # All starts are forbidden, which takes no time.
+    large = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.4, (columns, rows), (5.0, 6.0, 5.0, 6.0)))
+    assert large.complete
+    assert large.batch is None
+
+
+def test_frames_cancellation_and_executor_may_be_given_by_position() -> None:
+    frames: list[EscapeMap] = []
+    cancel = threading.Event()
+    cancel.set()
+    with ThreadPoolExecutor(1) as pool:
+        assert compute_map(SPECS[0], frames.append, None, pool).complete
+        assert frames[-1].complete
+        assert not compute_map(SPECS[0], None, cancel, pool).complete
+
+
+def test_what_is_given_beside_an_execution_replaces_its_fields() -> None:
+    cancelled = threading.Event()
+    cancelled.set()
+    shares: list[float] = []
+    result = compute_map(SPECS[0], cancel=cancelled, execution=Execution(on_progress=shares.append))
+    assert not result.complete
+    assert compute_map(SPECS[0], execution=Execution(on_progress=shares.append)).complete
+    assert shares[-1] == 1.0

@@ -20,7 +20,6 @@ from engine import (
     compute_origin_fates,
     compute_regularity,
     compute_trust,
-    compute_uncertainty_exponent,
 )
 from engine.maps.parameter_map import find_lines
 from tests.engine.slices.test_parameter_family import THIRD_EXIT
@@ -120,13 +119,3 @@ def test_a_value_without_a_system_has_forbidden_starts() -> None:
     assert found.complete
     assert np.all(found.fate[found.ordinate < 0.01] == Fate.FORBIDDEN)
     assert np.any(found.fate[found.ordinate > 0.01] > Fate.FORBIDDEN)
-
-
-def test_an_axis_of_another_system_is_refused() -> None:
-    with pytest.raises(ValueError, match="its parameter is one of another system"):
-        MapSpec(CASES["II"], SPEC.plane, 0.2)
-
-
-def test_pairs_of_starts_in_two_systems_are_refused() -> None:
-    with pytest.raises(ValueError, match="must be on a slice of one potential"):
-        compute_uncertainty_exponent(SPEC)

@@ -7,7 +7,6 @@ import pytest
 
 from engine import (
     CASES,
-    CHAOS_THRESHOLD,
     Coordinate,
     Direction,
     EscapeMap,
@@ -24,7 +23,7 @@ from engine import (
     start_states,
 )
 from engine.foundations.execution import Execution
-from engine.propagation.fates import is_chaotic
+from engine.propagation.fates import CHAOS_THRESHOLD, is_chaotic
 
 
 def map_and_regularity(name: str, energy: float, side: int = 9, t_max: float = 1e4) -> tuple[EscapeMap, RegularityMap]:

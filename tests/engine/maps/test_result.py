@@ -2,8 +2,6 @@ from __future__ import annotations
 
 import itertools
 import threading
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -161,12 +159,6 @@ def test_resuming_does_not_change_the_earlier_map() -> None:
     np.testing.assert_array_equal(short.batch.t, before[1])
 
 
-@pytest.mark.parametrize("changed", [{"resolution": (71, 66)}, {"energy": 0.36}, {"t_max": 299.0}], ids=str)
-def test_resuming_another_map_raises(whole: EscapeMap, changed: dict[str, Any]) -> None:
-    with pytest.raises(ValueError, match="resume"):
-        compute_map(replace(SPEC, **changed), resume=whole)
-
-
 @pytest.fixture(scope="module")
 def starts(whole: EscapeMap) -> np.ndarray:
     """Interior starts of the map, in pixel order."""
@@ -201,23 +193,6 @@ def test_cancelled_orbits_stay_undecided(starts: np.ndarray) -> None:
 
 
 # Invalid arguments.
-
-
-@pytest.mark.parametrize(
-    ("changed", "named"),
-    [
-        ({"energy": np.nan}, "energy=nan"),
-        ({"states": [[0.0, 0.0, 0.0]]}, r"states of shape \(1, 3\)"),
-        ({"states": [[0, 0, 0, np.sqrt(0.4)], [np.nan, 0, 0, 0]]}, "states: row 1 .* not finite"),
-        ({"states": [[0, 0, 0, np.sqrt(0.4)], [0, 0, 0, 0.1]]}, r"states: row 1 has energy 0\.005\d*; .* energy=0\.2"),
-        ({"states": [[0, 0, 0, np.sqrt(0.4 + 4e-9)]]}, r"states: row 0 has energy 0\.2"),
-        ({"t_max": 0.0}, r"t_max=0\.0"),
-    ],
-)
-def test_error_names_the_invalid_argument(changed: dict, named: str) -> None:
-    arguments = {"energy": 0.2, "states": [[0.0, 0.0, 0.0, np.sqrt(0.4)]], "t_max": 10.0} | changed
-    with pytest.raises(ValueError, match=named):
-        classify_orbits(CASES["I"], **arguments)
 
 
 # Export.

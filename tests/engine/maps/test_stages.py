@@ -48,24 +48,20 @@ class Counting:
         return Count(self.done, self.done == 6)
 
 
-@pytest.fixture
-def _no_pauses(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.maps.stages.LONGEST_PAUSE", 0.0)
+def no_pause(_elapsed: float) -> float:
+    return 0.0
 
 
-@pytest.mark.usefixtures("_no_pauses")
 def test_frames_begin_after_the_first_stage_and_end_with_one_complete_frame() -> None:
     frames: list[Count] = []
-    assert run_to_frame(Counting(), Execution(), frames.append) == Count(6, complete=True)
+    assert run_to_frame(Counting(), Execution(), frames.append, no_pause) == Count(6, complete=True)
     assert [frame.done for frame in frames] == [2, 3, 4, 4, 5, 6]
     assert [frame.complete for frame in frames] == [False] * 5 + [True]
 
 
-def test_between_frames_is_a_pause(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.maps.stages.SHORTEST_PAUSE", 60.0)
-    monkeypatch.setattr("engine.maps.stages.LONGEST_PAUSE", 60.0)
+def test_between_frames_is_a_pause() -> None:
     frames: list[Count] = []
-    run_stages(Counting(), Execution(), frames.append)
+    run_stages(Counting(), Execution(), frames.append, lambda _elapsed: 60.0)
     assert [frame.done for frame in frames] == [2]
 
 
@@ -75,10 +71,9 @@ def test_progress_is_reported_whenever_something_changes() -> None:
     assert [round(6 * share) for share in shares] == [1, 2, 2, 3, 4, 4, 5, 6, 6]
 
 
-@pytest.mark.usefixtures("_no_pauses")
 def test_no_stage_begins_after_a_cancellation() -> None:
     cancel, work = threading.Event(), Counting()
-    found = run_to_frame(work, Execution(cancel=cancel), lambda _frame: cancel.set())
+    found = run_to_frame(work, Execution(cancel=cancel), lambda _frame: cancel.set(), no_pause)
     assert work.finished == [0]
     assert found == Count(2, complete=False)
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, ParameterAxis, Potential, System
-from engine.slices import parameter_family
-from engine.slices.parameter_family import ManyExitsError, ParameterFamily, find_members
+from engine.slices.parameter_family import ManyExitsError, ParameterFamily
 from engine.systems.known_potentials import POTENTIALS
 
 EPSILON = ParameterAxis("epsilon", 0.5, 2.0, System("III"))
@@ -49,8 +48,6 @@ def test_a_continued_potential_is_kept_apart_from_an_equal_one() -> None:
     assert continued.in_well_units != Potential(continued.name, continued.terms).in_well_units
 
 
-def test_potentials_along_a_whole_axis_are_found_or_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    find_members(EPSILON)
-    monkeypatch.setattr(parameter_family, "_MOST_FOUND", 3)
+def test_an_axis_along_which_exits_change_too_often_is_refused() -> None:
     with pytest.raises(ManyExitsError, match="choose a smaller range"):
-        find_members(THIRD_EXIT)
+        ParameterFamily(THIRD_EXIT, most_found=3)

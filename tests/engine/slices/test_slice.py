@@ -1,8 +1,5 @@
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import example, given
@@ -14,23 +11,20 @@ from engine import (
     Coordinate,
     Direction,
     MapSpec,
-    ParameterAxis,
     Plane,
     Potential,
     Slice,
-    System,
     Window,
     compute_map,
-    default_window,
     start_states,
-    trace_zero_velocity_curve,
 )
 from engine.exits.interior import find_outside_channels
+from engine.slices.default_window import default_window
+from engine.slices.limiting_curves import trace_zero_velocity_curve
 from tests.peers.exit_lines import exit_lines
 from tests.peers.random_systems import random_well
 
 PLANES_OF_ONE_ENERGY = [Plane.X_Y, Plane.X_PX]
-ALONG_EPSILON = Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))
 
 
 @pytest.mark.parametrize("plane", PLANES_OF_ONE_ENERGY)
@@ -197,42 +191,6 @@ def test_mirror_images_of_any_slice_are_reflected_states(shape: tuple[int, int],
         exists = np.isfinite(states).all(axis=1)
         others = exists & np.any(states != reflected, axis=1)
         assert not np.any(np.all(states[exists][:, None] == reflected[others], axis=2))
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"ordinate": Coordinate.X}, "at most once"),
-        ({"fixed": ((Coordinate.H, 0.1),)}, "at most once"),
-        ({"abscissa": Coordinate.PX, "ordinate": Coordinate.PY}, "at most once"),
-        ({"ordinate": Coordinate.THETA, "solved": Coordinate.PX}, "must not be set by an axis or an angle"),
-        ({"ordinate": Coordinate.THETA, "fixed": ((Coordinate.PX, 0.1),)}, "px, py and another angle must be left out"),
-        ({"ordinate": Direction("u", x=2.0)}, "must not be parallel"),
-        ({"ordinate": Coordinate.THETA, "sign": -1}, "must be 1"),
-        ({"solved": Coordinate.Y}, "must be px, py or v"),
-        ({"sign": 2}, "must be 1 or -1"),
-        ({"fixed": ((Coordinate.PX, np.inf),)}, "must be a finite number"),
-    ],
-)
-def test_a_slice_that_is_none_is_refused(change: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        Slice(**{"abscissa": Coordinate.X, "ordinate": Coordinate.Y} | change)
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: ParameterAxis("mass", 0.5, 2.0, System("I")), "must be one of the system, omega_1, omega_2, epsilon"),
-        (lambda: ParameterAxis("epsilon", 2.0, 0.5, System("I")), "the lower end must be below the upper end"),
-        (lambda: ParameterAxis("epsilon", -1.0, 0.5, System("I")), "must be between 0.01 and 100"),
-        (lambda: Direction("x", x=1.0), "must be an identifier and none of a coordinate"),
-        (lambda: Direction("u"), "must not be 0"),
-        (lambda: Slice(ALONG_EPSILON.ordinate, ALONG_EPSILON.ordinate), "must be different ones"),
-    ],
-)
-def test_an_axis_that_is_none_is_refused(make: Callable[[], object], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        make()
 
 
 @given(slices())

@@ -42,17 +42,3 @@ def test_a_named_slice_is_written_as_its_name(plane: Plane) -> None:
 )
 def test_texts_are_understood(axes: str, held: str, plane: Slice) -> None:
     assert read_slice(axes, held, System("I")) == plane
-
-
-@pytest.mark.parametrize(
-    ("axes", "held", "message"),
-    [
-        ("x", "", "axes='x': must be one of x_y, x_px, x_h, y_py, tangential, or two axes such as x,py"),
-        ("x,z", "", "axes='z': must be one of x, y, px, py, theta, beta, h, omega_1, omega_2, epsilon"),
-        ("x,epsilon=a:2", "", "'a' must be a number"),
-        ("x,y", "z=1", "fix='z=1': must be one of x, y, px, py"),
-    ],
-)
-def test_other_texts_are_refused_with_what_is_legal(axes: str, held: str, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        read_slice(axes, held, System("I"))

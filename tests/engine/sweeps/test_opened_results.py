@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import engine
 from engine import (
     CASES,
     POTENTIALS,
@@ -23,11 +26,13 @@ from engine import (
     Potential,
     Result,
     Slice,
+    Sweep,
     SweepSpec,
     System,
     classify_orbits,
     compute_basin_entropy,
-    compute_birkhoff_digits,
+    compute_flux,
+    compute_lagrangian_descriptor,
     compute_map,
     compute_origin_fates,
     compute_regularity,
@@ -38,14 +43,18 @@ from engine import (
     compute_uncertainty_exponent,
     compute_wada_test,
     find_divergent_start,
+    find_lyapunov_orbits,
+    find_stable_manifolds,
     fit_decay_laws,
     integrate_orbit,
+    judge_orbit,
     open_result,
     parse_formula,
     review_potential,
     sample_orbits,
     sample_starts,
 )
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 
 C = Coordinate
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
@@ -67,16 +76,34 @@ RESULTS: dict[str, Callable[[], Result | None]] = {
     "regularity": lambda: compute_regularity(compute_map(replace(SPEC, t_max=1200.0))),
     "trust": lambda: compute_trust(compute_map(SPEC)),
     "origins": lambda: compute_origin_fates(SPEC),
-    "map with trust": lambda: compute_map(SPEC, with_trust=True),
+    "descriptors": lambda: compute_lagrangian_descriptor(compute_map(SPEC), duration=2.0),
     "escaping orbit": lambda: integrate_orbit(TYPED, STATE, t_max=50.0),
     "bounded orbit": lambda: integrate_orbit(III, (0.05, 0.0, 0.0, 0.1), t_max=50.0),
     "sampled orbits": lambda: sample_orbits(III, sample_starts(III, 0.36, 5), [0.0, 2.0, 9.0]),
+    "sampled orbits at own times": lambda: sample_orbits(III, sample_starts(III, 0.36, 2), [[0.0, 2.0], [1.0, 9.0]]),
     "outcomes": lambda: classify_orbits(III, 0.36, sample_starts(III, 0.36, 20), t_max=50.0),
     "separation": lambda: compute_separation(III, STATE, (0.1, 0.0, 0.05, 0.60001), 10.0),
     "digits": lambda: compute_birkhoff_digits(CASES["I"], (0.1, 0.0, 0.05, 0.3), 2e3),
     "divergent start": lambda: find_divergent_start(III, Plane.X_PX, 0.45, 0.1, 0.0, 50.0),
     "entropy": lambda: compute_basin_entropy(compute_map(SPEC)),
     "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
+    "Wada test": lambda: compute_wada_test(compute_map(SPEC)),
+    "Wada test of an array": lambda: compute_wada_test(np.zeros((3, 3), int)),
+    "statistics": lambda: compute_statistics(compute_map(SPEC), (-0.3, 0.3, -0.3, 0.3)),
+    "statistics without escapes": lambda: compute_statistics(compute_map(replace(SPEC, energy=0.1))),
+    "decay laws": lambda: fit_decay_laws(compute_map(replace(SPEC, resolution=(40, 40)))),
+    "no decay laws": lambda: fit_decay_laws(compute_map(SPEC)),
+    "flux": lambda: compute_flux(III, 0.36),
+    "no flux": lambda: compute_flux(III, 0.1),
+    "potential": lambda: TYPED,
+    "review": lambda: review_potential(III),
+    "review with a refusal": lambda: review_potential(parse_formula("x⁴ + y⁴")),
+    "Lyapunov orbit": lambda: find_lyapunov_orbits(III, 0.36)[1],
+    "Lyapunov orbit of a rotating system": lambda: find_lyapunov_orbits(POTENTIALS["Hill"], -2.1)[0],
+    "manifolds": lambda: find_stable_manifolds(CASES["I"], 0.19, images=1),
+    "no manifolds": lambda: find_stable_manifolds(CASES["I"], 0.1, images=1),
+    "verdict": lambda: judge_orbit(integrate_orbit(III, STATE, t_max=50.0)),
+    "verdict on a bounded orbit": lambda: judge_orbit(integrate_orbit(III, (0.05, 0.0, 0.0, 0.1), t_max=50.0)),
 }
 
 PARAMETER = ParameterAxis("epsilon", 0.5, 2.0, System("I"))
@@ -89,7 +116,7 @@ SWEEPS = {
 
 
 def to_netcdf(result: Result, folder: Path) -> Path:
-    result.to_xarray().to_netcdf(folder / "result.nc", engine="h5netcdf")
+    result.save(folder / "result.nc")
     return folder / "result.nc"
 
 
@@ -102,7 +129,7 @@ WRITERS: dict[str, Callable[[Result, Path], Path]] = {"NetCDF": to_netcdf, "Zarr
 
 
 def assert_equal(found: Any, wanted: Any) -> None:
-    """Equal to the last bit, but for the integration state, which files do not hold."""
+    """Equal to the last bit, but for the integration state, which files do not hold; datasets tell how results were made."""
     assert type(found) is type(wanted)
     for field in fields(wanted):
         one, other = getattr(found, field.name), getattr(wanted, field.name)
@@ -110,7 +137,10 @@ def assert_equal(found: Any, wanted: Any) -> None:
             np.testing.assert_array_equal(one, other, err_msg=field.name)
             assert one.dtype == other.dtype
             assert not one.flags.writeable
-        elif field.name != "batch":
+        elif field.name == "arcs":
+            for each, arc in zip(one, other, strict=True):
+                assert_equal(each, arc)
+        elif field.name not in ("batch", "made_by"):
             assert type(one) is type(other), field.name
             assert one == other or (one != one and other != other), field.name
 
@@ -134,12 +164,63 @@ def test_map_of_a_random_potential_comes_back(seed: int, tmp_path: Path) -> None
     assert_equal(open_result(to_netcdf(wanted, tmp_path)), wanted)
 
 
+@functools.cache
+def computed(name: str) -> Result:
+    result = RESULTS[name]()
+    assert result is not None
+    return result
+
+
 @pytest.mark.parametrize("how", WRITERS)
 @pytest.mark.parametrize("name", RESULTS)
-def test_result_comes_back(name: str, how: str, tmp_path: Path) -> None:
-    wanted = RESULTS[name]()
-    assert wanted is not None
-    assert_equal(open_result(WRITERS[how](wanted, tmp_path)), wanted)
+def test_result_comes_back_and_can_be_written_again(name: str, how: str, tmp_path: Path) -> None:
+    wanted = computed(name)
+    found = open_result(WRITERS[how](wanted, tmp_path))
+    assert_equal(found, wanted)
+    xr.testing.assert_identical(found.to_xarray(), wanted.to_xarray())
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_files_of_netcdf_3_are_read_as_the_base_installation_writes_them(name: str, tmp_path: Path) -> None:
+    wanted = computed(name)
+    wanted.to_xarray().to_netcdf(tmp_path / "result.nc", engine="scipy")
+    found = open_result(tmp_path / "result.nc")
+    assert type(found) is type(wanted)
+    xr.testing.assert_equal(found.to_xarray(), wanted.to_xarray())
+
+
+def test_every_kind_of_result_is_tested() -> None:
+    kinds = {type(computed(name)) for name in RESULTS} | {EscapeMap, Sweep}
+    of_engine = (getattr(engine, name) for name in engine.__all__)
+    results = {each for each in of_engine if inspect.isclass(each) and issubclass(each, Result)} - {Result}
+    assert {kind.__name__ for kind in results - kinds} == set()
+
+
+@pytest.mark.parametrize("name", [name for name in RESULTS if name != "Wada test of an array"])
+def test_a_file_says_with_which_version_and_of_which_potential_it_was_made(name: str) -> None:
+    attributes = computed(name).to_xarray().attrs
+    wanted = ["version", "potential", "terms", "rotation", "centres", "escape_radius", "origin"]
+    assert [each for each in wanted if each not in attributes] == []
+
+
+@pytest.mark.parametrize("name", ["Wada test", "statistics", "decay laws", "entropy", "exponent", "outcomes"])
+def test_a_file_of_a_measure_says_its_energy_and_its_time(name: str) -> None:
+    attributes = computed(name).to_xarray().attrs
+    assert (attributes["energy"], attributes["t_max"]) == (0.36, 50.0 if name == "outcomes" else 200.0)
+    assert "tolerance" in attributes["integrator"]
+
+
+def test_common_times_are_a_dimension() -> None:
+    dataset = computed("sampled orbits").to_xarray()
+    assert dict(dataset.sizes) == {"orbit": 5, "t": 3}
+    np.testing.assert_array_equal(dataset.sel(t=2.0)["x"], computed("sampled orbits").x[:, 1])  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("name", ["result.csv", "result"])
+def test_a_file_of_another_ending_is_not_written(name: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"path=.*result.*: must end in \.nc"):
+        computed("potential").save(tmp_path / name)
+    assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("how", WRITERS)
@@ -215,9 +296,9 @@ def test_a_potential_whose_terms_are_not_understood_is_refused(tmp_path: Path) -
 
 
 def test_a_file_of_another_result_is_named(tmp_path: Path) -> None:
-    path = to_netcdf(review_potential(III), tmp_path)
-    with pytest.raises(ValueError, match="holds PotentialReview; must hold"):
-        open_result(path)
+    xr.Dataset({"a": 1}, attrs={"result": "Painting"}).to_netcdf(tmp_path / "painting.nc")
+    with pytest.raises(ValueError, match="holds Painting; must hold"):
+        open_result(tmp_path / "painting.nc")
     xr.Dataset({"a": 1}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     with pytest.raises(ValueError, match="holds no result"):
         open_result(tmp_path / "other.nc")

@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, Execution, MapSpec, Plane, SweepPlan, SweepSpec, compute_sweep, plan_sweep
+from engine import CASES, Execution, MapSpec, Plane, SweepSpec, compute_sweep, plan_sweep
+from engine.sweeps.plan import SweepPlan
 
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.3, 0.5), (12, 10), t_max=300.0)
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from engine import CASES, POTENTIALS, System, parse_formula, review_potential
+from engine import CASES, POTENTIALS, ParameterAxis, System, parse_formula, review_potential
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
-
-HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 
 
 def test_parameters_change_the_potential_and_its_energies() -> None:
@@ -34,12 +32,6 @@ def test_a_typed_system_keeps_its_letters_and_rotation_when_it_is_edited() -> No
     assert system.as_typed == system
 
 
-@pytest.mark.parametrize("system", [System(TYPED, "x y %"), System(TYPED), System("I", parameters={"omega_1": 1e3})])
-def test_an_invalid_system_has_no_potential(system: System) -> None:
-    with pytest.raises(ValueError, match=r"formula|omega_1"):
-        _ = system.potential
-
-
 @pytest.mark.parametrize("name", POTENTIALS)
 def test_the_slider_contains_the_escape_energy_below_the_initial_energy(name: str) -> None:
     energies, escape = review_system(System(name)).energies, POTENTIALS[name].escape_energy
@@ -62,6 +54,26 @@ def test_letters_are_parameters_beside_those_of_the_well() -> None:
     assert system.potential == parse_formula("½r² − 1.5 x y² + x³").with_parameters(omega_1=1.1)
     assert system.title == "Typed potential with ω1 = 1.1, a = 1.5"
     assert hash(system) == hash(System(TYPED, system.formula, {"omega_1": 1.1, "a": 1.5}))
+
+
+def test_the_system_of_a_formula_has_its_letters_and_its_rotation() -> None:
+    system = System.from_formula("½r² − a x y²", a=1.5, rotation=0.1)
+    assert system == System(TYPED, "½r² − a x y²", {"a": 1.5, "rotation": 0.1})
+    assert system.potential.rotation == 0.1
+
+
+@pytest.mark.parametrize(
+    "system", [System.from_formula("½r² − a x y²", a=1.5), System("Earth-Moon"), System("I", "", {"epsilon": 2.0})]
+)
+def test_a_potential_knows_the_system_that_it_is_of(system: System) -> None:
+    assert system.potential.system == system
+    assert ParameterAxis(system.parameter_names[-1], 0.5, 2.0, system.potential).system == system
+
+
+def test_a_changed_potential_is_not_of_the_system() -> None:
+    potential = CASES["I"]
+    changed = potential.with_parameters(epsilon=2.0), potential.in_rotating_frame(0.1), potential.with_outcomes((), 5.0)
+    assert [each.system for each in changed] == [None, None, None]
 
 
 @pytest.mark.parametrize("parameters", [{"b": 2.0}, {"a": float("nan")}, {"a": 1e10}])

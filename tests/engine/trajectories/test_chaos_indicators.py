@@ -66,12 +66,6 @@ def test_cancelled_digits_raise() -> None:
         compute_birkhoff_digits(CASES["II"], SEA, 1e5, execution=Execution(cancel=cancel))
 
 
-@pytest.mark.parametrize(("state", "t_max", "named"), [([0.0, 0.0, np.nan, 0.1], 1e4, "state="), (SEA, 0.0, "t_max=")])
-def test_invalid_parameters_are_named(state: list[float], t_max: float, named: str) -> None:
-    with pytest.raises(ValueError, match=named):
-        compute_birkhoff_digits(CASES["II"], state, t_max)
-
-
 # Conclusions.
 
 

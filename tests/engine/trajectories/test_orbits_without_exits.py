@@ -8,19 +8,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import (
-    CASES,
-    POTENTIALS,
-    Fate,
-    Orbit,
-    compute_birkhoff_digits,
-    evaluate_indicators,
-    find_lyapunov_orbits,
-    integrate_orbit,
-    judge_orbit,
-    open_result,
-    parse_formula,
-)
+from engine import CASES, POTENTIALS, Fate, Orbit, find_lyapunov_orbits, integrate_orbit, judge_orbit, open_result, parse_formula
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
+from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import compute_orbit_curves
 
 HILL = POTENTIALS["Hill"]

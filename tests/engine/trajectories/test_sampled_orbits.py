@@ -72,17 +72,3 @@ def test_a_cancelled_call_ends() -> None:
     cancel.set()
     with pytest.raises(CancelledError):
         sample_orbits(CASES["I"], starts_of("I"), TIMES, execution=Execution(cancel=cancel))
-
-
-@pytest.mark.parametrize(
-    ("states", "times", "sentence"),
-    [
-        (np.zeros(4), TIMES, r"states=.*: must be \(n, 4\) finite numbers"),
-        (np.zeros((2, 4)), [1.0, 0.5], r"times of shape \(2,\): must be ascending from 0, \(m,\) or \(2, m\)"),
-        (np.zeros((2, 4)), np.zeros((3, 2)), r"times of shape \(3, 2\): must be ascending"),
-        (np.zeros((2, 4)), [0.0], r"times: the last one=0.0: must be above 0"),
-    ],
-)
-def test_wrong_arguments_are_named(states: np.ndarray, times: object, sentence: str) -> None:
-    with pytest.raises(ValueError, match=sentence):
-        sample_orbits(CASES["I"], states, times)

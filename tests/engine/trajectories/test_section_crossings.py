@@ -11,7 +11,6 @@ from engine import (
     Fate,
     Plane,
     Potential,
-    Verdict,
     classify_orbits,
     integrate_orbit,
     judge_orbit,
@@ -19,6 +18,7 @@ from engine import (
     start_states,
 )
 from engine.propagation.section_points import find_section_points
+from engine.trajectories.chaos_indicators import Verdict
 
 POTENTIAL, ENERGY = CASES["III"], 0.24
 # An energy of each case at which some orbits escape and others are regular.

@@ -40,9 +40,3 @@ def test_a_cancelled_comparison_raises() -> None:
     cancel.set()
     with pytest.raises(CancelledError):
         compute_separation(CASES["I"], state, state, 1e3, execution=Execution(cancel=cancel))
-
-
-@pytest.mark.parametrize(("second", "t_end", "named"), [([0.0, 0.0, np.nan, 1.0], 10.0, "second="), ([0.0] * 4, -1.0, "t_end=")])
-def test_invalid_parameters_are_named(second: list[float], t_end: float, named: str) -> None:
-    with pytest.raises(ValueError, match=named):
-        compute_separation(CASES["I"], [0.0, 0.0, 0.0, 0.5], second, t_end)

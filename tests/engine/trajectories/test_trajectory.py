@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +13,6 @@ from engine import (
     Fate,
     Orbit,
     Plane,
-    Verdict,
     classify_orbits,
     integrate_orbit,
     judge_orbit,
@@ -21,6 +20,8 @@ from engine import (
     start_states,
 )
 from engine.propagation.deviation_vectors import DEVIATION_VECTORS
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
+from engine.trajectories.chaos_indicators import Verdict
 from tests.peers.dop853 import equations, variational_equations
 from tests.peers.exit_lines import exit_lines
 
@@ -146,38 +147,7 @@ def test_sali_and_the_lyapunov_exponent_agree_with_scipys_variational_equations(
     assert np.isnan(orbit.lyapunov_exponent[0])
 
 
-# Along the axis x = 0 of Case III the orbit is y = A sin t, A² = 2h, and deviations from the axis obey Mathieu's equation.
-def test_the_lyapunov_exponent_of_a_straight_line_orbit_agrees_with_mathieus_equation() -> None:
-    energy = 0.6
-
-    def mathieu(t: float, d: np.ndarray) -> list[float]:
-        return [d[1], -(1 - 4 * energy * np.sin(t) ** 2) * d[0]]
-
-    columns = [solve_ivp(mathieu, (0, np.pi), column, "DOP853", rtol=1e-12, atol=1e-12).y[:, -1] for column in np.eye(2)]
-    multiplier = np.abs(np.linalg.eigvals(np.column_stack(columns))).max()
-    orbit = integrate_orbit(CASES["III"], [0.0, 0.0, 0.0, np.sqrt(2 * energy)], 2000.0)
-    assert orbit.fate == Fate.BOUNDED
-    assert multiplier > 1.5
-    assert orbit.lyapunov_exponent[-1] == pytest.approx(np.log(multiplier) / np.pi, rel=3e-3)
-
-
 # Invalid parameters.
-
-
-@pytest.mark.parametrize(
-    "state",
-    [[0.0] * 5, [[0.0, 0.0, 0.0, 0.1]], [np.nan, 0, 0, 0], None],
-)
-def test_a_state_that_is_not_four_finite_numbers_raises(state: Any) -> None:
-    with pytest.raises(ValueError, match="state=") as error:
-        integrate_orbit(CASES["I"], state, 10.0)
-    assert repr(state) in str(error.value)
-
-
-@pytest.mark.parametrize("t_max", [0.0, np.nan, 1e9])
-def test_t_max_out_of_range_raises(t_max: float) -> None:
-    with pytest.raises(ValueError, match="t_max="):
-        integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 0.1], t_max)
 
 
 def test_an_orbit_of_a_far_too_high_energy_is_followed_without_exits() -> None:
@@ -213,3 +183,12 @@ def test_orbits_around_a_body_are_not_called_chaotic_for_the_steps_past_it() -> 
     bounded = [orbit for orbit in orbits if orbit.fate == Fate.BOUNDED]
     assert len(bounded) > 2
     assert all(judge_orbit(orbit).character is Verdict.REGULAR for orbit in bounded)
+
+
+def test_the_birkhoff_digits_of_an_orbit_are_those_of_its_start() -> None:
+    start = (0.1, 0.0, 0.0, 0.3)
+    orbit = integrate_orbit(CASES["II"], start, t_max=2000.0)
+    found, wanted = orbit.compute_birkhoff_digits(), compute_birkhoff_digits(CASES["II"], start, 2000.0)
+    np.testing.assert_array_equal(found.digits, wanted.digits)
+    with pytest.raises(ValueError, match="this orbit has no potential"):
+        replace(orbit, potential=None).compute_birkhoff_digits()

@@ -11,22 +11,16 @@ import pytest
 from engine import (
     CASES,
     EscapeMap,
-    Evidence,
     Fate,
     MapSpec,
     Plane,
-    Regularity,
     compute_map,
-    compute_origin_fates,
-    compute_regularity,
 )
 from plots.pictures import palette
 from plots.pictures.image_columns import (
-    character_column,
     difference_column,
     draw_over,
     map_columns,
-    passage_column,
 )
 from plots.pictures.palette import DIFFERENCES, OUTCOMES, PAPER
 from tests.disc import disc_map
@@ -62,34 +56,6 @@ def test_escaped_pixels_are_classified_by_crossings(escape_map: EscapeMap, cross
     assert {labels[code] for code in codes} == {label}
 
 
-def character_colour(character: Regularity) -> str:
-    return PAPER.character_entries[list(palette.CHARACTERS).index(character)].colour
-
-
-def character_colours(columns: dict) -> np.ndarray:
-    return np.array(PAPER.character_colours)[columns["character"][0]]
-
-
-def test_regular_and_chaotic_orbits_have_different_colours() -> None:
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=2000.0))
-    regularity = compute_regularity(whole)
-    colours = character_colours(character_column(whole, regularity))
-    for character in (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS):
-        assert character in regularity.character
-        assert set(colours[regularity.character == character]) == {character_colour(character)}
-    assert set(colours[whole.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
-
-
-def test_tori_are_regular() -> None:
-    whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.28, (41, 41), t_max=1e4))
-    colours = character_colours(map_columns(whole))
-    tori = whole.evidence == Evidence.QUASI_PERIODIC
-    assert tori.any()
-    assert set(colours[tori]) == {character_colour(Regularity.REGULAR)}
-    assert set(colours[whole.evidence == Evidence.ENCLOSED]) == {character_colour(Regularity.NOT_JUDGED)}
-    assert set(colours[whole.fate >= 1]) == {character_colour(Regularity.NOT_APPLICABLE)}
-
-
 def test_a_coarse_frame_fills_the_window() -> None:
     frames: list[EscapeMap] = []
     compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (120, 120), t_max=50.0), on_frame=frames.append)
@@ -101,25 +67,6 @@ def test_a_coarse_frame_fills_the_window() -> None:
     assert not np.any(shown == list(palette.OUTCOMES).index(Fate.NOT_COMPUTED))
     assert columns["x"][0] + columns["dw"][0] >= window.x_high
     assert columns["y"][0] + columns["dh"][0] >= window.ordinate_high
-
-
-def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:
-    origins = compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.3, (45, 45), t_max=200.0))
-    columns = passage_column(origins)
-    colours = np.array(PAPER.passage_colours)[columns["passage"][0]]
-    seen = 0
-    for origin in range(5):
-        for fate in range(5):
-            where = (origins.origin == origin) & (origins.fate == fate)
-            assert set(colours[where]) <= {PAPER.passage_colour(origin, fate)}
-            seen += int(where.sum())
-    assert seen == np.sum(origins.fate >= 0)
-    assert set(colours[origins.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
-    assert columns["origins"][0][:3] == [
-        "never entered: inside since −t_max",
-        "entered through channel 1",
-        "entered through channel 2",
-    ]
 
 
 def columns_of(

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, Plane, default_window, integrate_orbit, parse_formula, start_states
+from engine import CASES, Plane, integrate_orbit, parse_formula, start_states
+from engine.slices.default_window import default_window
 from plots.pictures.orbit_curves import (
     TRAIL,
     OrbitCurves,

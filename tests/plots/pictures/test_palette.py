@@ -7,9 +7,10 @@ import itertools
 import numpy as np
 import pytest
 
+from plots.layers.regularity import entries
+from plots.layers.trust import TONES
 from plots.pictures.palette import (
     DARK,
-    DOUBT,
     LIGHT,
     PALETTES,
     Palette,
@@ -35,7 +36,7 @@ def test_channels_crossing_classes_characters_and_orbits_have_no_colour_in_commo
         palette.channels,
         palette.ends[len(palette.channels) :],
         palette.classes,
-        palette.characters[1:],
+        [entry.colour for entry in entries(palette)[1:-1]],
         palette.orbits,
         (palette.bounded,),
     )
@@ -46,7 +47,7 @@ def test_channels_crossing_classes_characters_and_orbits_have_no_colour_in_commo
 @of_each_palette
 @for_each_vision
 def test_colours_of_one_kind_differ_from_each_other(palette: Palette, vision: str) -> None:
-    for kind in ([*palette.classes, palette.bounded], [*palette.characters, palette.bounded], palette.orbits):
+    for kind in ([*palette.classes, palette.bounded], [entry.colour for entry in entries(palette)], palette.orbits):
         assert closest(kind, vision) > CLEAR
 
 
@@ -74,7 +75,7 @@ def test_orbits_collisions_and_escape_are_visible_on_the_page(palette: Palette, 
 @of_each_palette
 def test_one_of_the_tones_of_doubtful_pixels_is_visible_on_any_colour(palette: Palette) -> None:
     for colour in (*palette.channels, *palette.classes, palette.bounded):
-        assert max(contrast(tone, colour) for tone in DOUBT) > 4.5
+        assert max(contrast(tone, colour) for tone in TONES) > 4.5
 
 
 @of_each_palette

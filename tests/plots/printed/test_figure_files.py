@@ -14,14 +14,13 @@ from engine import (
     EscapeMap,
     MapSpec,
     Plane,
-    Sweep,
     SweepSpec,
     compute_map,
     compute_sweep,
     integrate_orbit,
 )
 from engine.sweeps.measures import CURVES
-from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
+from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.palette import PAPER
 from plots.printed.figure_axes import MOST_PIXELS
 from plots.printed.figure_files import curves_figure_bytes, map_figure_bytes, orbits_figure_bytes
@@ -36,26 +35,23 @@ def escape_map() -> EscapeMap:
     return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.18, (20, 15), window=(-1.0, 1.4, -0.8, 0.8), t_max=200.0))
 
 
-@pytest.fixture(scope="module")
-def orbits() -> list[OrbitCurves]:
+def draw_orbits(format: FigureFormat, style: FigureStyle) -> bytes:
     states = ((0.1, 0.0, 0.05, 0.6), (0.1, 0.0, 0.05, 0.3))
-    return [compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], state, 100.0)) for state in states]
+    orbits = [compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], state, 100.0)) for state in states]
+    return orbits_figure_bytes(CASES["I"], orbits, PAPER, ["regular", "chaotic"], format, style)
 
 
-@pytest.fixture(scope="module")
-def curves() -> Sweep:
-    return compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures=CURVES))
+def draw_curves(format: FigureFormat, style: FigureStyle) -> bytes:
+    sweep = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures=CURVES))
+    return curves_figure_bytes(sweep, format, style)
 
 
-@pytest.fixture(params=["maps", *(pytest.param(name, marks=pytest.mark.slow) for name in ("orbits", "curves"))])
-def draw(request: pytest.FixtureRequest, escape_map: EscapeMap, orbits: list[OrbitCurves], curves: Sweep) -> Draw:
+@pytest.fixture(params=["maps", *(pytest.param(each, marks=pytest.mark.slow) for each in (draw_orbits, draw_curves))])
+def draw(request: pytest.FixtureRequest, escape_map: EscapeMap) -> Draw:
     """A function that draws one of the figures."""
-    drawers: dict[str, Draw] = {
-        "maps": lambda format, style: map_figure_bytes(escape_map, ["basins", "times"], PAPER, format, style),
-        "orbits": lambda format, style: orbits_figure_bytes(CASES["I"], orbits, PAPER, ["regular", "chaotic"], format, style),
-        "curves": lambda format, style: curves_figure_bytes(curves, format, style),
-    }
-    return drawers[request.param]
+    if callable(request.param):
+        return request.param  # type: ignore[no-any-return]
+    return lambda format, style: map_figure_bytes(escape_map, ["basins", "times"], PAPER, format, style)
 
 
 @pytest.mark.parametrize("format", FigureFormat)

@@ -26,10 +26,13 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
+from plots.layers.map_analyses import MapAnalyses
+from plots.layers.map_images import picture_pixels
+from plots.layers.regularity import entries as entries_of_regularity
+from plots.layers.table import TITLES
+from plots.layers.trust import TONES
 from plots.pictures.axis_labels import label_axis
-from plots.pictures.map_analyses import MapAnalyses
-from plots.pictures.map_images import TITLES, picture_pixels
-from plots.pictures.palette import DOUBT, PALETTES, PAPER, Palette
+from plots.pictures.palette import PALETTES, PAPER, Palette
 from plots.pictures.provenance import provenance_line
 from plots.pictures.time_scale import TimeScale
 from plots.printed.figure_axes import save_figure
@@ -107,7 +110,7 @@ def test_maps_of_equal_size_wrap_into_rows(escape_map: EscapeMap) -> None:
     boxes = np.array([axes.get_window_extent().extents for axes in figure.axes])
     np.testing.assert_allclose(boxes[:, 2:] - boxes[:, :2], boxes[0, 2] - boxes[0, 0], rtol=1e-9)
     assert len(np.unique(boxes[:, 0].round())) == columns
-    assert len(np.unique(boxes[:, 1].round())) == len(TITLES) / columns
+    assert len(np.unique(boxes[:, 1].round())) == math.ceil(len(TITLES) / columns)
 
 
 @pytest.mark.slow
@@ -178,7 +181,7 @@ def test_the_fonts_have_every_character_of_the_texts(escape_map: EscapeMap) -> N
     entries = [
         *PAPER.outcomes.values(),
         *PAPER.crossing_entries,
-        *PAPER.character_entries,
+        *entries_of_regularity(PAPER),
         *PAPER.end_entries(CASES["III"].outcomes),
     ]
     texts = [
@@ -197,18 +200,18 @@ def test_the_fonts_have_every_character_of_the_texts(escape_map: EscapeMap) -> N
 def test_doubtful_pixels_are_marked_and_have_an_entry() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
     trust = compute_trust(whole)
-    pixels = picture_pixels(whole, "basins", PAPER, MapAnalyses(trust=trust))[::-1]
-    marked = [np.all(pixels == rgba(tone), axis=-1) for tone in DOUBT]
+    pixels = picture_pixels(whole, "basins", PAPER, MapAnalyses({"trust": trust}))[::-1]
+    marked = [np.all(pixels == rgba(tone), axis=-1) for tone in TONES]
     np.testing.assert_array_equal(marked[0] | marked[1], trust.trust == Trust.DOUBTFUL)
     assert all(tone.any() for tone in marked)
-    legend = draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses=MapAnalyses(trust=trust)).axes[0].get_legend()
+    legend = draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses=MapAnalyses({"trust": trust})).axes[0].get_legend()
     assert legend is not None
-    assert "doubtful" in [text.get_text() for text in legend.get_texts()]
+    assert "doubtful pixels" in [text.get_text() for text in legend.get_texts()]
 
 
 def draw_with_manifolds(picture: str) -> Axes:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
-    found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, images=1))
+    found = MapAnalyses({"manifolds": find_stable_manifolds(CASES["II"], 0.3, images=1)})
     return draw_map_figure(whole, [picture], PAPER, STYLE, analyses=found).axes[0]
 
 

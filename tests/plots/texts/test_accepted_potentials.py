@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine import POTENTIALS, channel_family, parse_formula, review_potential
+from engine import POTENTIALS, parse_formula, review_potential
+from engine.systems.known_potentials import channel_family
 from plots.pictures.palette import MOST_CHANNELS
 from plots.texts.accepted_potentials import refusal
 

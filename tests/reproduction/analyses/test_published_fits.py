@@ -34,8 +34,3 @@ def test_curves_accept_energies_of_any_shape() -> None:
     energies = np.linspace(0.3, 0.5, 6).reshape(2, 3)
     for curve in (HyperbolicTangent(15.85, 4.93), Polynomial((-1.496, 7.585, -5.938))):
         np.testing.assert_array_equal(curve(energies), [[curve(h) for h in row] for row in energies])
-
-
-def test_formulas_are_written_as_in_the_paper() -> None:
-    assert PAPER_FITS["III"].escaped.formula == "½[1 + tanh(15.85 h − 4.93)]"
-    assert PAPER_FITS["II"].direct.formula == "−2.2 + 22.86 h − 59.24 h² + 51.42 h³"

@@ -11,7 +11,6 @@ import pytest
 from engine import (
     CASES,
     EscapeMap,
-    Fate,
     MapSpec,
     Plane,
     Regularity,
@@ -56,14 +55,6 @@ def test_all_starts_including_mirror_images_have_the_outcome_of_their_orbits(nam
         np.testing.assert_array_equal(getattr(found, field), getattr(expected, field))
 
 
-def test_mirror_images_escape_at_the_same_time_through_opposite_channels() -> None:
-    found = search()
-    index = {(x, px): k for k, (x, px) in enumerate(zip(found.x.tolist(), found.ordinate.tolist(), strict=True))}
-    image = [index[-x, -px] for x, px in index]
-    np.testing.assert_array_equal(found.escape_time, found.escape_time[image])
-    np.testing.assert_array_equal(np.array([0, 2, 1, 4, 3])[found.fate], found.fate[image])
-
-
 def test_escapers_are_sorted_by_escape_time_and_escape_after_the_map() -> None:
     found = search()
     times = found.escape_time[found.escapers]
@@ -84,12 +75,6 @@ def test_description_gives_escapes_by_channel_and_their_times() -> None:
         "5 of the 50 bounded starts are chaotic (10.0 %). 3 of them leave by t = 4e+06 (1 through channel 1, 2 through channel "
         "2): the first at t = 200000, half of these by 500000, the last at 851000."
     )
-
-
-def test_description_without_chaotic_orbits() -> None:
-    whole, regularity = map_and_regularity("I", 0.01, 9)
-    found = find_super_sticky_orbits(whole, regularity, LONG)
-    assert found.describe() == f"None of the {np.count_nonzero(whole.fate == Fate.BOUNDED)} bounded starts is chaotic."
 
 
 def test_cancelling_raises() -> None:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageColor
 
 from engine import CASES, Fate, Plane, classify_orbits
+from plots.layers.regularity import CODES
 from plots.pictures.palette import PAPER
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.all_figures import FIGURES
@@ -116,7 +117,7 @@ def test_regular_orbits_are_cyan_chaotic_magenta_and_escaping_white(cache: MapCa
     axes = FIGURES["III-regular-chaotic"].draw(cache).axes[0]
     frame = cache.map("III", Plane.X_PX, 0.26)
     character, pixels = cache.regularity(frame).character, pixels_of(axes)
-    for code, colour in ((1, PAPER.characters[1]), (2, PAPER.characters[2])):
+    for code, colour in ((code.code, code.entry(PAPER).colour) for code in CODES[1:3]):
         assert np.all(pixels[character == code] == rgba([colour])[0])
     assert (frame.fate > Fate.BOUNDED).any()
     assert not pixels[frame.fate > Fate.BOUNDED][:, 3].any()
@@ -189,11 +190,6 @@ def test_the_last_escape_within_the_axis_is_shown(cache: MapCache) -> None:
     assert find_shown(search_with([2e5, np.nan, 0.9 * LONGEST_DRAWN, 2.0 * LONGEST_DRAWN, 4e5], cache)) == 2
     assert find_shown(search_with([3.0 * LONGEST_DRAWN, np.nan, 2.0 * LONGEST_DRAWN], cache)) == 2
     assert find_shown(search_with([np.nan, np.nan], cache)) is None
-
-
-def test_a_search_without_escapes_is_stated(cache: MapCache) -> None:
-    stayed = CacheWithSearch(search_with([np.nan], cache))
-    assert "no chaotic orbit" in FIGURES["III-super-sticky"].draw(stayed).get_suptitle()
 
 
 def test_the_band_of_a_late_escape_ends_at_its_exit(cache: MapCache) -> None:

@@ -28,10 +28,6 @@ def test_starts_at_a_boundary_are_in_no_basin(computed: EscapeMap) -> None:
     assert share_in_basins(with_fates(computed, [1] * 6 + [2] * 6)) == pytest.approx(100.0 * 10 / 12)
 
 
-def test_a_single_basin_contains_all_starts(computed: EscapeMap) -> None:
-    assert share_in_basins(with_fates(computed, [3] * 12)) == 100.0
-
-
 def test_islands_are_no_basins(computed: EscapeMap) -> None:
     assert share_in_basins(with_fates(computed, [1] * 6 + [Fate.BOUNDED] * 6)) == pytest.approx(100.0 * 5 / 12)
 
@@ -63,7 +59,3 @@ def test_escape_times_next_to_islands_and_to_exits_are_compared(computed: Escape
     frame = with_fates(computed, [Fate.BOUNDED] * 3 + [1] * 6 + [Fate.OUTSIDE] * 3)
     times = np.tile(np.array([np.nan] * 3 + [500.0, 70.0, 60.0, 50.0, 40.0, 5.0] + [np.nan] * 3), (SIDE, 1))
     assert orders_of_escape_times(replace(frame, escape_time=times)) == pytest.approx(2.0)
-
-
-def test_without_islands_there_is_nothing_to_compare(computed: EscapeMap) -> None:
-    assert np.isnan(orders_of_escape_times(with_fates(computed, [1] * 9 + [Fate.OUTSIDE] * 3)))

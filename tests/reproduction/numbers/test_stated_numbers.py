@@ -75,19 +75,6 @@ def test_printed_percentages_are_included(
     assert [(number.relation, number.value) for number in found] == [(relation, value)]
 
 
-@pytest.mark.parametrize(("case", "energy", "total"), [("II", 0.17, 102.0), ("III", 0.26, 106.0)])
-def test_some_stated_shares_do_not_sum_to_100(case: str, energy: float, total: float) -> None:
-    of_map = [n for n in SHARES if (n.case, n.plane, n.energies) == (case, Plane.X_Y, (energy,))]
-    assert sum(number.value for number in of_map) == total
-    assert all(f"sum to {total:g}." in number.remark for number in of_map)
-
-
 def test_fields_of_remarks_are_known_facts() -> None:
     fields = {name for number in STATED_NUMBERS for _, name, _, _ in Formatter().parse(number.remark) if name}
     assert fields == set(FACTS)
-
-
-def test_shares_of_equal_parts_and_remainders_are_marked_as_derived() -> None:
-    derived = {(n.case, n.at, n.channels, round(n.value, 1)) for n in SHARES if n.derivation}
-    assert {("I", "0.13", (1,), 33.3), ("I", "0.13", (2,), 25.0), ("II", "> 0.4", (3,), 24.0)} <= derived
-    assert ("III", "0.6", (1, 2), 90.0) not in derived

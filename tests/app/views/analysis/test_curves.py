@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
+import numpy as np
+from bokeh.models import HoverTool
+
 from app.views.analysis.curves import CurvesView
-from engine import CASES, Plane, SweepSpec, compute_sweep
+from app.views.components.plots import FigurePane
+from engine import CASES, Plane, Sweep, SweepSpec, compute_sweep
 from engine.sweeps.measures import CURVES
 from plots.pictures.sweep_panels import CURVE_PANELS
+
+
+def curves(*energies: float) -> Sweep:
+    """All measures; only the largest energy has an exponent, which is made up, as it takes seconds to measure."""
+    quick = tuple(name for name in CURVES if name != "uncertainty_exponent")
+    found = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, energies, (20, 20), t_max=100.0, measures=quick)).dataset
+    missing = np.full(len(energies) - 1, np.nan)
+    exponent = {"exponent": 0.5, "exponent_low": 0.45, "exponent_high": 0.56}
+    return Sweep(found.assign({name: ("h", [*missing, value]) for name, value in exponent.items()}))
 
 
 def test_there_are_no_axes_before_the_first_curves() -> None:
@@ -13,13 +26,13 @@ def test_there_are_no_axes_before_the_first_curves() -> None:
     *_, plots = view.build()
     assert not plots.visible
     assert plots.objects == []
-    view.show(compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (20, 20), t_max=100.0, measures=CURVES)))
-    assert plots.visible
-    assert len(plots.objects) == 1 + len(CURVE_PANELS)
-    view.show(None)
-    assert not plots.visible
     # Below the escape energy there are no escape times yet.
-    view.show(compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.1,), (20, 20), t_max=100.0, measures=CURVES)))
-    figures = [pane.object for column in plots.objects for pane in column.objects if hasattr(pane.object, "y_range")]
-    assert len(figures) == 1 + len(CURVE_PANELS)
-    assert all(figure.y_range.start < figure.y_range.end for figure in figures)
+    for energies in ((0.2, 0.3), (0.1,)):
+        view.show(curves(*energies))
+        assert plots.visible
+        figures = [pane.object for column in plots.objects for pane in column.objects if isinstance(pane, FigurePane)]
+        assert len(figures) == 1 + len(CURVE_PANELS)
+        assert all(figure.y_range.start < figure.y_range.end for figure in figures)
+        assert all(list(figure.select(HoverTool)) for figure in figures)
+        view.show(None)
+        assert not plots.visible

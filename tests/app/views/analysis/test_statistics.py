@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import panel as pn
 import pytest
+from bokeh.plotting import figure
 
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.numbers import percent
@@ -21,18 +23,24 @@ def frame() -> EscapeMap:
 @pytest.fixture
 def view(frame: EscapeMap) -> StatisticsView:
     view = StatisticsView(lambda: None, COPIED.append)
-    view.build()
     view.show(frame)
     return view
 
 
-def test_the_charts_count_every_escape(view: StatisticsView, frame: EscapeMap) -> None:
+@pytest.fixture(autouse=True)
+def charts(view: StatisticsView) -> list[figure]:
+    """The figures of the section, which is built."""
+    return [part.object for part in view.build() if isinstance(part, pn.pane.Bokeh)]
+
+
+def test_the_charts_count_every_escape(view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
     # Nothing is counted before it is shown.
     assert view.table.object == ""
     view.activate(True)
     statistics = compute_statistics(frame)
-    assert view.times.data["top"].sum() == statistics.escaped
-    assert view.probabilities.data["p"][0] == pytest.approx(statistics.direct_share)
+    times, probabilities = (chart.renderers[0].data_source.data for chart in charts)
+    assert times["top"].sum() == statistics.escaped
+    assert probabilities["p"][0] == pytest.approx(statistics.direct_share)
 
 
 @pytest.mark.parametrize("box", [None, BOX])

@@ -4,11 +4,15 @@ import {test} from "node:test"
 
 import {coordinate, count, fateName, number, percent, pixelDetails} from "../../../../app/views/components/hover_texts.js"
 
-const CODES = {bounded: 4, first: 5, firstEvidence: 10, ends: 9}
+const CODES = {bounded: 4, first: 5, firstEvidence: 10}
 const WORDS = {
   evidence: ["integrated", "enclosed"],
-  characters: ["regular", "chaotic"],
-  trusts: ["not tested", "doubtful"],
+  layers: {
+    character: ["", "", "", "", "", "regular", "chaotic"],
+    passage: [],
+    trust: ["not tested", "doubtful"],
+  },
+  values: {length_value: "length"},
   fates: ["undecided", "failed", "outside", "forbidden", "bounded", "channel 1", "channel 2"],
 }
 const none = [new Uint8Array(1)]
@@ -21,7 +25,9 @@ const maps = {
   crossing_class: [Uint8Array.of(11, 6)],
   character: none,
   passage: none,
-  origins: [["never entered: inside since −t_max", "entered through channel 1", "entered through channel 2"]],
+  passage_words: [["", "", "", "", "", "never entered", "entered through channel 2"]],
+  trust: none,
+  length_value: none,
   difference: none,
   x: [-1],
   y: [-1],
@@ -29,12 +35,8 @@ const maps = {
   dh: [1],
 }
 const other = {fate: [Uint8Array.of(5, 6)], x: [-1], y: [-1], dw: [2], dh: [1]}
-const details = (
-  /** @type {number} */ pixel,
-  /** @type {object} */ layers = {},
-  /** @type {object} */ doubts = {trust: []},
-  /** @type {object} */ compared = other,
-) => pixelDetails(pixel, {maps: {...maps, ...layers}, doubts, compared}, CODES, WORDS).split("\n")
+const details = (/** @type {number} */ pixel, /** @type {object} */ layers = {}, /** @type {object} */ compared = other) =>
+  pixelDetails(pixel, {maps: {...maps, ...layers}, compared}, CODES, WORDS).split("\n")
 
 test("an escaping pixel has its time and crossings", () => {
   assert.deepEqual(details(1), ["escape time 12.346", "1 upward crossing of y = 0"])
@@ -45,20 +47,17 @@ test("a bounded pixel has its evidence", () => {
 })
 
 test("layers add what they know of a pixel", () => {
-  const layers = {character: [Uint8Array.of(6, 0)], passage: [Uint8Array.of(5, 5 + 9 * 2 + 1)]}
-  assert.deepEqual(details(0, layers, {trust: [Uint8Array.of(1, 0)]}), [
-    "enclosed",
-    "chaotic",
-    "never entered: inside since −t_max",
-    "doubtful",
-  ])
+  const layers = {character: [Uint8Array.of(6, 0)], passage: [Uint8Array.of(5, 6)], trust: [Uint8Array.of(1, 0)]}
+  assert.deepEqual(details(0, layers), ["enclosed", "chaotic", "never entered", "doubtful"])
   assert.ok(details(1, layers).includes("entered through channel 2"))
+  assert.ok(details(1, {length_value: [Float32Array.of(NaN, 2.5)]}).includes("length 2.5000"))
+  assert.deepEqual(details(0, {length_value: [Float32Array.of(NaN, 2.5)]}), ["enclosed"])
 })
 
 test("a pixel that is compared has its end in the other view", () => {
   const layers = {difference: [Uint8Array.of(6, 5)]}
   assert.deepEqual(details(0, layers), ["enclosed", "other view: channel 1"])
-  assert.deepEqual(details(0, layers, {trust: []}, {...other, x: [-2]}), ["enclosed"])
+  assert.deepEqual(details(0, layers, {...other, x: [-2]}), ["enclosed"])
 })
 
 test("an end has the words of its map, also in the other view", () => {

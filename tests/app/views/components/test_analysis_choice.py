@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from app.state.view import LAYERS, Analysis
+from app.state.view import Analysis
 from app.state.view_state import ViewState
-from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS, AnalysisTabs, LayerSwitches
+from app.views.components.analysis_choice import ANALYSIS_LABELS, AnalysisTabs, LayerSwitches
 from app.views.components.widgets import SegmentedControl
+from plots.layers.table import LAYERS
 
 
 def test_there_is_a_labelled_switch_for_each_layer_that_changes_the_state_and_follows_it() -> None:
-    state = ViewState(judge=True)
+    state = ViewState(layers=frozenset({"judge"}))
     switches = LayerSwitches(state).switches
-    assert list(switches) == list(LAYERS) == list(LAYER_LABELS)
+    assert {name: switch.options for name, switch in switches.items()} == {name: [one.title] for name, one in LAYERS.items()}
     assert [name for name, switch in switches.items() if switch.value] == ["judge"]
-    state.param.update(judge=False, manifolds=True)
+    state.layers = frozenset({"manifolds"})
     assert [name for name, switch in switches.items() if switch.value] == ["manifolds"]
-    switches["trust"].value = [LAYER_LABELS["trust"]]
-    assert [name for name in LAYERS if getattr(state, name)] == ["trust", "manifolds"]
+    switches["trust"].value = [LAYERS["trust"].title]
+    assert state.layers == {"trust", "manifolds"}
 
 
 def test_there_is_a_labelled_tab_for_each_analysis_that_changes_the_state_and_follows_it() -> None:
@@ -32,12 +33,12 @@ def test_the_image_of_the_manifolds_can_be_chosen_while_they_are_on() -> None:
     state = ViewState()
     layers = LayerSwitches(state)
     assert layers.parts() == [*layers.switches.values()]
-    state.manifolds = True
+    state.layers = frozenset({"manifolds"})
     images = layers.parts()[-1]
     assert isinstance(images, SegmentedControl)
     images.value = 2
-    assert state.images == 2
-    state.images = 0
+    assert state.settings["images"] == 2
+    state.settings = {**state.settings, "images": 0}
     assert images.value == 0
-    state.manifolds = False
+    state.layers = frozenset()
     assert layers.parts() == [*layers.switches.values()]

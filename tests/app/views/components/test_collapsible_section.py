@@ -7,7 +7,7 @@ import pytest
 from bokeh.document import Document
 from panel.io.state import set_curdoc
 
-from app.views.components.collapsible_section import Drawers, Fold, Stack
+from app.views.components.collapsible_section import Drawers, Stack
 
 
 class Builds:
@@ -42,16 +42,6 @@ def test_a_stack_shows_one_content_under_its_head_built_once(builds: Builds) -> 
         shown.append(texts(stack.layout()))
     assert shown == [["head", "a"], ["head", "b"], ["head"], ["head", "a"]]
     assert builds.made == ["a", "b"]
-
-
-def test_the_button_of_a_fold_opens_and_closes_it(builds: Builds) -> None:
-    fold = Fold("Title", builds.maker("a"))
-    labels = [fold.button.label]
-    for _ in range(2):
-        fold.button.clicks += 1
-        labels.append(fold.button.label)
-        assert fold.is_open == fold.layout().visible == (len(labels) == 2)
-    assert labels == ["▸ Title", "▾ Title", "▸ Title"]
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from __future__ import annotations
 import panel as pn
 from bokeh.document import Document
 
-from app.views.components.notice import NAME, Notice, show_lasting_notice, show_passing_notice
+from app.views.components.notice import NAME, Notice, show_lasting_notice
 
 
 def test_the_same_notice_twice_is_two_changes() -> None:
@@ -35,13 +35,3 @@ def test_the_server_finds_the_notice_in_a_document() -> None:
     show_lasting_notice(document, "<i>restart</i>")
     assert "restart" in document.get_model_by_name(NAME).text
     assert "<i>" not in document.get_model_by_name(NAME).text
-
-
-def test_a_passing_notice_of_the_server_can_be_shown_twice() -> None:
-    document, texts = Document(), set()
-    pn.Column(Notice().layout()).server_doc(document)
-    for _ in range(2):
-        show_passing_notice(document, "Wait.")
-        texts.add(document.get_model_by_name(NAME).text)
-    assert len(texts) == 2
-    assert all("notice passing" in text for text in texts)

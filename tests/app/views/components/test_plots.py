@@ -10,7 +10,7 @@ from bokeh.document.models import DocumentModelManager
 from bokeh.events import Tap
 from bokeh.models import Scatter
 
-from app.views.components.plots import FigurePane, annotate_picture, batched_additions, square_figure
+from app.views.components.plots import HOVER_FORMATS, FigurePane, annotate_picture, batched_additions, chart_hover, square_figure
 
 
 def test_a_figure_that_comes_back_to_the_page_hears_each_event_once() -> None:
@@ -37,11 +37,18 @@ def test_glyphs_are_added_with_one_search_of_the_models() -> None:
     assert all(len(plot.renderers) == 1 for plot in plots)
 
 
-def test_another_legend_needs_no_search_of_the_models() -> None:
-    plot, document = square_figure("basins", "Basins"), Document()
-    document.add_root(plot)
-    with patch.object(DocumentModelManager, "recompute", autospec=True) as recompute:
-        annotate_picture(plot, "Basins", ("x", "y"), "channels 1 to 4")
-        annotate_picture(plot, "Basins", ("x", "y"), "channels 1 to 3")
-    assert "channels 1 to 3" in plot.elements[0].html
-    assert not recompute.called
+def test_another_legend_is_written_into_the_same_model() -> None:
+    plot = square_figure("basins", "Basins")
+    [title] = plot.elements
+    annotate_picture(plot, "Basins", ("x", "y"), "channels 1 to 3")
+    assert plot.elements == [title]
+    assert "channels 1 to 3" in title.html
+
+
+def test_every_value_of_a_chart_is_written_in_its_format() -> None:
+    hover = chart_hover("@share{percent} from @low{number}@note", [])
+    assert "@share{custom} from @low{custom}@note" in hover.tooltips
+    assert {value: formatter.code for value, formatter in hover.formatters.items()} == {
+        "@share": HOVER_FORMATS["percent"],
+        "@low": HOVER_FORMATS["number"],
+    }

@@ -9,10 +9,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from app.views.components.numbers import percent
-from app.views.components.progress import CONTINUE, STOP, TEST, ProgressView
+from app.views.components.progress import CONTINUE, STOP, ProgressView
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
-from tests.disc import disc_map
+from plots.layers.table import LAYERS
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +21,7 @@ def escape_map() -> EscapeMap:
 
 def make_view() -> tuple[ProgressView, list[str]]:
     calls: list[str] = []
-    return ProgressView(*(partial(calls.append, name) for name in ("cancel", "resume", "test"))), calls
+    return ProgressView(*(partial(calls.append, name) for name in ("cancel", "resume")), calls.append), calls
 
 
 def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
@@ -31,6 +30,9 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     text = re.sub(r"<[^>]*>", "", view.text.object)
     assert text.startswith("Done, t = 1 000. Interior starts: channels 1 to 2: ")
     assert (view.bar.styles["opacity"], view.button.styles["visibility"]) == ("0", "hidden")
+    assert "unresolved" not in text
+    view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))
+    assert "unresolved" in view.text.object
 
 
 def test_exits_of_several_channels_are_named() -> None:
@@ -68,30 +70,10 @@ def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_te
     view, calls = make_view()
     view.show(replace(escape_map, rounded_share=0.273))
     assert "about 27 % of the pixels depend on rounding errors" in re.sub(r"<[^>]*>", "", view.text.object)
-    assert (view.button.label, view.button.styles["visibility"]) == (TEST, "visible")
+    assert (view.button.label, view.button.styles["visibility"]) == (LAYERS["trust"].title, "visible")
     view.button.clicks += 1
-    assert calls == ["test"]
-
-
-@pytest.mark.parametrize("share", [None, 0.004, float("nan")])
-def test_other_maps_do_not_mention_rounding(escape_map: EscapeMap, share: float | None) -> None:
-    view, _ = make_view()
-    view.show(replace(escape_map, rounded_share=share))
-    assert "rounding" not in view.text.object
-    assert view.button.styles["visibility"] == "hidden"
-
-
-def test_other_outcomes_have_their_labels() -> None:
-    view, _ = make_view()
-    frame = disc_map()
-    view.show(frame)
-    shares = frame.fractions()
-    text = re.sub(r"<[^>]*>", "", view.text.object).replace("\N{NO-BREAK SPACE}", " ")
-    assert f", collision with a disc {percent(shares[3])}, bounded" in text
-    assert "unresolved" not in text
-
-
-def test_unresolved_orbits_are_shown(escape_map: EscapeMap) -> None:
-    view, _ = make_view()
-    view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))
-    assert "unresolved" in view.text.object
+    assert calls == ["trust"]
+    for share in (None, 0.004, float("nan")):
+        view.show(replace(escape_map, rounded_share=share))
+        assert "rounding" not in view.text.object
+        assert view.button.styles["visibility"] == "hidden"

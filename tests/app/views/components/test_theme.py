@@ -25,10 +25,6 @@ def test_the_dark_theme_changes_every_colour() -> None:
     assert set(COLOURS.findall(block(":root"))) - {"--ui-focus"} == set(COLOURS.findall(block(':root[data-theme="dark"]')))
 
 
-def test_nothing_is_loaded() -> None:
-    assert not re.search(r"url\(|@import|@font-face", theme_css())
-
-
 def test_all_widgets_of_a_document_share_one_stylesheet() -> None:
     document = Document()
     row = pn.Row(pn.widgets.Button(label="a"), pn.widgets.Select(label="b"), design=ExplorerDesign)

@@ -10,17 +10,9 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.components.widgets import copy_button, number_rows
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
-from engine import (
-    CASES,
-    MapSpec,
-    Plane,
-    compute_basin_entropy,
-    compute_map,
-    compute_wada_test,
-    evaluate_indicators,
-    integrate_orbit,
-)
+from engine import CASES, MapSpec, Plane, compute_basin_entropy, compute_map, compute_wada_test, integrate_orbit
 from engine.jobs.map_jobs import BasinMeasures
+from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import compute_orbit_curves
 
 

@@ -12,8 +12,9 @@ from bokeh.models import BasicTickFormatter, BoxSelectTool, BoxZoomTool, CustomJ
 from app.views.maps.map_plots import MAPS, PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from app.views.maps.map_toolbar import Drag
 from engine import CASES, MapSpec, Plane, compute_map
+from plots.layers.table import LAYER_OF
 from plots.pictures.image_columns import map_columns
-from plots.pictures.map_images import ON_DEMAND
+from plots.pictures.time_scale import TimeScale, fitted_scale
 from tests.app.map_actions import make_maps
 
 
@@ -29,7 +30,7 @@ def tools(maps: MapsView, kind: type) -> list[object]:
 
 
 def test_all_figures_share_one_toolbar(maps: MapsView) -> None:
-    maps.show_pictures([*PICTURES_ALONE, *ON_DEMAND])
+    maps.show_pictures([*PICTURES_ALONE, *LAYER_OF])
     maps.show_pictures(PICTURES_COMPARED)
     assert set(maps.figures) == set(MAPS)
     assert len({id(plot.toolbar) for plot in maps.figures.values()}) == 1
@@ -98,3 +99,14 @@ def test_labels_of_a_deep_window_are_distances_from_a_stated_number() -> None:
     view.show(frame, map_columns(frame))
     assert isinstance(view.figures["times"].below[0].formatter, BasicTickFormatter)
     assert "Labels:" not in view.figures["basins"].elements[0].html
+
+
+def test_a_locked_scale_of_times_keeps_its_ends_until_it_is_unlocked(maps: MapsView) -> None:
+    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (20, 20), t_max=50.0))
+    maps.lock_times(TimeScale(2.5, 5000.0))
+    maps.show(frame, map_columns(frame))
+    assert maps.times == TimeScale(2.5, 5000.0)
+    assert "≥ 5 000" in maps.figures["times"].elements[0].html
+    maps.lock_times(None)
+    assert maps.times == fitted_scale(frame)
+    assert "locked" not in maps.figures["times"].elements[0].html

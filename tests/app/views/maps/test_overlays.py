@@ -1,12 +1,15 @@
-"""Overlays have the colours and entries of what they show."""
+"""Overlays have the colours of what they show."""
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
+from bokeh.models import ColumnDataSource, Image
 
+from app.views.components.plots import map_figure
+from app.views.maps.map_ranges import MapRanges
 from app.views.maps.overlays import Overlays
-from engine import CASES, MapSpec, Plane, StableManifolds, Trust, TrustMap, compute_map, compute_trust, find_stable_manifolds
+from engine import CASES, StableManifolds, find_stable_manifolds
+from plots.layers.table import LAYERS, PICTURES
 from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER
 
 
@@ -15,30 +18,25 @@ def manifolds() -> StableManifolds:
     return find_stable_manifolds(CASES["II"], 0.3, images=1)
 
 
-@pytest.fixture(scope="module")
-def trust() -> TrustMap:
-    return compute_trust(compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0)))
-
-
-def test_manifolds_have_the_colours_of_their_channels_and_entries_while_they_are_drawn(manifolds: StableManifolds) -> None:
-    overlays = Overlays()
-    overlays.show_manifolds(manifolds)
+def test_curves_have_the_colours_of_their_channels_while_they_are_drawn(manifolds: StableManifolds) -> None:
+    overlays = Overlays(ColumnDataSource())
+    overlays.show("manifolds", manifolds)
     for palette in (PAPER, COLOUR_BLIND_SAFE):
         overlays.set_palette(palette)
-        assert set(overlays.manifolds.data["colour"]) == set(palette.channels[:3])
-        assert [entry.colour for entry in overlays.entries()] == list(palette.channels[:3])
-    assert [entry.label for entry in overlays.entries()] == [f"stable manifold of Lyapunov orbit {k}" for k in (1, 2, 3)]
-    overlays.show_manifolds(None)
-    assert overlays.entries() == []
+        assert set(overlays.curves["manifolds"].data["colour"]) == set(palette.channels[:3])
+    overlays.remove("manifolds")
+    assert overlays.curves["manifolds"].data["xs"] == []
 
 
-def test_doubtful_pixels_have_two_tones_an_entry_and_codes_for_the_hover(trust: TrustMap) -> None:
-    overlays = Overlays()
-    overlays.show_trust(trust)
-    tones = overlays.doubts.data["doubt"][0]
-    np.testing.assert_array_equal(tones > 0, trust.trust == Trust.DOUBTFUL)
-    assert set(np.unique(tones)) == {0, 1, 2}
-    np.testing.assert_array_equal(overlays.doubts.data["trust"][0], trust.trust)
-    assert [entry.label for entry in overlays.entries()] == ["doubtful pixels"]
-    overlays.show_trust(None)
-    assert overlays.doubts.data["trust"] == []
+def test_marks_are_added_once_to_the_pictures_over_which_they_lie() -> None:
+    ranges = MapRanges(lambda window: None, lambda: None)
+    plots = {name: map_figure(name, name, ranges.x, ranges.ordinate) for name in PICTURES if name != "curves"}
+    overlays = Overlays(ColumnDataSource())
+    for name, plot in plots.items():
+        overlays.draw(plot, name)
+    for _ in range(2):
+        overlays.show("trust", None)
+    marked = [name for name, plot in plots.items() for one in plot.renderers if isinstance(one.glyph, Image)]
+    over = LAYERS["trust"].over
+    assert over is not None
+    assert marked == [name for name in over.pictures if name in plots]

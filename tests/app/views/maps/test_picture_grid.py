@@ -8,7 +8,7 @@ from app.state.view import PICTURES
 from app.views.components.plots import FigurePane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED
 from app.views.maps.picture_grid import SHORT_TITLES, PictureGrid
-from plots.pictures.map_images import ON_DEMAND
+from plots.layers.table import LAYER_OF
 from tests.app.map_actions import make_maps
 
 ALWAYS = [*PICTURES_ALONE]
@@ -50,11 +50,12 @@ def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
 
 
 def test_of_many_pictures_one_is_twice_as_large_and_the_others_have_no_axes() -> None:
-    pictures = grid(*ON_DEMAND)
+    pictures = grid(*LAYER_OF)
     assert "many" in pictures.layout().css_classes
-    assert named(pictures, "picked") == ["origins"]
-    assert len(named(pictures, "compact")) == len(ALWAYS) + len(ON_DEMAND) - 1
-    assert not any(pane.object.left[0].visible for pane in panes(pictures) if pane.object.name != "origins")
+    last = [*LAYER_OF][-1]
+    assert named(pictures, "picked") == [last]
+    assert len(named(pictures, "compact")) == len(ALWAYS) + len(LAYER_OF) - 1
+    assert not any(pane.object.left[0].visible for pane in panes(pictures) if pane.object.name != last)
 
 
 @pytest.mark.parametrize(("on_demand", "largest"), [((), "basins"), (("characters",), "characters"), (("origins",), "origins")])
@@ -63,10 +64,10 @@ def test_the_largest_picture_is_that_of_the_layer_that_is_on(on_demand: tuple[st
 
 
 def test_an_enlarged_picture_stands_above_a_row_of_many_others() -> None:
-    pictures = grid(*ON_DEMAND)
+    pictures = grid(*LAYER_OF)
     pictures.enlarge("origins")
     assert "many" not in pictures.layout().css_classes
-    assert len(named(pictures, "small")) == len(ALWAYS) + len(ON_DEMAND) - 1
+    assert len(named(pictures, "small")) == len(ALWAYS) + len(LAYER_OF) - 1
 
 
 def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_comes() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from app.views.panels.browser_events import KEYS, BrowserActions, BrowserEvents, key_legend
+from app.views.panels.browser_events import KEYS, BrowserActions, BrowserEvents
 from tests.app.browser_messages import send
 
 
@@ -21,10 +21,6 @@ def test_keys_that_a_page_does_not_use_are_left_to_the_browser() -> None:
     send(events.layout(), {"key": "h"}, {"key": "b"})
     assert calls == [("h",)]
     assert events.layout().keys == ["h"]
-
-
-def test_every_key_is_in_the_list_of_keys() -> None:
-    assert all(action in key_legend() for action in KEYS.values())
 
 
 def test_each_address_is_a_change_that_says_which_steps_through_the_history_it_knows() -> None:

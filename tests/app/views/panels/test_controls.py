@@ -13,7 +13,6 @@ from engine import Plane, System
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from plots.pictures.time_scale import TimeScale
-from tests.app.browser_messages import send
 
 
 class Page:
@@ -38,14 +37,6 @@ class Page:
 @pytest.fixture
 def page() -> Page:
     return Page()
-
-
-def test_energies_are_released_at_the_slider_or_typed_beyond_it(page: Page) -> None:
-    send(page.controls.energy, {"value": 0.25, "count": 1, "done": True})
-    assert page.state.energy == 0.25
-    send(page.controls.exact_energy, {"value": 0.7, "count": 1, "done": True})
-    assert page.state.energy == 0.7
-    assert "beyond the end of the slider" in page.controls.energy.note
 
 
 def test_another_case_resets_energy_and_orbits(page: Page) -> None:
@@ -92,15 +83,6 @@ def test_the_lock_asks_for_the_limits_of_the_map_and_follows_the_state(page: Pag
     assert lock.value == [LOCK]
     lock.value = []
     assert page.locks == [True, False]
-
-
-def test_the_switch_of_the_comparison_follows_the_state_and_asks_for_it(page: Page) -> None:
-    comparison = page.controls.comparison
-    page.state.compared = page.state.view
-    assert comparison.switch.value
-    assert "Case I, (x, px), h = 0.19" in comparison.view.object
-    comparison.switch.value = []
-    assert page.state.compared is None
 
 
 def test_on_a_touch_device_all_folds_are_closed(page: Page) -> None:

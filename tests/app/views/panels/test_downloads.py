@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+from collections.abc import Callable
 from io import BytesIO
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import xarray as xr
 
 from app.job_clients.orbit_requests import ChosenOrbit
+from app.runtime.process_state import ProcessState
 from app.state.view_state import ViewState
 from app.views.panels.downloads import Downloads
 from engine import CASES, EscapeMap, MapSpec, Plane, System, compute_map, integrate_orbit
@@ -33,6 +35,15 @@ def downloads_view(escape_map: EscapeMap) -> Downloads:
     orbit = integrate_orbit(CASES["I"], STATE, 50.0)
     shown.show_orbits([ChosenOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit))])
     return shown
+
+
+@pytest.mark.parametrize("ancestors", [(), ("https://a.example",)])
+def test_code_that_embeds_the_page_is_offered_where_pages_may_embed_it(
+    start_state: Callable[..., ProcessState], ancestors: tuple[str, ...]
+) -> None:
+    start_state(frame_ancestors=ancestors)
+    offered = Downloads(ViewState(), lambda: None, lambda: None, lambda copied: None)
+    assert offered.embed.disabled == (not ancestors)
 
 
 def test_the_event_loop_runs_while_a_file_is_made(downloads_view: Downloads) -> None:

@@ -25,13 +25,15 @@ def source(code: str) -> str:
 
 @pytest.mark.parametrize(("focus", "picture"), [("", "basins"), ("times", "times")])
 def test_the_frame_shows_the_view_and_its_large_picture_or_else_the_basins(focus: str, picture: str) -> None:
-    state = ViewState(system=System("III"), energy=0.4, plane=Plane.X_Y, focus=focus, starts=((0.1, 0.2),), judge=True)
+    state = ViewState(
+        system=System("III"), energy=0.4, plane=Plane.X_Y, focus=focus, starts=((0.1, 0.2),), layers=frozenset({"judge"})
+    )
     address = source(embed_code(ADDRESS, state))
     values, problems = read_link(dict(parse_qsl(urlsplit(address).query)))
     assert address.startswith(f"{ADDRESS}?")
     assert problems == []
     assert ViewState(**values).map_spec() == state.map_spec()
-    assert (values["focus"], values["starts"], values["judge"]) == (picture, ((0.1, 0.2),), True)
+    assert (values["focus"], values["starts"], values["layers"]) == (picture, ((0.1, 0.2),), {"judge"})
 
 
 def test_texts_are_no_markup() -> None:

@@ -25,7 +25,7 @@ from engine import (
     compute_sweep,
     integrate_orbit,
 )
-from plots.pictures.map_analyses import MapAnalyses
+from plots.layers.map_analyses import MapAnalyses
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from tests.app.browser_messages import send
@@ -42,23 +42,29 @@ def shown(escape_map: EscapeMap) -> ShownResults:
     """Everything that can be drawn."""
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
-    analyses = MapAnalyses(regularity=compute_regularity(escape_map))
+    analyses = MapAnalyses({"judge": compute_regularity(escape_map)})
     return ShownResults(escape_map, analyses, [ChosenOrbit((0.1, 0.05), orbit)], curves)
 
 
-@pytest.fixture
-def saved(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, bytes]]:
-    """Files that are sent to the browser from now on."""
-    files: list[tuple[str, bytes]] = []
-    monkeypatch.setattr(FileSaver, "save", lambda saver, name, content: files.append((name, content)))
-    return files
+class KeptFiles(FileSaver):
+    """Keeps the names of files instead of sending them to the browser."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.names: list[str] = []
+
+    def save(self, name: str, content: bytes) -> None:
+        self.names.append(name)
 
 
 @pytest.fixture
-def form(shown: ShownResults) -> FigureForm:
-    made = FigureForm(
-        ViewState(system=System("I"), energy=0.19), FileSaver(), lambda ending: f"escapes{ending}", lambda copied: None
-    )
+def saved() -> KeptFiles:
+    return KeptFiles()
+
+
+@pytest.fixture
+def form(shown: ShownResults, saved: KeptFiles) -> FigureForm:
+    made = FigureForm(ViewState(system=System("I"), energy=0.19), saved, lambda ending: f"escapes{ending}", lambda copied: None)
     made.show(shown)
     return made
 
@@ -94,9 +100,7 @@ def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
     assert sent == [b"figure"]
 
 
-def test_a_choice_stays_while_the_next_map_is_computed(
-    form: FigureForm, shown: ShownResults, saved: list[tuple[str, bytes]]
-) -> None:
+def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, shown: ShownResults, saved: KeptFiles) -> None:
     assert form.figure()[0] == ""
     form.what.value = "Regular or chaotic"
     assert form.figure()[0] == "-regular-or-chaotic"
@@ -104,22 +108,20 @@ def test_a_choice_stays_while_the_next_map_is_computed(
     assert (form.what.options, form.what.value) == ([ALL_MAPS, "Regular or chaotic"], "Regular or chaotic")
     form.save.clicks += 1
     assert form.text.object == "Regular or chaotic: this is not computed yet."
-    assert not saved
+    assert not saved.names
     form.show(shown)
-    assert set(FIGURES) - set(form.what.options) == {"Origin and exit"}
+    assert set(FIGURES) - set(form.what.options) == {"Origin and exit", "Lagrangian descriptor"}
 
 
 @pytest.mark.parametrize(("name", "number"), [("width", 1.0), ("dpi", 5000.0), ("font_size", 0.0)])
 def test_an_illegal_number_is_named_and_nothing_is_saved_or_copied(
-    name: str, number: float, form: FigureForm, saved: list[tuple[str, bytes]], monkeypatch: pytest.MonkeyPatch
+    name: str, number: float, form: FigureForm, saved: KeptFiles
 ) -> None:
-    sent: list[bytes | None] = []
-    monkeypatch.setattr(form.copy, "send", sent.append)
     form.type(name, number)
     form.save.clicks += 1
     assert form.text.object.startswith(f"{name}={number!r}: must be from ")
-    send(form.copy, {"wanted": True})
-    assert (saved, sent) == ([], [None])
+    assert send(form.copy, {"wanted": True}) == [{"image": None}]
+    assert saved.names == []
 
 
 def test_too_many_pixels_are_named(form: FigureForm) -> None:

@@ -7,9 +7,15 @@ from collections.abc import Hashable
 import pytest
 
 from engine import POTENTIALS
-from engine.integrator import bound_kernels
 from engine.integrator.bound_kernels import load_kernels
-from engine.integrator.jit.compiled_operations import LARGEST_CODE, SHARES, CompiledCodeLimitError, CompiledOperations, charged_to
+from engine.integrator.jit.compiled_operations import (
+    LARGEST_CODE,
+    SHARES,
+    CompiledCodeLimitError,
+    CompiledOperations,
+    charged_to,
+    compiled_operations,
+)
 from engine.integrator.source.recurrence import generate_code
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
@@ -22,14 +28,6 @@ SHARE = MOST // SHARES
 
 
 @pytest.fixture
-def counted(monkeypatch: pytest.MonkeyPatch) -> CompiledOperations:
-    """Counts the code that a test compiles."""
-    counted = CompiledOperations()
-    monkeypatch.setattr(bound_kernels, "compiled_operations", counted)
-    return counted
-
-
-@pytest.fixture
 def limited() -> CompiledOperations:
     """A limit of `MOST` operations."""
     limited = CompiledOperations()
@@ -37,14 +35,14 @@ def limited() -> CompiledOperations:
     return limited
 
 
-def test_compilation_beyond_the_limit_is_refused_with_a_sentence(counted: CompiledOperations) -> None:
+def test_compilation_beyond_the_limit_is_refused_with_a_sentence() -> None:
     terms = ((2, 0, 0.5), (0, 2, 0.5), (9, 0, 1.0))
-    counted.most = 1
+    compiled_operations.most = 1
     with pytest.raises(ValueError, match="choose a potential with the same powers"):
         load_kernels(terms, 0)
-    counted.most = None
+    compiled_operations.most = None
     assert load_kernels(terms, 0).potential_value(1.0, 1.0) == 2.0
-    assert counted.used == generate_code(terms, 0).operations
+    assert compiled_operations.used == generate_code(terms, 0).operations
 
 
 def test_what_is_reserved_is_compiled_at_the_limit_and_does_not_count(limited: CompiledOperations) -> None:
@@ -79,21 +77,20 @@ def test_an_account_has_a_share(limited: CompiledOperations) -> None:
 
 
 @pytest.mark.parametrize(("account", "is_refused"), [("one", True), (None, False)])
-def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool, counted: CompiledOperations) -> None:
+def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool) -> None:
     terms = ((2, 0, 0.5), (0, 2, 0.5), (3, 6, 1.0 if account else 2.0), (6, 3, 1.0))
-    counted.most = SHARES * generate_code(terms, 0).operations - 1
+    compiled_operations.most = SHARES * generate_code(terms, 0).operations - 1
     client, inbox = JobClient(Jobs(), account=account), Inbox()
     client.request(Job(load_kernels, (terms, 0), queue=Queue.COMPILATION), inbox.result, inbox.error)
     assert inbox.done.wait(20)
     assert ["your address" in str(error) for error in inbox.errors] == [True] * is_refused
 
 
-@pytest.mark.parametrize("name", ["Copenhagen"])
-def test_the_catalogue_can_be_compiled_whatever_others_have_compiled(name: str, counted: CompiledOperations) -> None:
-    counted.most, potential = MOST, POTENTIALS[name].in_well_units
-    counted.add("of others", MOST)
+def test_the_catalogue_can_be_compiled_whatever_others_have_compiled(limited: CompiledOperations) -> None:
+    potential = POTENTIALS["Copenhagen"].in_well_units
+    limited.add("of others", MOST)
     code = generate_code(potential.form.definition, **potential.well.setting._asdict())
     with pytest.raises(CompiledCodeLimitError):
-        counted.add(code.digest, code.operations)
-    reserve_catalogue(counted)
-    counted.add(code.digest, code.operations)
+        limited.add(code.digest, code.operations)
+    reserve_catalogue(limited)
+    limited.add(code.digest, code.operations)

@@ -21,6 +21,8 @@ from engine.integrator.kernels.events import (
 )
 from engine.integrator.source.series import ORDER
 
+X = Polynomial([0.3, -0.7, 0.2])
+
 
 def jet_of(polynomial: Polynomial) -> np.ndarray:
     jet = np.zeros((ORDER + 1, 1))
@@ -30,6 +32,14 @@ def jet_of(polynomial: Polynomial) -> np.ndarray:
 
 def crossings(polynomial: Polynomial, duration: float = 1.0) -> int:
     return int(count_upward_crossings(jet_of(polynomial), 0, duration))
+
+
+def points_of(y: Polynomial, direction: int) -> np.ndarray:
+    """(n, 3) x, px and time of the crossings of a step that begins at t = 5, whose x is the polynomial `X`."""
+    points, found = np.full((2, 8, 3), np.nan), np.zeros(2, np.int64)
+    append_crossings(jet_of(X), jet_of(y), 0, float(direction), 5.0, 1.0, points, found, 1)
+    assert found[0] == 0
+    return points[1, : found[1]]
 
 
 def with_roots(*roots: float) -> Polynomial:
@@ -72,10 +82,13 @@ def test_crossings_are_the_roots_with_positive_slope(roots: tuple[float, ...], s
 @pytest.mark.parametrize("apart", [1e-2, 1e-6])
 @pytest.mark.parametrize("where", [0.13, 0.6180339])
 @pytest.mark.parametrize("sign", [-1, 1])
-def test_two_roots_in_one_part_of_a_step_are_one_crossing(apart: float, where: float, sign: int) -> None:
-    # Above, below, above and below, above, below both contain exactly one upward crossing.
-    low, high = where, min(where + apart, 0.999)
-    assert crossings(sign * with_roots(low, high)) == 1
+def test_two_roots_in_one_part_of_a_step_are_one_crossing_in_each_direction(apart: float, where: float, sign: int) -> None:
+    roots = where, where + apart
+    y = sign * with_roots(*roots)
+    assert crossings(y) == 1
+    upward, downward = (points_of(y, direction)[:, 2] - 5.0 for direction in (+1, -1))
+    # A root is as exact as y, of order 1e-16, over the slope there.
+    np.testing.assert_allclose([downward, upward][::sign], np.reshape(roots, (2, 1)), atol=1e-15 / apart)
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-12])
@@ -94,21 +107,12 @@ def test_only_crossings_within_the_duration_are_counted() -> None:
     assert [crossings(with_roots(0.2, 0.5, 0.8), duration) for duration in (0.1, 0.4, 0.7, 0.9)] == [0, 1, 1, 2]
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_crossings_of_random_series_are_their_roots_with_positive_slope(seed: int) -> None:
-    polynomial, rising = random_series(seed, +1)
-    assert crossings(polynomial) == rising.size
-
-
 @pytest.mark.parametrize("direction", [+1, -1])
-@pytest.mark.parametrize("seed", range(5))
-def test_points_of_crossings_lie_at_the_roots_of_the_direction(seed: int, direction: int) -> None:
-    polynomial, roots = random_series(seed, direction)
-    x = Polynomial([0.3, -0.7, 0.2])
-    points, found = np.full((2, 8, 3), np.nan), np.zeros(2, np.int64)
-    append_crossings(jet_of(x), jet_of(polynomial), 0, float(direction), 5.0, 1.0, points, found, 1)
-    assert found.tolist() == [0, roots.size]
-    np.testing.assert_allclose(points[1, : roots.size], np.column_stack([x(roots), x.deriv()(roots), 5.0 + roots]), atol=1e-12)
+@pytest.mark.parametrize("seed", range(10))
+def test_crossings_of_random_series_are_their_roots_with_the_slope_of_the_direction(seed: int, direction: int) -> None:
+    y, roots = random_series(seed, direction)
+    assert crossings(direction * y) == roots.size
+    np.testing.assert_allclose(points_of(y, direction), np.column_stack([X(roots), X.deriv()(roots), 5.0 + roots]), atol=1e-12)
 
 
 # Exits.

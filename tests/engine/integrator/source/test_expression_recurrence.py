@@ -25,7 +25,13 @@ TEXTS = (
     "½log(x² + y² + 0.6) − 0.1x³ cos(x + 2y)",
     "(x² + y² + 1)^0.7 − x² y /(1 + y²) + sin(x)³",
 )
-each_text = pytest.mark.parametrize("text", [*TEXTS[:2], *(pytest.param(text, marks=pytest.mark.slow) for text in TEXTS[2:])])
+
+
+def texts_of(fast: int) -> pytest.MarkDecorator:
+    """The texts, of which some are in the fast suite: compilation takes up to seconds for each kernel."""
+    return pytest.mark.parametrize(
+        "text", [*TEXTS[:fast], *(pytest.param(text, marks=pytest.mark.slow) for text in TEXTS[fast:])]
+    )
 
 
 def states_of(count: int) -> np.ndarray:
@@ -55,7 +61,7 @@ def exactly(expression: Expression, x: mpmath.mpf, y: mpmath.mpf) -> mpmath.mpf:
     raise TypeError(expression)
 
 
-@each_text
+@texts_of(fast=2)
 def test_series_obey_the_equations_of_motion(text: str) -> None:
     """(k+1)(k+2) x_(k+2) = −[t^k] V_x along the computed path, with the derivatives of mpmath in 40 digits."""
     definition = parse_formula(text).form.definition
@@ -72,7 +78,7 @@ def test_series_obey_the_equations_of_motion(text: str) -> None:
             np.testing.assert_allclose(np.array(computed, float), np.array(expected, float), rtol=2e-13, atol=1e-15)
 
 
-@each_text
+@texts_of(fast=1)
 def test_the_tangent_map_is_the_derivative_of_the_flow(text: str) -> None:
     kernels, state, h, shift = kernels_of(text), states_of(1)[0], 0.2, 1e-5
     deviations = np.eye(4)
@@ -83,7 +89,7 @@ def test_the_tangent_map_is_the_derivative_of_the_flow(text: str) -> None:
     np.testing.assert_allclose(deviations, (ends[:, :4] - ends[:, 4:8]) / (2.0 * shift), atol=1e-8)
 
 
-@each_text
+@texts_of(fast=2)
 def test_values_and_slopes_are_those_of_numpy(text: str) -> None:
     potential, kernels = parse_formula(text), kernels_of(text)
     for x, y in states_of(5)[:, :2].tolist():
@@ -92,7 +98,7 @@ def test_values_and_slopes_are_those_of_numpy(text: str) -> None:
         assert kernels.potential_value(x, y) == pytest.approx(expected[0], rel=1e-14)
 
 
-@each_text
+@texts_of(fast=1)
 def test_steps_do_not_depend_on_lanes(text: str) -> None:
     kernels, states = kernels_of(text), states_of(LANES)
 
@@ -127,8 +133,7 @@ def test_a_step_outside_the_domain_fails() -> None:
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="reads the assembly of x86-64")
-@pytest.mark.slow
-@each_text
+@texts_of(fast=0)
 def test_a_step_is_vectorised_throughout(text: str) -> None:
     step = njit(error_model="numpy", fastmath={"contract"})(kernels_of(text).step.function.py_func)
     step.compile(SIGNATURES["step"])

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from engine import CASES, StableManifolds, find_stable_manifolds
-from plots.pictures.manifold_strokes import manifold_strokes
+from plots.layers.manifolds import manifold_strokes
 
 
 @pytest.fixture(scope="module")
@@ -15,10 +16,10 @@ def manifolds() -> StableManifolds:
 
 def test_first_images_are_in_front_wider_and_with_a_halo(manifolds: StableManifolds) -> None:
     strokes = manifold_strokes(manifolds)
-    images = [stroke.arcs[0].image for stroke in strokes]
+    image_of = {(arc.x[0], arc.px[0]): arc.image for arc in manifolds.arcs}
+    images = [image_of[tuple(stroke.lines[0][0])] for stroke in strokes]
     assert images == sorted(images, reverse=True)
-    assert {stroke.halo_width > 0.0 for stroke in strokes if stroke.arcs[0].image == 1} == {True}
-    assert {stroke.halo_width for stroke in strokes if stroke.arcs[0].image == 2} == {0.0}
+    assert {(image, stroke.halo_width > 0.0) for image, stroke in zip(images, strokes, strict=True)} == {(1, True), (2, False)}
     assert strokes[-1].width > strokes[0].width
 
 
@@ -28,5 +29,5 @@ def test_closed_curves_are_in_front_of_the_spirals_around_them(manifolds: Stable
 
 
 def test_every_arc_is_drawn_once(manifolds: StableManifolds) -> None:
-    drawn = [arc for stroke in manifold_strokes(manifolds) for arc in stroke.arcs]
-    assert len(drawn) == len(manifolds.arcs) == len(set(map(id, drawn)))
+    drawn = [line.tobytes() for stroke in manifold_strokes(manifolds) for line in stroke.lines]
+    assert sorted(drawn) == sorted(np.column_stack([arc.x, arc.px]).tobytes() for arc in manifolds.arcs)

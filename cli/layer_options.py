@@ -1,0 +1,80 @@
+"""Options of the layers of a map."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any
+
+import typer
+
+from engine import MapSpec
+from plots.layers.layer import Layer, Setting
+from plots.layers.table import LAYER_OF, LAYERS
+
+
+@dataclass(frozen=True)
+class LayerOptions:
+    """The layers that are requested; their options are those of `LAYERS`.
+
+    Attributes
+    ----------
+    values
+        Of the options, by their names.
+    """
+
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def layers(self) -> list[Layer]:
+        """The layers that are on."""
+        return [layer for name, layer in LAYERS.items() if self.values.get(name)]
+
+    @property
+    def pictures(self) -> list[str]:
+        """Pictures of the layers."""
+        return [layer.picture.name for layer in self.layers if layer.picture is not None]
+
+    def with_pictures(self, pictures: Collection[str]) -> LayerOptions:
+        """Return them with the layers that some pictures show."""
+        needed = {LAYER_OF[picture].name: True for picture in pictures if picture in LAYER_OF}
+        return replace(self, values={**self.values, **needed})
+
+    def check(self, spec: MapSpec) -> None:
+        """Raise ValueError if a layer is not defined for the map."""
+        for layer in self.layers:
+            if sentence := layer.refusal(spec):
+                raise ValueError(f"{layer.name}: {sentence}")
+
+
+def read_layers(**values: Any) -> LayerOptions:
+    """Return the layers of some options."""
+    return LayerOptions(values)
+
+
+def _list_options(layers: Iterable[Layer]) -> list[inspect.Parameter]:
+    """Return the options of layers and of their settings, as parameters."""
+    options = []
+    for layer in layers:
+        options.append(_option(layer.name, *_layer_option(layer)))
+        options += [_option(setting.name, *_setting_option(setting)) for setting in layer.settings if setting.help]
+    return options
+
+
+def _option(name: str, kind: Any, default: Any) -> inspect.Parameter:
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
+
+
+def _layer_option(layer: Layer) -> tuple[Any, Any]:
+    """Return the type and the default of what switches a layer on."""
+    if layer.count is None:
+        return Annotated[bool, typer.Option(help=layer.help)], False
+    return Annotated[int, typer.Option(help=layer.help, metavar=layer.count.metavar, min=0, max=layer.count.most)], 0
+
+
+def _setting_option(setting: Setting) -> tuple[Any, Any]:
+    return Annotated[type(setting.default), typer.Option(help=setting.help)], setting.default
+
+
+read_layers.__signature__ = inspect.Signature(_list_options(LAYERS.values()))  # type: ignore[attr-defined]

@@ -1,0 +1,74 @@
+"""Fields of results as attributes of files: numbers and texts as they are, tuples and dataclasses as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from engine.foundations.arrays import read_only
+
+
+def write_field(value: Any) -> Any:
+    """A value as an attribute; `read_field` makes it again."""
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, bool):
+        return int(value)
+    return value if isinstance(value, int | float | str) else json.dumps(value, default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    """What JSON has for a value of a kind that it does not know."""
+    if is_dataclass(value):
+        return {each.name: getattr(value, each.name) for each in fields(value)}
+    if isinstance(value, Enum):
+        return value.value
+    raise TypeError(f"{type(value).__name__} cannot be written to a file")
+
+
+def read_field(hint: Any, found: Any) -> Any:
+    """The value of a field of a type from what a file holds: an array, a number, a text, or JSON."""
+    if hint is np.ndarray:
+        return read_only(np.array(found))
+    hint = _present(hint)
+    plain = np.asarray(found).item() if not isinstance(found, str) else found
+    return _build(hint, json.loads(plain) if get_origin(hint) is tuple or is_dataclass(hint) else plain)
+
+
+def _present(hint: Any) -> Any:
+    """The type of a value that is there, where there may be none."""
+    if get_origin(hint) not in (Union, UnionType):
+        return hint
+    return next(kind for kind in get_args(hint) if kind is not NoneType)
+
+
+def _build(hint: Any, plain: Any) -> Any:
+    """A value of a type from numbers, texts, lists and mappings."""
+    if plain is None:
+        return None
+    hint = _present(hint)
+    if get_origin(hint) is tuple:
+        kinds = get_args(hint)
+        each_kind = kinds[:1] * len(plain) if kinds[-1] is Ellipsis else kinds
+        return tuple(_build(kind, each) for kind, each in zip(each_kind, plain, strict=True))
+    if is_dataclass(hint):
+        kinds_by_name = get_type_hints(hint)
+        return hint(**{name: _build(kinds_by_name[name], each) for name, each in plain.items()})  # type: ignore[operator]
+    return hint(plain)
+
+
+def plain_attributes(attributes: Mapping[Any, Any]) -> dict[str, Any]:
+    """Attributes of a file as they were written: numbers of Python, and tuples where files have arrays or lists."""
+    return {str(name): _plain_attribute(value) for name, value in attributes.items()}
+
+
+def _plain_attribute(value: Any) -> Any:
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    return tuple(value) if isinstance(value, list) else value

@@ -1,0 +1,136 @@
+"""Integrals of a power of the speed along orbits, from the series of their steps.
+
+Compiled once for all potentials, as `engine.integrator.kernels.propagate`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel, subroutine
+from engine.integrator.jit.function_pointers import call_jets, call_step
+from engine.integrator.kernels.events import crossed_exit, find_exit_time, passed_exit, series_slope
+from engine.integrator.kernels.propagate import VECTOR
+from engine.integrator.source.recurrence import LANES, ROWS
+from engine.integrator.source.series import ORDER
+from engine.integrator.source.step_flags import GATE, NEAR, OVERSHOOT
+
+# Nodes of Gauss's rule of 8 points on [−1, 1], and their weights.
+_NODES = (
+    -0.96028985649753623168, -0.79666647741362673959, -0.52553240991632898582, -0.18343464249564980494,
+    0.18343464249564980494, 0.52553240991632898582, 0.79666647741362673959, 0.96028985649753623168,
+)  # fmt: skip
+_WEIGHTS = (
+    0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
+    0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915,
+)  # fmt: skip
+# Parts of a step are halved until the rule on a part and on its halves differ by less than this share of the integral over the
+# step. Where an orbit almost stops, a power of the speed below 1 is almost singular; parts are halved this often at most.
+_ACCURACY = 1e-13
+_MOST_HALVINGS = 40
+
+
+@kernel
+def integrate_speed(step, jets, coefficients, tolerance, duration, power, gates, curves, curve_row, state, integral):
+    """The integral of |v|^power over `duration`, or until an orbit crosses an exit.
+
+    gates (exits, 3); curves (energies, exits, columns); curve_row (lanes,): the row of `curves` of each orbit; state (4, lanes),
+    lanes a multiple of `VECTOR` up to `LANES`; integral (lanes,): zeros, NaN for an orbit whose steps become too short.
+    """
+    lanes = state.shape[1]
+    now = np.zeros((ROWS, LANES))
+    for c in range(4):
+        for i in range(lanes):
+            now[c, i] = state[c, i]
+    new = np.zeros((ROWS, LANES))
+    flag = np.zeros(LANES, np.int64)
+    crossed = np.zeros(LANES, np.int64)
+    lane_orbit = np.zeros(lanes, np.int64)
+    for i in range(lanes):
+        lane_orbit[i] = i
+    x_jet = np.zeros((ORDER + 1, LANES))
+    y_jet = np.zeros((ORDER + 1, LANES))
+    active = lanes
+    while active > 0:
+        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        call_step(step, coefficients, width, tolerance, duration, gates, now, new, flag, crossed)
+        call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
+        for i in range(active - 1, -1, -1):
+            j = lane_orbit[i]
+            failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[5, i] > 0.0)
+            within, ends = _time_inside(now, new, i, flag[i], duration, x_jet, y_jet, curves[curve_row[j]], gates)
+            if failed:
+                integral[j] = np.nan
+            else:
+                integral[j] += _integrate_step(x_jet, y_jet, i, within, power)
+            if ends or failed:
+                active -= 1
+                for c in range(ROWS):
+                    new[c, i] = new[c, active]
+                for k in range(ORDER + 1):
+                    x_jet[k, i] = x_jet[k, active]
+                    y_jet[k, i] = y_jet[k, active]
+                lane_orbit[i] = lane_orbit[active]
+        now, new = new, now
+
+
+@subroutine
+def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
+    """How long the orbit of lane i is inside within its step and the duration, and whether it ends in the step."""
+    late = flags & OVERSHOOT != 0
+    within = min(new[5, i], duration - now[4, i])
+    channel = 0
+    if late or flags & (GATE | NEAR) != 0:
+        channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
+        if channel == 0:
+            channel = passed_exit(x_jet, y_jet, i, new[5, i], curves)
+    if channel > 0:
+        within = min(within, find_exit_time(x_jet, y_jet, i, new[5, i], curves[channel - 1]))
+    return within, late or channel > 0
+
+
+@subroutine
+def _integrate_step(x_jet, y_jet, i, duration, power):
+    """The integral over a step, in parts from its start on."""
+    total = 0.0
+    low = 0.0
+    width = duration
+    error = 0.0
+    halvings = 0
+    while low < duration:
+        # Gauss's rule on the part and on its halves.
+        whole = 0.0
+        halves = 0.0
+        for rule in range(3):
+            half = 0.5 * width if rule == 0 else 0.25 * width
+            middle = low + (half if rule < 2 else 3.0 * half)
+            found = _gauss(x_jet, y_jet, i, middle, half, power)
+            if rule == 0:
+                whole = found
+            else:
+                halves += found
+        if halvings == 0 and low == 0.0:
+            error = _ACCURACY * whole
+        if abs(halves - whole) > error and halvings < _MOST_HALVINGS:
+            width *= 0.5
+            halvings += 1
+            continue
+        total += halves
+        low += width
+        # The next part may be longer again, up to the end of the step.
+        if halvings > 0:
+            width *= 2.0
+            halvings -= 1
+        width = min(width, duration - low)
+    return total
+
+
+@subroutine
+def _gauss(x_jet, y_jet, i, middle, half, power):
+    """Gauss's rule on a part of a step, given by its middle and half its width."""
+    total = 0.0
+    for k in range(8):
+        vx = series_slope(x_jet, i, middle + half * _NODES[k])
+        vy = series_slope(y_jet, i, middle + half * _NODES[k])
+        total += _WEIGHTS[k] * (vx * vx + vy * vy) ** (0.5 * power)
+    return half * total

@@ -1,0 +1,15 @@
+"""The clock of the jobs."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class Clock(Protocol):
+    """What the module `time` has, and a clock that is set by hand."""
+
+    def monotonic(self) -> float:
+        """Seconds since a fixed moment."""
+
+    def thread_time(self) -> float:
+        """Processor time of the calling thread, in seconds."""

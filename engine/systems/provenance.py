@@ -1,0 +1,35 @@
+"""How a result was made, in plain values: the potential, what was asked for, the integrator and the version."""
+
+from __future__ import annotations
+
+import json
+from importlib import metadata
+from typing import TYPE_CHECKING, Any
+
+from engine.integrator.source.recurrence import TOLERANCE
+from engine.integrator.source.series import ORDER
+from engine.systems.outcomes import end_kinds
+
+if TYPE_CHECKING:
+    from engine.systems.potential import Potential
+
+
+def describe_potential(potential: Potential) -> dict[str, Any]:
+    """Return name, formula with all digits, rotation, an attribute for each kind of end, and origin of the axes."""
+    return {
+        "potential": potential.name,
+        "terms": potential.form.text,
+        "rotation": potential.rotation,
+        **{kind.attribute: kind.write([end for end in potential.ends if isinstance(end, kind)]) for kind in end_kinds()},
+        "origin": json.dumps(potential.origin),
+    }
+
+
+def describe_run(potential: Potential, **request: Any) -> dict[str, Any]:
+    """How a computation with a potential was made: the potential, what was asked for, the integrator and the version."""
+    return {
+        **describe_potential(potential),
+        **request,
+        "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
+        "version": metadata.version("escape-explorer"),
+    }

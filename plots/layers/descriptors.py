@@ -1,0 +1,133 @@
+"""The layer of Lagrangian descriptors, whose picture shows where orbits part."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from engine import DescriptorMap, EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
+from engine.jobs.job import Job
+from engine.jobs.map_jobs import map_job
+from engine.maps.descriptors import DEFAULT_DURATION
+from plots.layers.layer import Layer, Pixels, Setting, Settings
+from plots.layers.legend import ColourScale, Legend
+from plots.layers.picture import Picture, ShownMap
+from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
+from plots.pictures.palette import Entry, Palette
+
+# Classes of equal width, as many as there are codes left, and the shares of the pixels below and above them.
+_CLASSES = 240
+_LEFT_OUT = 0.01
+
+DURATION = Setting(
+    name="descriptor_time",
+    title="Time of the descriptor",
+    word="τ",
+    choices={f"{time:g}": time for time in (5.0, DEFAULT_DURATION, 20.0, 40.0)},
+    default=DEFAULT_DURATION,
+    help="Time τ of the Lagrangian descriptor, in units of time of the well.",
+)
+POWER = Setting(
+    name="descriptor_power",
+    title="Exponent of the descriptor",
+    word="p",
+    choices={f"{power:g}": power for power in (0.25, 0.5, 1.0)},
+    default=0.5,
+    help="Exponent p of the speed in the Lagrangian descriptor, above 0 and at most 1.",
+)
+DIRECTION = Setting(
+    name="descriptor_direction",
+    title="Direction of time of the descriptor",
+    word="",
+    choices={str(direction): direction for direction in TimeDirection},
+    default=TimeDirection.BOTH,
+    help="Direction of time of the Lagrangian descriptor.",
+)
+
+
+@functools.cache
+def _scale_colours() -> tuple[str, ...]:
+    # Slow to import, and needed for pictures only.
+    from matplotlib import colormaps
+    from matplotlib.colors import to_hex
+
+    scale = colormaps["viridis"].resampled(_CLASSES)
+    return tuple(to_hex(scale(k)) for k in range(_CLASSES))
+
+
+def _colours(palette: Palette) -> list[str]:
+    return [*palette.outcome_colours, *_scale_colours()]
+
+
+def _job(spec: MapSpec, settings: Settings) -> Job[DescriptorMap]:
+    options = (
+        ("duration", DURATION.value_in(settings) * spec.potential.units.time),
+        ("power", POWER.value_in(settings)),
+        ("direction", DIRECTION.value_in(settings)),
+    )
+    return Job(compute_lagrangian_descriptor, (map_job(spec),), options)
+
+
+def _limits(found: DescriptorMap) -> tuple[float, float]:
+    """The ends of the scale, which few pixels are beyond."""
+    known = found.descriptor[np.isfinite(found.descriptor)]
+    if not known.size:
+        return 0.0, 1.0
+    low, high = np.quantile(known, (_LEFT_OUT, 1.0 - _LEFT_OUT)).tolist()
+    return (low, high) if low < high else (low, low + 1.0)
+
+
+def _codes(found: DescriptorMap, frame: EscapeMap | None) -> np.ndarray:
+    low, high = _limits(found)
+    is_known = np.isfinite(found.descriptor)
+    share = (np.clip(np.where(is_known, found.descriptor, low), low, high) - low) / (high - low)
+    fate = np.full(found.descriptor.shape, Fate.NOT_COMPUTED) if frame is None else frame.fate
+    without = np.where((fate == Fate.FORBIDDEN) | (fate == Fate.OUTSIDE), fate, Fate.NOT_COMPUTED)
+    classes = np.minimum((share * _CLASSES).astype(int), _CLASSES - 1)
+    return pixel_codes(np.where(is_known, Fate.BOUNDED, without), classes, bounded_too=True)
+
+
+def _legend(shown: ShownMap) -> Legend:
+    found = shown.results.get("descriptor")
+    if found is None:
+        return Legend(sentence="…")
+    without = {Fate.FORBIDDEN, Fate.OUTSIDE}
+    others: list[Entry] = [entry for fate, entry in shown.outcome_entries().items() if fate in without]
+    low, high = (float(f"{end:.3g}") for end in _limits(found))
+    return Legend(others=others, scale=ColourScale(low, high, _scale_colours(), is_logarithmic=False))
+
+
+DESCRIPTORS = Layer(
+    name="descriptor",
+    title="Lagrangian descriptor",
+    help="Integrate a power of the speed along each orbit.",
+    stage="Lagrangian descriptor",
+    result=DescriptorMap,
+    job=_job,
+    settings=(DURATION, POWER, DIRECTION),
+    pixels=Pixels(
+        column="descriptor",
+        codes=_codes,
+        colours=_colours,
+        entries=lambda found, palette: [],
+        values=lambda found: found.descriptor.astype(np.float32),
+        value_name="Lagrangian descriptor",
+        sentences=[""] * (FIRST_CLASS + _CLASSES),
+    ),
+    picture=Picture(
+        name="descriptors",
+        title="Lagrangian descriptor",
+        short_title="Descriptor",
+        help=(
+            "The integral of a power of the speed, |v|^p, along each orbit over a time τ. It changes rapidly where neighbours "
+            "part: forward in time on the stable manifolds of unstable periodic orbits, backward on the unstable ones, and in "
+            "both directions the picture shows both. An integral ends at the exit, so it is small where orbits leave at once."
+        ),
+        column="descriptor",
+        colours=_colours,
+        legend=_legend,
+    ),
+    variables=("descriptor",),
+)
+"""Integrals of a power of the speed along orbits."""

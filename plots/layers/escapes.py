@@ -1,0 +1,129 @@
+"""The pictures of a map alone, and those that compare it with another view."""
+
+from __future__ import annotations
+
+from plots.layers.legend import Legend
+from plots.layers.picture import Picture, ShownMap
+from plots.pictures.palette import Palette
+
+
+def _region_legend(shown: ShownMap) -> Legend:
+    return Legend(others=[*shown.outcome_entries().values()])
+
+
+def _basin_legend(shown: ShownMap) -> Legend:
+    ends = shown.palette.legend_entries(shown.spec.outcomes)
+    return Legend(ends, [*shown.outcome_entries().values()], is_short=True)
+
+
+def _time_legend(shown: ShownMap) -> Legend:
+    return Legend(others=[*shown.outcome_entries().values()], scale=shown.time_scale())
+
+
+def _crossing_legend(shown: ShownMap) -> Legend:
+    return Legend(shown.palette.crossing_entries, [*shown.outcome_entries().values()])
+
+
+def _other_legend(shown: ShownMap) -> Legend:
+    """The outcomes of the other view, and its title."""
+    if shown.other is None:
+        return Legend(sentence="…")
+    return Legend(shown.palette.legend_entries(shown.other.outcomes), is_short=True, sentence=shown.other.title)
+
+
+def _difference_legend(shown: ShownMap) -> Legend:
+    """The classes of pixels, or why they are not compared."""
+    if shown.other is not None and shown.other.axes != shown.spec.plane.axis_symbols:
+        return Legend(sentence="Other axes: pixels cannot be compared.")
+    return Legend(shown.palette.difference_entries)
+
+
+def _fate_colours(palette: Palette) -> list[str]:
+    return palette.fate_colours
+
+
+CURVES = Picture(
+    name="curves",
+    title="Zero-velocity curve and exits",
+    short_title="Well",
+    help="",
+    column="fate",
+    colours=lambda palette: palette.region_colours,
+    legend=_region_legend,
+)
+
+BASINS = Picture(
+    name="basins",
+    title="Basins of escape",
+    short_title="Basins",
+    help=(
+        "Each pixel is a start, and its colour shows the exit channel through which its orbit escapes, the body with which "
+        "it collides, or that it escapes beyond a radius. Inside a large "
+        "region of one colour all neighbours escape through the same exit. Elsewhere the colours are mixed on every "
+        "scale: however close two starts are, they may escape through different exits. Bounded orbits have not escaped by "
+        "t_max; many of them never will; dots are passages of the chosen orbits through the plane."
+    ),
+    column="fate",
+    colours=_fate_colours,
+    legend=_basin_legend,
+)
+
+TIMES = Picture(
+    name="times",
+    title="Escape time",
+    short_title="Times",
+    help=(
+        "The escape time is the time at which an orbit crosses a Lyapunov orbit outward. It is short and smooth inside "
+        "the basins and diverges at their fractal boundaries. It is long near islands of bounded orbits, too, because "
+        "orbits stick to the edge of an island before they escape. The colour scale is logarithmic; the colours at its ends "
+        "stand for all shorter and all longer times."
+    ),
+    column="fate",
+    colours=lambda palette: palette.background_colours,
+    legend=_time_legend,
+    has_times=True,
+)
+
+CROSSINGS = Picture(
+    name="crossings",
+    title="Crossings of y = 0",
+    short_title="Crossings",
+    help=(
+        "The number of times an orbit passes the axis y = 0 upward before it escapes; the start does not count. No "
+        "crossing at all is a direct escape. There is about one crossing per period of the well, so the bands follow the "
+        "escape time, and they become thinner towards a basin boundary."
+    ),
+    column="crossing_class",
+    colours=lambda palette: palette.crossing_colours,
+    legend=_crossing_legend,
+)
+
+COMPARED = Picture(
+    name="compared",
+    title="The other view",
+    short_title="Other",
+    help=(
+        "The basins of the view with which this one is compared: another energy, system or plane, with the same window, "
+        "resolution and t_max. Zoom and cursor are those of all pictures; a click marks the same place in both, and its "
+        "orbit is that of the view in the controls."
+    ),
+    column="fate",
+    colours=_fate_colours,
+    legend=_other_legend,
+    compares=True,
+)
+
+DIFFERENCES = Picture(
+    name="differences",
+    title="Where they differ",
+    short_title="Differ",
+    help=(
+        "Starts whose orbits have different outcomes in the two views: another exit, or inside in one of them only. Exits "
+        "are compared by their numbers. Close to a basin boundary any change moves starts across it, so small changes of "
+        "the energy show where the boundaries are."
+    ),
+    column="difference",
+    colours=lambda palette: palette.difference_colours,
+    legend=_difference_legend,
+    compares=True,
+)

@@ -1,0 +1,95 @@
+"""The layer of the stable manifolds of the Lyapunov orbits, which are curves over other pictures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from engine import MapSpec, StableManifolds, find_stable_manifolds
+from engine.jobs.job import Job
+from engine.periodic.stable_manifolds import MOST_IMAGES, ManifoldArc
+from engine.slices.section import SECTION
+from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
+from plots.pictures.palette import Entry, Mark, Palette
+
+# Images that the page computes: later ones are less than a pixel apart.
+_IMAGES = 3
+
+# Strokes of the first, the second and all later images, which lie ever closer together.
+_WIDTHS, _ALPHAS = (1.6, 1.0, 0.6), (1.0, 0.9, 0.6)
+_RIM = 0.8
+
+IMAGE = Setting(
+    name="images",
+    title="Image of the manifolds",
+    word="Image",
+    choices={**{str(image): image for image in range(1, _IMAGES + 1)}, "all": 0},
+    default=0,
+)
+"""The image that is drawn; 0 for all."""
+
+
+def manifold_strokes(manifolds: StableManifolds) -> list[Stroke]:
+    """The manifolds from back to front.
+
+    Earlier images are in front of later ones, and only the first has a halo. Of one image, shorter curves are in front: a closed
+    curve that bounds a basin stays visible although the spirals of other channels wind around it within a pixel.
+    """
+    groups: dict[tuple[int, int], list[ManifoldArc]] = {}
+    for arc in manifolds.arcs:
+        groups.setdefault((arc.image, arc.channel), []).append(arc)
+    order = sorted(groups, key=lambda key: (-key[0], -sum(map(_length, groups[key]))))
+    return [_stroke(channel, image, groups[image, channel]) for image, channel in order]
+
+
+def select_image(manifolds: StableManifolds, image: int) -> StableManifolds:
+    """The arcs of one image; of all images for 0."""
+    if image == 0:
+        return manifolds
+    return replace(manifolds, arcs=tuple(arc for arc in manifolds.arcs if arc.image == image))
+
+
+def _stroke(channel: int, image: int, arcs: list[ManifoldArc]) -> Stroke:
+    place = min(image, len(_WIDTHS)) - 1
+    halo_width = _WIDTHS[place] + 2.0 * _RIM if image == 1 else 0.0
+    lines = tuple(np.column_stack([arc.x, arc.px]) for arc in arcs)
+    return Stroke(channel, lines, _WIDTHS[place], halo_width, _ALPHAS[place])
+
+
+def _length(arc: ManifoldArc) -> float:
+    return float(np.hypot(np.diff(arc.x), np.diff(arc.px)).sum())
+
+
+def _entries(manifolds: StableManifolds, palette: Palette) -> list[Entry]:
+    channels = sorted({arc.channel for arc in manifolds.arcs})
+    return [Entry(f"stable manifold of Lyapunov orbit {k}", palette.channels[k - 1], Mark.LINE) for k in channels]
+
+
+def _job(spec: MapSpec, settings: Settings) -> Job[StableManifolds]:
+    options = ("images", settings.get(MANIFOLDS.name, _IMAGES)), ("window", spec.given_window)
+    return Job(find_stable_manifolds, (spec.potential, spec.common_energy), options)
+
+
+def _refusal(spec: MapSpec) -> str:
+    if spec.plane != SECTION.plane or spec.backward:
+        return f"Stable manifolds are curves in the {SECTION.plane.title} plane and are drawn on maps forward in time there only."
+    return ""
+
+
+MANIFOLDS = Layer(
+    name="manifolds",
+    title="Stable manifolds",
+    help="Number of images of the stable manifolds, on x_px; 0 for none.",
+    stage="stable manifolds",
+    result=StableManifolds,
+    job=_job,
+    refusal=_refusal,
+    count=Count("IMAGES", MOST_IMAGES),
+    settings=(IMAGE,),
+    select=lambda manifolds, settings: select_image(manifolds, IMAGE.value_in(settings)),
+    spec_of=lambda manifolds: MapSpec(manifolds.potential, SECTION.plane, manifolds.energy),
+    over=Over(pictures=("curves", "basins", "crossings"), legend=_entries, strokes=manifold_strokes),
+    has_table=True,
+)
+"""Curves that separate orbits that leave from those that turn back."""

@@ -1,0 +1,46 @@
+"""Results of the layers of a map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from plots.layers.table import LAYERS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class MapAnalyses(Mapping[str, Any]):
+    """Complete results by the names of their layers; without those that were not requested or are not finished."""
+
+    results: Mapping[str, Any] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.results[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name in LAYERS if name in self.results)
+
+    def __len__(self) -> int:
+        return len(self.results)
+
+    def with_result(self, name: str, result: Any) -> MapAnalyses:
+        """The same with another result of a layer; None removes it."""
+        others = {other: found for other, found in self.results.items() if other != name}
+        return MapAnalyses(others if result is None else {**others, name: result})
+
+    def describe(self) -> list[str]:
+        """A sentence for each result."""
+        return [result.describe() for result in self.values()]
+
+    def add_to(self, dataset: xr.Dataset) -> xr.Dataset:
+        """Add the variables of the layers, such as ``character`` and ``origin``, to the dataset of a map."""
+        found = {name: result.to_xarray()[name].variable for layer, result in self.items() for name in LAYERS[layer].variables}
+        return dataset.assign(found)
+
+
+NO_ANALYSES = MapAnalyses()
+"""No results."""

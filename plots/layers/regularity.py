@@ -1,0 +1,104 @@
+"""The layer of regular and chaotic bounded orbits, which has a picture of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from engine import EscapeMap, Evidence, Fate, MapSpec, Regularity, RegularityMap, compute_regularity
+from engine.jobs.job import Job
+from engine.jobs.map_jobs import map_job
+from plots.layers.layer import Code, Layer, Pixels, Settings, occurring_entries
+from plots.layers.legend import Legend
+from plots.layers.picture import Picture, ShownMap
+from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
+from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
+
+# Colours as in the paper, and colour-blind safe ones.
+CODES = (
+    Code(Regularity.NOT_APPLICABLE, "escapes", "", ("#f4ead2", "#f3efe2")),
+    Code(Regularity.REGULAR, "bounded and regular", "regular", ("#40e8e6", "#87e9f1")),
+    Code(Regularity.CHAOTIC, "bounded and chaotic", "chaotic", ("#d81fa4", "#ff234a")),
+    Code(
+        Regularity.NO_SIGN_OF_CHAOS,
+        "bounded, no sign of chaos until t_max",
+        "no sign of chaos until t_max",
+        ("#a0c0b0", "#20c0d8"),
+    ),
+    Code(
+        Regularity.NOT_JUDGED,
+        "bounded, not judged yet",
+        "regular or chaotic: not known yet",
+        (PAPER.bounded, COLOUR_BLIND_SAFE.bounded),
+    ),
+)
+"""All codes in order."""
+
+
+def entries(palette: Palette) -> list[Entry]:
+    """The entries of the codes."""
+    return [code.entry(palette) for code in CODES]
+
+
+def _colours(palette: Palette) -> list[str]:
+    return [*palette.outcome_colours, *(entry.colour for entry in entries(palette))]
+
+
+def _job(spec: MapSpec, settings: Settings) -> Job[RegularityMap]:
+    return Job(compute_regularity, (map_job(spec),))
+
+
+def _codes(regularity: RegularityMap, frame: EscapeMap | None) -> np.ndarray:
+    fate = np.full(regularity.character.shape, Fate.BOUNDED) if frame is None else frame.fate
+    return pixel_codes(fate, regularity.character, bounded_too=True)
+
+
+def _codes_by_evidence(images: Mapping[str, np.ndarray]) -> np.ndarray:
+    """What the evidence tells: orbits on an invariant torus are regular."""
+    character = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
+    character[images["evidence"] == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
+    return pixel_codes(images["fate"], character, bounded_too=True)
+
+
+def _legend(shown: ShownMap) -> Legend:
+    escapes, *judged, unjudged = entries(shown.palette)
+    result = shown.results.get("judge")
+    pending = [] if result is not None and result.complete else [unjudged]
+    others = [entry for fate, entry in shown.outcome_entries().items() if fate is not Fate.BOUNDED]
+    return Legend([*judged, *pending], [escapes, *others])
+
+
+REGULARITY = Layer(
+    name="judge",
+    title="Regular or chaotic",
+    help="Classify bounded orbits as regular or chaotic.",
+    stage="bounded orbits",
+    result=RegularityMap,
+    job=_job,
+    pixels=Pixels(
+        column="character",
+        codes=_codes,
+        colours=_colours,
+        entries=lambda regularity, palette: occurring_entries(CODES, regularity.character, palette),
+        sentences=[""] * FIRST_CLASS + [code.sentence for code in CODES],
+        first_codes=_codes_by_evidence,
+    ),
+    picture=Picture(
+        name="characters",
+        title="Regular or chaotic",
+        short_title="Chaos",
+        help=(
+            "A bounded orbit is regular if averages over it agree as on a torus, and chaotic if SALI falls by t_max; "
+            "otherwise it shows no sign of chaos until t_max. Regular orbits form islands, which no orbit enters or leaves. A "
+            "chaotic orbit that has not escaped is usually sticky: it stays near the edge of an island and may escape long "
+            "after t_max. Escaping orbits are not classified."
+        ),
+        column="character",
+        colours=_colours,
+        legend=_legend,
+    ),
+    variables=("character",),
+    is_empty=lambda frame: not np.any(frame.fate == Fate.BOUNDED),
+)
+"""Which bounded orbits are regular and which chaotic."""

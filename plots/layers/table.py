@@ -1,0 +1,55 @@
+"""All layers and all pictures of a map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from plots.layers.descriptors import DESCRIPTORS
+from plots.layers.escapes import BASINS, COMPARED, CROSSINGS, CURVES, DIFFERENCES, TIMES
+from plots.layers.layer import Layer, Setting
+from plots.layers.legend import Legend
+from plots.layers.manifolds import MANIFOLDS
+from plots.layers.origins import ORIGINS
+from plots.layers.picture import Picture, ShownMap
+from plots.layers.regularity import REGULARITY
+from plots.layers.trust import TRUST
+from plots.pictures.palette import Entry
+
+
+def _by_name[Named: (Layer, Picture, Setting)](*entries: Named) -> Mapping[str, Named]:
+    return MappingProxyType({entry.name: entry for entry in entries})
+
+
+LAYERS = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS, DESCRIPTORS)
+"""The layers by their names, in the order of their switches."""
+
+SETTINGS = _by_name(*(setting for layer in LAYERS.values() for setting in layer.settings))
+"""The settings of all layers."""
+
+LAYER_OF = MappingProxyType({layer.picture.name: layer for layer in LAYERS.values() if layer.picture is not None})
+"""The layer that a picture shows, by the name of the picture."""
+
+PICTURES = _by_name(
+    CURVES,
+    BASINS,
+    TIMES,
+    CROSSINGS,
+    *(layer.picture for layer in LAYERS.values() if layer.picture is not None),
+    COMPARED,
+    DIFFERENCES,
+)
+"""The pictures by their names."""
+
+TITLES = MappingProxyType({name: picture.title for name, picture in PICTURES.items() if not picture.compares})
+"""Titles of the pictures of a map alone, which figures can show."""
+
+
+def map_legend(picture: str, shown: ShownMap) -> Legend:
+    """The legend of a picture of a map, with the entries of what layers draw over it."""
+    over: list[Entry] = []
+    for name, result in shown.results.items():
+        marks = LAYERS[name].over_picture(picture)
+        over += [] if marks is None else marks.legend(result, shown.palette)
+    return replace(PICTURES[picture].legend(shown), over=over)

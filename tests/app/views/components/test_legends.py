@@ -1,0 +1,65 @@
+"""The legend of a map has the colours of its palette, and what the map shows."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from app.views.components.legends import picture_legend
+from engine import CASES, Fate, MapSpec, Plane, Potential, parse_formula
+from engine.systems.outcomes import Centre
+from plots.layers.picture import ShownMap
+from plots.layers.table import map_legend
+from plots.layers.trust import TONES
+from plots.pictures.palette import PAPER
+from plots.pictures.time_scale import TimeScale
+
+PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]*)")
+ALL = frozenset(int(fate) for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED, 1, 2))
+
+
+def legend(picture: str, potential: Potential = CASES["II"], **changes: Any) -> str:
+    """HTML of the legend of a picture."""
+    values: dict[str, Any] = {"palette": PAPER, "times": TimeScale(2.5, 100.0), "fates": ALL}
+    return picture_legend(map_legend(picture, ShownMap(MapSpec(potential, Plane.X_PX, 0.19), **(values | changes))))
+
+
+def entries(html: str) -> list[tuple[str, str]]:
+    """Label and colour of each entry."""
+    return [(label.replace("&gt;", ">"), colour) for colour, label in PATCH.findall(html)]
+
+
+def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whole_ones_as_titles() -> None:
+    labels = [label for label, _ in entries(legend("basins", fates=frozenset({int(Fate.BOUNDED)})))]
+    assert labels == ["1", "2", "3", "bounded"]
+    html = legend("basins")
+    assert f"title='{PAPER.outcomes[Fate.FORBIDDEN].label}'" in html
+    assert "title='channel 2'" in html
+
+
+def test_crossings_have_their_classes_and_what_is_drawn_over_them() -> None:
+    expected = [(entry.label, entry.colour) for entry in PAPER.crossing_entries]
+    assert entries(legend("crossings")) == expected
+    html = legend("crossings", results={"trust": None})
+    assert "doubtful pixels" in html
+    assert all(tone in html for tone in TONES)
+
+
+def test_the_scale_has_both_ends_and_says_whether_it_is_locked() -> None:
+    html = legend("times", times=TimeScale(2.5, 1234.0))
+    assert "≤ 2.5 " in html
+    assert "≥ 1 234" in html
+    assert PAPER.escape_time[0] in html
+    assert PAPER.escape_time[-1] in html
+    assert "locked" not in html
+    assert "locked" in legend("times", is_locked=True)
+
+
+def test_layers_have_legends_of_their_own() -> None:
+    assert "bounded and chaotic" in legend("characters")
+    assert "Enters by" in legend("origins")
+
+
+def test_the_name_of_a_centre_is_text() -> None:
+    named = parse_formula("½(x² + y²) − xy²").with_outcomes([Centre(0.2, 0.3, 0.05, "<b>'")])
+    assert not any("<b>" in legend(picture, named) for picture in ("basins", "origins"))

@@ -1,0 +1,59 @@
+"""The completion of names shows what is for users."""
+
+from __future__ import annotations
+
+import rlcompleter
+
+import pytest
+
+import escape_explorer
+from engine import CASES, integrate_orbit
+
+INNER = {
+    "codes",
+    "columns",
+    "fate_labels",
+    "held_as",
+    "numbers",
+    "row_dimension",
+    "shown_numbers",
+    "certificate",
+    "certifies_tori",
+}
+THINGS = {
+    "potential": (CASES["I"], {"value", "saddles", "in_rotating_frame", "save"}, {"lineage", "check_at_rest", "well", *INNER}),
+    "orbit": (integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 5.0), {"x", "sali", "find_section_crossings", "plot"}, INNER),
+}
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_the_names_of_a_result_are_those_for_users(name: str) -> None:
+    thing, wanted, inner = THINGS[name]
+    names = set(dir(thing))
+    assert wanted <= names
+    assert not inner & names
+
+
+def test_a_prompt_does_not_complete_inner_names() -> None:
+    completer = rlcompleter.Completer({"p": CASES["I"]})
+    assert completer.complete("p.lin", 0) is None
+    assert completer.complete("p.in_r", 0) == "p.in_rotating_frame("
+
+
+def test_all_names_can_be_imported_at_once() -> None:
+    names: dict[str, object] = {}
+    exec("from escape_explorer import *", names)
+    assert {"Explorer", "compute_map", "FormulaError", "LawFit"} <= names.keys()
+
+
+def test_without_the_page_its_name_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("escape_explorer.find_spec", lambda _name: None)
+    names: dict[str, object] = {}
+    exec("from escape_explorer import *", names)
+    assert "Explorer" not in names
+    assert "compute_map" in names
+
+
+def test_the_package_tells_its_version() -> None:
+    assert escape_explorer.__version__.split(".")[0].isdigit()
+    assert "__version__" in dir(escape_explorer)
