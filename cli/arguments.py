@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import reprlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Annotated, Any
 
 import numpy as np
@@ -15,7 +15,7 @@ import typer
 
 from cli.layer_options import LayerOptions, read_layers
 from cli.option_marks import Of
-from engine import POTENTIALS, Plane, Potential, Slice, System, review_potential
+from engine import MEASURES, POTENTIALS, Plane, Potential, Slice, System, review_potential
 from engine.foundations.validation import checked_count
 from engine.slices.energies import Energy
 from engine.slices.slice_text import AXIS_NAMES, read_slice
@@ -58,8 +58,17 @@ def find_system(case: Case) -> System:
     return system
 
 
-Exponent = Annotated[bool, typer.Option(help="Whether to compute the uncertainty exponent, which takes longest.")]
-"""Type of the option of commands that measure basins."""
+_SLOW = ", ".join(name for name, measure in MEASURES.items() if measure.slow)
+Slow = Annotated[bool, typer.Option(help=f"Whether to compute the measures that take longest: {_SLOW}.")]
+"""Type of the option of commands that compute measures."""
+
+
+def check_measures(chosen: Collection[str] | None, known: Collection[str]) -> list[str]:
+    """Return chosen names of measures in the order of the known ones; ValueError for others."""
+    if wrong := [name for name in chosen or () if name not in known]:
+        raise ValueError(f"measure={wrong[0]}: must be one of {', '.join(known)}")
+    return [name for name in known if name in (chosen or ())]
+
 
 Case = Annotated[str, typer.Argument(metavar="CASE"), Of(find_system)]
 """Type of the argument of commands for one system."""

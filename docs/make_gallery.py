@@ -28,8 +28,8 @@ from engine import (
 )
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.jobs.job import run_job
-from engine.jobs.map_jobs import map_job
 from engine.slices.limiting_curves import trace_equipotentials
+from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Stroke
 from plots.layers.map_analyses import MapAnalyses
 from plots.layers.map_images import picture_pixels

@@ -9,8 +9,8 @@ These are the public names of the library. All results show themselves in notebo
   `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`,
   `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`
-- basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
-  `fit_decay_laws`
+- measures: `MEASURES`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`,
+  `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`, `fit_decay_laws`
 - files: `Result.save`, `open_result`
 - sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
 """
@@ -29,11 +29,16 @@ from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.maps.trust import Trust, TrustMap, compute_trust
+from engine.maps.uncertain_pairs import compute_uncertainty_exponent
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws, LawFit
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
+from engine.measures.exit_matching import ExitMatching, compute_exit_matching
+from engine.measures.islands import Islands, compute_islands
+from engine.measures.measure import Measure
+from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.propagation.classification import Outcomes, classify_orbits
@@ -44,6 +49,7 @@ from engine.slices.planes import Plane, start_states
 from engine.slices.sampling import sample_starts
 from engine.slices.slice import Slice
 from engine.slices.window import Window
+from engine.sweeps.measures import MEASURES
 from engine.sweeps.opened_results import open_result
 from engine.sweeps.plan import plan_sweep
 from engine.sweeps.spec import SweepSpec
@@ -57,7 +63,7 @@ from engine.systems.potential import Potential
 from engine.systems.review.potential_review import PotentialReview, review_potential
 from engine.systems.system import System
 from engine.trajectories.birkhoff_digits import BirkhoffDigits
-from engine.trajectories.entrances import sample_entrances
+from engine.trajectories.entrances import sample_entrances, sample_entrances_by_exit
 from engine.trajectories.flux import EscapeFlux, compute_flux
 from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
 from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
@@ -67,10 +73,12 @@ from engine.trajectories.trajectory import Orbit, integrate_orbit
 
 __all__ = [
     "CASES",
+    "MEASURES",
     "POTENTIALS",
     "BasinEntropy",
     "BirkhoffDigits",
     "Centre",
+    "ChaoticShare",
     "Coordinate",
     "DecayLaws",
     "DescriptorMap",
@@ -81,11 +89,14 @@ __all__ = [
     "EscapeStatistics",
     "Evidence",
     "Execution",
+    "ExitMatching",
     "Fate",
     "FormulaError",
+    "Islands",
     "LawFit",
     "LyapunovOrbit",
     "MapSpec",
+    "Measure",
     "Orbit",
     "OrbitVerdict",
     "OriginFateMap",
@@ -113,7 +124,10 @@ __all__ = [
     "Window",
     "classify_orbits",
     "compute_basin_entropy",
+    "compute_chaotic_share",
+    "compute_exit_matching",
     "compute_flux",
+    "compute_islands",
     "compute_lagrangian_descriptor",
     "compute_map",
     "compute_origin_fates",
@@ -135,6 +149,7 @@ __all__ = [
     "plan_sweep",
     "review_potential",
     "sample_entrances",
+    "sample_entrances_by_exit",
     "sample_orbits",
     "sample_starts",
     "start_states",

@@ -8,20 +8,37 @@ import threading
 from collections.abc import Callable, Mapping
 from functools import partial
 
+import numpy as np
+
 from app.runtime.process_state import ProcessState
 from app.views.analysis import statistics
 from app.views.orbits import orbit_plots
-from engine import CASES, Potential
+from engine import CASES, Potential, integrate_orbit, start_states
 from engine.integrator.portable_kernels import kernel_module
-from engine.warmup import prepare_for_evidence, prepare_for_maps, prepare_kernels, reserve_catalogue
+from engine.maps.warmup import (
+    call_after_maps,
+    prepare_for_analyses,
+    prepare_for_evidence,
+    prepare_for_maps,
+    reserve_catalogue,
+)
+from engine.slices.section import SECTION
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")
 
+
+def prepare_for_orbits(potential: Potential) -> None:
+    """Compile the kernels of single orbits, or load them from the cache."""
+    start = start_states(potential, SECTION.plane, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))[0]
+    call_after_maps(lambda: integrate_orbit(potential, start, 10.0 * potential.units.time))
+
+
 _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
     "maps": prepare_for_maps,
     "evidence": prepare_for_evidence,
-    "orbits and analyses": prepare_kernels,
+    "orbits": prepare_for_orbits,
+    "analyses": prepare_for_analyses,
 }
 
 
@@ -37,7 +54,7 @@ def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
 STEPS: Mapping[str, Callable[[], object]] = {
     **_prepare_cases("maps"),
     "the kernels of browsers": kernel_module,
-    **_prepare_cases("evidence", "orbits and analyses"),
+    **_prepare_cases("evidence", "orbits", "analyses"),
     "the panes of an orbit": orbit_plots.prepare,
     "the charts of statistics": statistics.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,

@@ -15,31 +15,17 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.glossary import with_terms
 from app.state.view import Analysis
-from app.views.analysis.basin_measures import BasinMeasuresView
+from app.views.analysis.basin_measures import TOLD, BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
-from engine import (
-    EscapeMap,
-    MapSpec,
-    ParameterAxis,
-    Sweep,
-    SweepSpec,
-    UncertaintyExponent,
-    Window,
-    compute_uncertainty_exponent,
-)
+from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, Sweep, SweepSpec, Window
 from engine.jobs.job import Job
-from engine.jobs.map_jobs import (
-    basin_measures_job,
-    decay_laws_job,
-    flux_job,
-    sweep_job,
-)
+from engine.maps.warmup import is_ready_for_maps
 from engine.slices.section import SECTION
 from engine.slices.slice_text import default_range
+from engine.sweeps.map_jobs import measure_job, sweep_job
 from engine.sweeps.measures import CURVES
-from engine.warmup import is_ready_for_maps
 from plots.layers.layer import Layer
 from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.layers.table import LAYERS
@@ -70,9 +56,12 @@ class AnalysisPresenter:
         self._notes: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(locked(self._measure), context.copy, locked(lambda: state.param.update(box=None)))
-        state.follow(self.measures.show_box, "box")
         self.curves = CurvesView(locked(self._sweep), self._open_value, context.latest)
-        self._exponent = LatestRequest(jobs, self._show_exponent, self.measures.say, locked)
+        self._measuring = {
+            name: LatestRequest(jobs, partial(self._show_slow, name), partial(self.measures.say, name), locked)
+            for name in self.measures.buttons
+        }
+        state.follow(self._follow_box, "box")
         self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
         self._connect()
 
@@ -80,9 +69,7 @@ class AnalysisPresenter:
         """Analyses of each complete map."""
         return [
             *map(self._layer, LAYERS.values()),
-            self._measure_of_basins(basin_measures_job, self.measures.show_basins),
-            self._measure_of_basins(decay_laws_job, self.measures.show_laws),
-            self._measure_of_basins(lambda spec, box: flux_job(spec), self.measures.show_flux),
+            *(self._measure_of_map(measure.name) for measure in TOLD if not measure.slow),
         ]
 
     def begin(self, spec: MapSpec) -> None:
@@ -91,7 +78,7 @@ class AnalysisPresenter:
             return
         self._spec = spec
         self._found = {}
-        self._exponent.cancel()
+        self._stop_measuring()
         self._maps.overlays.begin(spec)
         self.measures.begin()
         if self._analyses != NO_ANALYSES:
@@ -106,7 +93,7 @@ class AnalysisPresenter:
 
     def close(self) -> None:
         """Cancel all requests at the end of the session."""
-        self._exponent.cancel()
+        self._stop_measuring()
         self._sweeping.cancel()
 
     def _connect(self) -> None:
@@ -128,13 +115,12 @@ class AnalysisPresenter:
         is_shown = layer.name in self._state.layers and not layer.refusal(frame.spec)
         return layer.job(frame.spec, self._state.settings) if is_shown else None
 
-    def _measure_of_basins(
-        self, job: Callable[[MapSpec, Window | None], Job[Any] | None], show: Callable[[Any], None]
-    ) -> FollowUp:
+    def _measure_of_map(self, name: str) -> FollowUp:
         """A measure of the whole view or of the box, requested while the tab is open."""
+        state = self._state
         return FollowUp(
-            lambda frame: job(frame.spec, self._state.box) if self._state.analysis is Analysis.MEASURES else None,
-            lambda _, result: show(result),
+            lambda frame: measure_job(frame.spec, name, state.box) if state.analysis is Analysis.MEASURES else None,
+            lambda _, result: self.measures.show(name, result),
             ("analysis", "box"),
         )
 
@@ -198,16 +184,27 @@ class AnalysisPresenter:
 
     # Measurements started by buttons.
 
-    def _measure(self) -> None:
+    def _measure(self, name: str) -> None:
         if not is_ready_for_maps(self._state.potential):
-            self.measures.say(WINDOW_UNKNOWN)
+            self.measures.say(name, WINDOW_UNKNOWN)
             return
-        self.measures.wait_for_exponent()
-        self._exponent.submit(Job(compute_uncertainty_exponent, (self._state.map_spec(),)))
+        self.measures.wait_for(name)
+        self._measuring[name].submit(measure_job(self._state.map_spec(), name, self._state.box))
 
-    def _show_exponent(self, exponent: UncertaintyExponent) -> None:
-        self._exponent.cancel()
-        self.measures.show_exponent(exponent)
+    def _show_slow(self, name: str, result: Any) -> None:
+        self._measuring[name].cancel()
+        self.measures.show(name, result)
+
+    def _stop_measuring(self) -> None:
+        for request in self._measuring.values():
+            request.cancel()
+
+    def _follow_box(self, box: Window | None) -> None:
+        """Show the box, and stop slow measures of its starts."""
+        for name, request in self._measuring.items():
+            if not MEASURES[name].place:
+                request.cancel()
+        self.measures.show_box(box)
 
     def _follow_system(self) -> None:
         self._show_curves(None)

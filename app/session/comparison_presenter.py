@@ -15,9 +15,9 @@ from app.views.components.numbers import grouped, percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
 from engine.jobs.job import Job, Queue
-from engine.jobs.map_jobs import map_job, members_job
+from engine.maps.warmup import is_ready_for_maps, prepare_for_maps
+from engine.sweeps.map_jobs import map_job, members_job
 from engine.systems.review.potential_review import SystemReview
-from engine.warmup import is_ready_for_maps, prepare_for_maps
 from plots.texts.accepted_potentials import refusal
 
 

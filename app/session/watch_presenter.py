@@ -14,9 +14,9 @@ from app.state.help_texts import title_with_help
 from app.state.view import Analysis
 from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
-from engine import EscapeFlux
-from engine.jobs.map_jobs import flux_job
-from engine.warmup import is_ready_for_maps
+from engine import EscapeFlux, compute_flux
+from engine.jobs.job import Job
+from engine.maps.warmup import is_ready_for_maps
 
 
 class WatchPresenter:
@@ -49,9 +49,10 @@ class WatchPresenter:
         if self._player is None or state.analysis is not Analysis.WATCH:
             return
         self._player.rate = 0.0
-        job = flux_job(state.map_spec())
-        if job is not None and is_ready_for_maps(state.potential):
-            self._flux.submit(job)
+        spec = state.map_spec()
+        several = spec.common_energy is None or spec.plane.parameter is not None
+        if not several and is_ready_for_maps(state.potential):
+            self._flux.submit(Job(compute_flux, (spec.potential, spec.common_energy)))
 
     def _follow(self) -> None:
         if self._player is not None:

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from html import escape
 from types import MappingProxyType
 
+from engine import MEASURES
+
 GLOSSARY: Mapping[str, str] = MappingProxyType(
     {
         "interior starts": (
@@ -44,20 +46,7 @@ GLOSSARY: Mapping[str, str] = MappingProxyType(
         "centre": "A body: an orbit that enters the disc around it has collided with it.",
         "escape radius": "A distance from the origin beyond which orbits have escaped, in place of exits over saddles.",
         "direct escapes": "Orbits that escape without crossing y = 0 upward.",
-        "Basin entropy": (
-            "How mixed the fates of the starts are in small boxes, by Gibbs's formula; zero where all fates are the same."
-        ),
-        "S_b": "The basin entropy, averaged over all boxes.",
-        "S_bb": ("The basin entropy, averaged over the boxes with more than one fate; above ln 2 the boundaries are not smooth."),
-        "Wada": (
-            "Basins have the Wada property if each point on the boundary of one of them is on the boundary of all others, too."
-        ),
-        "Uncertainty exponent": (
-            "The exponent α of the share of uncertain starts, which is proportional to ε^α for an error ε of the "
-            "start. The dimension of the boundary in the plane is 2 − α."
-        ),
-        "κ": ("The decay rate of an exponential law: the share of orbits still inside at time t is proportional to exp(−κ t)."),
-        "γ": "The exponent of a power law: the share of orbits still inside at time t is proportional to t^(−γ).",
+        **{term: meaning for measure in MEASURES.values() for term, meaning in measure.terms.items()},
     }
 )
 """What each term means, in one or two sentences."""

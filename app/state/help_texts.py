@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from html import escape
 from types import MappingProxyType
 
+from engine import MEASURES
 from plots.layers.table import PICTURES
 
 HELP_TEXTS: Mapping[str, str] = MappingProxyType(
@@ -59,43 +60,12 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "a straight line on these axes. A law is named only if it fits and is significantly more likely than the other "
             "one."
         ),
-        "shares": (
-            "The shares of the interior starts that escape through each exit, and of those that stay, against the energy or a "
-            "parameter. Just above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one after "
-            "the other as the energy rises."
-        ),
-        "entropies": (
-            "How mixed the basins are in boxes of 5 by 5 pixels: S_b over all boxes, S_bb over those with more than one fate. "
-            "A smooth boundary between two basins gives S_bb at most ln 2, the dashed line; above it, boundaries are fractal "
-            "at the scale of a box. Below it there is no conclusion."
-        ),
-        "exponents": (
-            "The uncertainty exponent α, measured with new pairs of starts at each value. Near 0 a more accurate start "
-            "hardly helps to predict the exit: the boundary nearly fills the plane. Near 1 boundaries are smooth. Bars are 95 "
-            "% intervals."
-        ),
-        "escapes": (
-            "Mean and median of the escape time of the orbits that escape. A mean far above the median comes from a few "
-            "sticky orbits, and then it depends on t_max."
-        ),
-        "decays": (
-            "The rate κ of the exponential law S(t) ∝ exp(−κ t) that the late escapes follow, with its 95 % interval. There is "
-            "no point where an exponential law is ruled out, mostly because orbits stick to islands, or where few orbits escape."
-        ),
-        "boundaries": (
-            "The distance in pixels within which 99 % of the boundary pixels are close to all basins at once. A few pixels at "
-            "any resolution are a sign of Wada basins, in which each boundary point touches all basins. With two basins "
-            "there is nothing to measure."
-        ),
         "watch": (
             "Orbits move in the well, each in the colour of the exit that it will take; grey ones stay until t = 100. On (x, px) "
             "the map shows each at its last passage of y = 0. The chart has the share that is still inside, and dashed the law "
             "of mixed motion: flux through the exits over the volume inside. Orbits that stick to islands stay longer."
         ),
-        "islands": (
-            "The area that bounded starts cover on the slice, and that of the largest island: of pixels that touch each "
-            "other, four or more of them. At a resonance an island splits or loses its edge, and the area falls at once."
-        ),
+        **{name: measure.help for name, measure in MEASURES.items() if measure.help},
     }
 )
 """Help texts by the names of the pictures and plots."""

@@ -18,7 +18,7 @@ from typing import Annotated
 
 import typer
 
-from cli.arguments import Case, Exponent, file_name_part, space_values
+from cli.arguments import Case, Slow, check_measures, file_name_part, space_values
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import Of
 from cli.options import with_options
@@ -32,6 +32,7 @@ from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.texts.exports import curve_columns, curves_csv, dataset_bytes
 
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
+MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
 
 # Columns that are in files and JSON only.
 _ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
@@ -52,7 +53,8 @@ def run(
     plane: Slice,
     resolution: Annotated[tuple[int, int], Of(SweepSpec)] = (112, 112),
     t_max: Annotated[float, Of(SweepSpec)],
-    exponent: Exponent = True,
+    measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
+    exponent: Slow = True,
     style: FigureStyle,
     output: Stem = None,
     place: Annotated[Place, THREADS_ONLY],
@@ -65,7 +67,7 @@ def run(
         space_values(low, high, count),
         resolution,
         t_max=t_max,
-        measures=CURVES if exponent else QUICK_CURVES,
+        measures=check_measures(measure, CURVES) or (CURVES if exponent else QUICK_CURVES),
         along=None if against == "h" else ParameterAxis(against, low, high, system),
         energy=energy,
         refine=refine,

@@ -1,13 +1,16 @@
 """Follow random orbits, uniform on the energy surface, on a slice, or entering through the exits.
 
-Prints the shares of the exits, and the decay rate beside flux over volume. With --output, FILE.webp, FILE.gif or FILE.mp4 is
-a movie, FILE.nc has the paths, and FILE.csv the starts and outcomes; of a STEM, the movie as WebP and the table.
+Prints the shares of the exits, of entering orbits also by entrance, and the decay rate beside flux over volume. With --output,
+FILE.webp, FILE.gif or FILE.mp4 is a movie, FILE.nc has the paths, and FILE.csv the starts and outcomes; of a STEM, the movie as
+WebP and the table.
 
 Examples:
 
 escape-explorer ensemble III --energy 0.45 --count 100000 --t-max 1e4
 
 escape-explorer ensemble III --energy 0.45 --count 3000 --t-max 25 --output draining.mp4
+
+escape-explorer ensemble III --energy 0.6 --entering --t-max 1e3
 
 escape-explorer ensemble I --energy 0.19 --plane x_px --window 0 0.1 0 0.1 --output box.nc
 """
@@ -29,15 +32,17 @@ from engine import (
     DecayLaws,
     EscapeFlux,
     EscapeStatistics,
+    ExitMatching,
     Fate,
     Outcomes,
     Potential,
     Slice,
     classify_orbits,
+    compute_exit_matching,
     compute_flux,
     compute_statistics,
     fit_decay_laws,
-    sample_entrances,
+    sample_entrances_by_exit,
     sample_orbits,
     sample_starts,
 )
@@ -83,7 +88,7 @@ def run(
     with_paths = paths.keys() - {"csv"}
     if with_paths and count > MOST_PATHS:
         raise ValueError(f"count={count}: movies and files of paths have at most {MOST_PATHS} orbits")
-    starts = _draw_starts(potential, energy, count, seed, plane, window, entering)
+    entrances, starts = _draw_starts(potential, energy, count, seed, plane, window, entering)
 
     def content(ending: str) -> Content:
         if ending == "csv":
@@ -102,7 +107,8 @@ def run(
                 orbits = sample_orbits(potential, starts, times, execution=context.start_stage("paths"))
             contents = {path: content(ending) for ending, path in paths.items()}
         files = write_files(contents)
-    _print(compute_statistics(outcomes), laws, compute_flux(potential, energy), files, as_json)
+    matching = None if entrances is None else compute_exit_matching(entrances, outcomes)
+    _print(compute_statistics(outcomes), matching, laws, compute_flux(potential, energy), files, as_json)
 
 
 def _draw_starts(
@@ -113,13 +119,13 @@ def _draw_starts(
     plane: Slice | None,
     window: GivenWindow | None,
     entering: bool,
-) -> np.ndarray:
-    """Return the (count, 4) states; ValueError for options that exclude each other."""
+) -> tuple[np.ndarray | None, np.ndarray]:
+    """Return the entrances, if orbits enter, and the (count, 4) states; ValueError for options that exclude each other."""
     if not entering:
-        return sample_starts(potential, energy, count, plane=plane, window=window, seed=seed)
+        return None, sample_starts(potential, energy, count, plane=plane, window=window, seed=seed)
     if plane is not None or window is not None:
         raise ValueError("entering: orbits start on the exits; leave --plane and --window out")
-    return sample_entrances(potential, energy, count, seed=seed)
+    return sample_entrances_by_exit(potential, energy, count, seed=seed)
 
 
 def _table(starts: np.ndarray, outcomes: Outcomes) -> str:
@@ -129,7 +135,14 @@ def _table(starts: np.ndarray, outcomes: Outcomes) -> str:
     return "\n".join(["x,y,px,py,fate,escape_time,crossings", *rows]) + "\n"
 
 
-def _print(statistics: EscapeStatistics, laws: DecayLaws, flux: EscapeFlux, files: Sequence[str], as_json: bool) -> None:
+def _print(
+    statistics: EscapeStatistics,
+    matching: ExitMatching | None,
+    laws: DecayLaws,
+    flux: EscapeFlux,
+    files: Sequence[str],
+    as_json: bool,
+) -> None:
     shares, intervals = statistics.shares, statistics.share_intervals
     shown = {code: name_fate(code, statistics.outcomes) for code in shares if code >= Fate.BOUNDED or shares[code]}
     answer: dict[str, Any] = {
@@ -141,4 +154,18 @@ def _print(statistics: EscapeStatistics, laws: DecayLaws, flux: EscapeFlux, file
     rows = [(name, f"{shares[code]:.4f}", "{:.4f} … {:.4f}".format(*intervals[code])) for code, name in shown.items()]
     table = Table(("outcome", "share", "95 % interval"), rows)
     mean = f"Mean time of the escapes: {statistics.mean_escape_time:.4g}."
-    print_result(as_json, answer, table, mean, laws.describe(), flux.describe(), files=files)
+    parts: list[Table | str] = [table]
+    if matching is not None:
+        columns = {name: column.tolist() for name, column in matching.columns().items()}
+        answer["matching"] = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        parts += [_matching_table(matching), matching.describe()]
+    print_result(as_json, answer, *parts, mean, laws.describe(), flux.describe(), files=files)
+
+
+def _matching_table(matching: ExitMatching) -> Table:
+    """Return a row for each entrance: the share of each end with its interval."""
+    low, high = matching.share_intervals
+    numbers = zip(matching.shares.tolist(), low.tolist(), high.tolist(), strict=True)
+    cells = [[f"{share:.3f} ({a:.3f} … {b:.3f})" for share, a, b in zip(*row, strict=True)] for row in numbers]
+    names = [name_fate(entrance, matching.outcomes) for entrance in matching.entrances.tolist()]
+    return Table(("entered through", *matching.name_ends()), [[name, *row] for name, row in zip(names, cells, strict=True)])

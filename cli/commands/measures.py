@@ -1,8 +1,10 @@
-"""Compute basin entropy, Wada test, uncertainty exponent and decay laws of a map.
+"""Compute measures of a map, from its pixels and from further orbits.
 
 Examples:
 
 escape-explorer measures II --energy 0.2 --plane x_y
+
+escape-explorer measures I --energy 0.15 --measure islands --json
 
 escape-explorer measures I --energy 0.15 --window -0.1 0.1 0 0.2 --no-exponent --json
 """
@@ -10,62 +12,63 @@ escape-explorer measures I --energy 0.15 --window -0.1 0.1 0 0.2 --no-exponent -
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields, is_dataclass
 from typing import Annotated, Any
 
-from cli.arguments import Exponent
-from cli.execution import THREADS_ONLY, Place, RunContext
+import typer
+
+from cli.arguments import Slow, check_measures
+from cli.execution import THREADS_ONLY, Place
 from cli.map_analyses import compute_whole_map
 from cli.option_marks import But
 from cli.options import with_options
 from cli.printing import AsJson, print_result
-from engine import (
-    EscapeMap,
-    MapSpec,
-    compute_basin_entropy,
-    compute_statistics,
-    compute_uncertainty_exponent,
-    compute_wada_test,
-    fit_decay_laws,
-)
+from engine import MEASURES, MapSpec, Result
+from engine.sweeps.points import measure_map
 
-_ENTROPY = ("s_b", "s_b_error", "s_bb", "s_bb_error", "boxes", "boundary_boxes", "labels", "box", "beyond_ln2")
-_MERGING = ("basins", "radius", "radius_99", "boundary_pixels")
-_EXPONENT = ("exponent", "low", "high", "dimension", "amplitude", "misfit", "separations", "pairs", "uncertain", "used")
-_LAWS = ("preferred", "settled", "t_low", "t_high", "escapes", "escapes_in_all", "ratio", "ratio_low", "ratio_high")
-_FIT = ("rate", "low", "high", "p_value")
+TOLD = {name: measure for name, measure in MEASURES.items() if measure.sentence is not None}
+"""The measures of the command by name."""
+
+MEASURE_HELP = f"{', '.join(TOLD)}; all by default. Can be repeated."
 
 
 @with_options
 def run(
     *,
     spec: Annotated[MapSpec, But(without=("backward",))],
-    exponent: Exponent = True,
+    measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
+    exponent: Slow = True,
     place: Annotated[Place, THREADS_ONLY],
     as_json: AsJson = False,
 ) -> None:
     """Compute and print the measures of a map."""
+    names = _choose(measure, exponent)
     with place.run() as context:
         frame = compute_whole_map(spec, context, "map")
-        measures = _measure(frame, exponent, context)
-    sentences = [measure["sentence"] for measure in measures.values()]
-    print_result(as_json, {"request": frame.provenance(), **measures}, *sentences)
+        found = {name: measure_map(frame, name, execution=context.start_stage(TOLD[name].title.lower())) for name in names}
+    sentences = {name: _tell(name, result) for name, result in found.items()}
+    answer = {name: {"sentence": sentences[name], **_numbers(result)} for name, result in found.items()}
+    print_result(as_json, {"request": frame.provenance(), **answer}, *sentences.values())
 
 
-def _measure(frame: EscapeMap, exponent: bool, context: RunContext) -> dict[str, dict[str, Any]]:
-    """Return the numbers of each measure with a sentence, by name."""
-    laws = fit_decay_laws(compute_statistics(frame))
-    fits = {"exponential": laws.exponential, "power_law": laws.power_law}
-    measures = {
-        "basin_entropy": _numbers(compute_basin_entropy(frame), _ENTROPY),
-        "merging": _numbers(compute_wada_test(frame), _MERGING),
-        "escape_laws": _numbers(laws, _LAWS)
-        | {name: None if fit is None else {one: getattr(fit, one) for one in _FIT} for name, fit in fits.items()},
-    }
-    if exponent:
-        found = compute_uncertainty_exponent(frame.spec, execution=context.start_stage("uncertainty exponent"))
-        measures["uncertainty_exponent"] = _numbers(found, _EXPONENT)
-    return measures
+def _choose(chosen: Sequence[str] | None, slow: bool) -> list[str]:
+    """Return the names of the measures in the order of the table."""
+    names = check_measures(chosen, TOLD) or list(TOLD)
+    return [name for name in names if slow or not TOLD[name].slow]
 
 
-def _numbers(measure: Any, names: Sequence[str]) -> dict[str, Any]:
-    return {"sentence": measure.describe(), **{name: getattr(measure, name) for name in names}}
+def _tell(name: str, result: Any) -> str:
+    sentence = TOLD[name].sentence
+    return f"{TOLD[name].title}: not defined for this map." if result is None or sentence is None else sentence(result)
+
+
+def _numbers(result: Result | None) -> dict[str, Any]:
+    """Return the numbers of a result, and its short arrays."""
+    return {} if result is None else {**_plain(result), **result.numbers()}
+
+
+def _plain(value: Any) -> Any:
+    """Return the fields that a result shows, with those of the results in it."""
+    if not is_dataclass(value) or isinstance(value, type):
+        return value
+    return {field.name: _plain(getattr(value, field.name)) for field in fields(value) if field.repr}

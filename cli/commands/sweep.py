@@ -22,8 +22,10 @@ from cli.execution import Place
 from cli.option_marks import Of
 from cli.options import with_options
 from cli.printing import AsJson, print_result
-from engine import MapSpec, Potential, Slice, SweepSpec, compute_sweep, plan_sweep
+from engine import MEASURES, MapSpec, Potential, Slice, SweepSpec, compute_sweep, plan_sweep
 from engine.slices.window import GivenWindow
+
+MEASURE_HELP = f"{', '.join(MEASURES)}; maps by default. Can be repeated."
 
 
 @with_options
@@ -40,7 +42,7 @@ def run(
     resolution: Annotated[tuple[int, int], Of(SweepSpec)],
     t_max: Annotated[float, Of(SweepSpec)],
     use_evidence: Annotated[bool, Of(MapSpec)],
-    measure: Annotated[list[str] | None, Of(SweepSpec, "measures")] = None,
+    measure: Annotated[list[str] | None, typer.Option(help=MEASURE_HELP)] = None,
     plan: bool = False,
     place: Place,
     as_json: AsJson = False,

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS, compare_averages
+from engine.evidence.exit_entry_points import find_entry_points
 from engine.evidence.invariant_curves import InvariantCurve, find_invariant_curve
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.integrator.source.recurrence import LANES
-from engine.periodic.exit_entry_points import find_entry_points
 from engine.propagation.evidence import Evidence
 from engine.propagation.fixed_step_batches import run_tiles
 from engine.propagation.section_points import find_section_points, trace_section_points

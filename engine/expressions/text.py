@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, powers_of
-from engine.foundations.wording import short_fraction
+from engine.expressions.short_fractions import short_fraction
 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 

@@ -36,13 +36,46 @@ class _NamesForUsers(type):
         return [name for name in super().__dir__() if name not in cls.inner_names]  # type: ignore[attr-defined]
 
 
+@dataclass(frozen=True)
+class Chart:
+    """A picture of two columns of a result.
+
+    Attributes
+    ----------
+    x, y
+        Names of the columns.
+    across, up
+        Labels of the axes.
+    logarithmic
+        The letters of the axes with a logarithmic scale.
+    title
+        Above the axes, with the numbers of the result in braces; empty for none.
+    by_channel
+        Whether x are channels: bars in their colours instead of a line.
+    """
+
+    x: str
+    y: str
+    across: str
+    up: str
+    logarithmic: str = ""
+    title: str = ""
+    by_channel: bool = False
+
+
 class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Base of dataclasses of results; their arrays are read-only."""
 
     inner_names: ClassVar[frozenset[str]] = frozenset(
-        {"codes", "columns", "fate_labels", "held_as", "inner_names", "numbers", "row_dimension", "shown_numbers", *FORMER_FIELDS}
+        {
+            *("chart", "codes", "columns", "fate_labels", "held_as", "inner_names", "numbers", "row_dimension", "shown_numbers"),
+            *FORMER_FIELDS,
+        }
     )
     """The attributes that `dir` leaves out: they are for the modules of this package."""
+
+    chart: ClassVar[Chart | None] = None
+    """The picture of a result that is a line or bars."""
 
     codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
     """The attributes that are codes, with the meaning of these."""

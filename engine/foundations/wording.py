@@ -2,12 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
-_LARGEST_DENOMINATOR = 1000
-# Numbers with a finite decimal expansion are written as fractions up to this denominator: ½, ¼, ⅛, but 0.55125, not 441/800.
-_LARGEST_OF_DECIMALS = 8
-
 
 def format_count(count: int, singular: str, plural: str = "") -> str:
     """A count and its noun, such as "1 box" or "3 boxes"; without `plural`, the noun takes an "s"."""
@@ -34,18 +28,6 @@ def format_number(value: float, digits: int = 4) -> str:
 def format_decimals(value: float, decimals: int) -> str:
     """A number to `decimals` decimals, with a typographic minus sign and without a negative zero."""
     return _typeset(f"{round(value, decimals) + 0.0:.{decimals}f}")
-
-
-def short_fraction(value: float, tolerance: float) -> Fraction | None:
-    """The fraction that texts show in place of a number of at least 0; None if a decimal number is clearer.
-
-    Fractions have denominators up to 1000; those with a finite decimal expansion, up to 8. `tolerance` is the largest error.
-    """
-    fraction = Fraction(value).limit_denominator(_LARGEST_DENOMINATOR)
-    is_decimal = 10**9 % fraction.denominator == 0
-    if abs(float(fraction) - value) > tolerance or (is_decimal and fraction.denominator > _LARGEST_OF_DECIMALS):
-        return None
-    return fraction
 
 
 def _typeset(text: str) -> str:

@@ -18,7 +18,7 @@ from engine.propagation.batch import OrbitBatch
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate, name_fate
 from engine.slices.window import Window
-from engine.systems.outcomes import Outcome
+from engine.systems.outcomes import Outcome, write_outcomes
 from engine.systems.well_units import TIME
 
 if TYPE_CHECKING:
@@ -117,6 +117,22 @@ class EscapeMap(MapResult):
         shares = self.fractions().items()
         rounded = {} if self.rounded_share is None else {"lost to rounding, about": self.rounded_share}
         return made_by | {name_fate(code, spec.outcomes): share for code, share in shares} | {"complete": self.complete} | rounded
+
+    @property
+    def t_max(self) -> float:
+        """Integration time of the request."""
+        return self.spec.t_max
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What fates from 1 on are."""
+        return self.spec.outcomes
+
+    @property
+    def pixel_area(self) -> float:
+        """Area of a pixel, in units of the axes."""
+        window, (columns, rows) = self.spec.find_window(), self.spec.resolution
+        return (window.x_high - window.x_low) * (window.ordinate_high - window.ordinate_low) / (columns * rows)
 
     @property
     def interior(self) -> np.ndarray:
@@ -218,7 +234,8 @@ class EscapeMap(MapResult):
             ordinate: (ordinate, self.ordinate, {"units": "1"}),
             abscissa: (abscissa, self.x, {"units": "1"}),
         }
-        return xr.Dataset(variables, coordinates, {"result": "EscapeMap", **self.provenance()})
+        attributes = {"result": "EscapeMap", **self.provenance(), "outcomes": write_outcomes(self.outcomes)}
+        return xr.Dataset(variables, coordinates, attributes)
 
     def provenance(self) -> dict[str, Any]:
         """How the map was made, in plain values: request, integrator, version, worst energy error, pixels per fate code."""

@@ -11,10 +11,13 @@ import numpy as np
 from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_count
 from engine.foundations.wording import format_count
-from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, checked_labels, describe_labels
+from engine.measures.labels import checked_labels, describe_labels
 
 BOX = 5
 """Default side of a box in pixels, that is 25 starts per box, as in Daza et al. (2016)."""
+
+COUNTS_BOUNDED = True
+"""Whether bounded orbits are a label: yes, staying bounded is one of the possible outcomes of a start."""
 
 # Two labels in equal parts give exactly ln 2, and the mean over boxes can exceed it by rounding.
 _ROUNDING = 1e-12
@@ -61,6 +64,10 @@ class BasinEntropy(RecordedResult):
         hold: fractal boundaries between two basins never exceed ln 2.
         """
         return self.s_bb > math.log(2.0) + _ROUNDING
+
+    def numbers(self) -> dict[str, Any]:
+        """The scalar attributes, and the conclusion."""
+        return {**super().numbers(), "beyond_ln2": self.beyond_ln2}
 
     def describe(self) -> str:
         """The result in one or two sentences."""
@@ -120,7 +127,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     (0.5, 1.06, True)
     """
     made_by = describe_labels(labels)
-    labels, valid = checked_labels(labels, valid, bounded=ENTROPY_COUNTS_BOUNDED)
+    labels, valid = checked_labels(labels, valid, bounded=COUNTS_BOUNDED)
     box = checked_count("box", box, 2, min(labels.shape))
     boxes = _tile(labels, box)[_tile(valid, box).all(axis=1)]
     entropies, label_counts = _box_entropies(boxes)

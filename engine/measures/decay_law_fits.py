@@ -9,7 +9,6 @@ import numpy as np
 
 from engine.foundations.root_finding import find_root
 from engine.foundations.validation import checked_array, checked_t_max, short_repr
-from engine.maps.stored_maps import MapLike, as_map
 from engine.measures.decay_laws import (
     MIN_ESCAPES,
     MIN_P_VALUE,
@@ -21,7 +20,7 @@ from engine.measures.decay_laws import (
     window_length,
 )
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
-from engine.propagation.classification import Outcomes
+from engine.measures.starts import Measurable, Starts, read_starts
 
 # Half-width of the 95 % interval of a normal distribution, in standard deviations.
 _DEVIATIONS = 1.96
@@ -38,7 +37,7 @@ _FLAT = 1e-2
 
 
 def fit_decay_laws(
-    statistics: EscapeStatistics | MapLike | Outcomes,
+    statistics: EscapeStatistics | Measurable | Starts,
     t_max: float | None = None,
     *,
     window: tuple[float, float] | None = None,
@@ -80,8 +79,7 @@ def fit_decay_laws(
     (<DecayLaw.EXPONENTIAL: 'exponential'>, 0.024)
     """
     if not isinstance(statistics, EscapeStatistics):
-        chosen = statistics if isinstance(statistics, Outcomes) else as_map("statistics", statistics)
-        statistics = compute_statistics(chosen)
+        statistics = compute_statistics(read_starts("statistics", statistics))
     t_max = _checked_horizon(statistics, t_max)
     if window is not None:
         ends = checked_array("window", window)

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.proportions import wilson_interval
-from engine.maps.result import EscapeMap
-from engine.maps.stored_maps import MapLike, as_map
-from engine.propagation.classification import Outcomes
+from engine.measures.starts import Measurable, Starts, read_starts
 from engine.propagation.fates import Fate, OrbitResult
-from engine.slices.window import GivenWindow, Window, checked_window
+from engine.slices.window import GivenWindow, checked_window
 from engine.systems.outcomes import Outcome
 
 MAX_SURVIVAL_POINTS = 500
@@ -145,7 +143,7 @@ class EscapeStatistics(OrbitResult):
         return read_only(edges), read_only(np.histogram(np.maximum(self.escape_times, low), edges)[0])
 
 
-def compute_statistics(frame: MapLike | Outcomes, window: GivenWindow | None = None) -> EscapeStatistics:
+def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = None) -> EscapeStatistics:
     """Count the fates, crossings and escape times of a map, finished or not, or of any orbits.
 
     Forbidden and outside starts are left out.
@@ -165,25 +163,14 @@ def compute_statistics(frame: MapLike | Outcomes, window: GivenWindow | None = N
     >>> statistics.starts, statistics.channel_counts, round(statistics.median_escape_time, 2)
     (1124, (496, 496, 66, 66), 1.51)
     """
-    if isinstance(frame, Outcomes):
-        if window is not None:
-            raise ValueError(f"window={window}: must be None for orbits that are no map")
-        counted = _count(frame.fate, frame.escape_time, frame.crossings, frame.outcomes, frame.t_max)
-        return replace(counted, made_by=frame.made_by)
-    frame = as_map("frame", frame)
-    box = None if window is None else checked_window(window)
-    part = pixels_inside(frame, box)
-    counted = _count(frame.fate[part], frame.escape_time[part], frame.crossings[part], frame.spec.outcomes, frame.spec.t_max)
-    counted_in = {} if box is None else {"counted_in": (box.x_low, box.x_high, box.ordinate_low, box.ordinate_high)}
-    return replace(counted, made_by=frame.spec.provenance() | counted_in)
-
-
-def _count(
-    fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, outcomes: tuple[Outcome, ...], t_max: float
-) -> EscapeStatistics:
-    escaped = fate >= 1
-    times = escape_time[escaped]
-    counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=len(outcomes) + 1 - _LOWEST_CODE).tolist()
+    starts, made_by = read_starts("frame", frame), {}
+    if window is not None:
+        box = checked_window(window)
+        starts, made_by = starts.inside(box), {"counted_in": (box.x_low, box.x_high, box.ordinate_low, box.ordinate_high)}
+    fate, escaped = starts.fate, starts.fate >= 1
+    times = starts.escape_time[escaped]
+    codes = len(starts.outcomes) + 1 - _LOWEST_CODE
+    counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=codes).tolist()
     return EscapeStatistics(
         channel_counts=tuple(counts[1 - _LOWEST_CODE :]),
         bounded=counts[Fate.BOUNDED - _LOWEST_CODE],
@@ -191,10 +178,11 @@ def _count(
         failed=counts[Fate.FAILED - _LOWEST_CODE],
         mean_escape_time=float(times.mean()) if times.size else float("nan"),
         median_escape_time=float(np.median(times)) if times.size else float("nan"),
-        crossing_counts=read_only(np.bincount(crossings[escaped])),
+        crossing_counts=read_only(np.bincount(starts.crossings[escaped])),
         escape_times=read_only(times),
-        t_max=t_max,
-        outcomes=outcomes,
+        t_max=starts.t_max,
+        outcomes=starts.outcomes,
+        made_by={**starts.made_by, **made_by},
     )
 
 
@@ -223,12 +211,3 @@ def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarr
         selected = np.unique([0, *(np.searchsorted(times, grid, side="right") - 1), times.size - 1])
         times, survival = times[selected], survival[selected]
     return read_only(times), read_only(survival)
-
-
-def pixels_inside(frame: EscapeMap, window: Window | None) -> tuple[slice, slice]:
-    """Rows and columns of the pixels whose centres lie in the window."""
-    if window is None:
-        return slice(None), slice(None)
-    rows = np.searchsorted(frame.ordinate, window.ordinate_low), np.searchsorted(frame.ordinate, window.ordinate_high, "right")
-    columns = np.searchsorted(frame.x, window.x_low), np.searchsorted(frame.x, window.x_high, "right")
-    return slice(*map(int, rows)), slice(*map(int, columns))

@@ -8,18 +8,8 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import checked_array
-from engine.maps.result import EscapeMap
-from engine.maps.stored_maps import as_map
+from engine.measures.starts import read_starts
 from engine.propagation.fates import Fate
-
-ENTROPY_COUNTS_BOUNDED = True
-"""Whether bounded orbits are a label of the basin entropy: yes, staying bounded is one of the possible outcomes of a start."""
-
-WADA_COUNTS_BOUNDED = False
-"""Whether bounded orbits are a basin of the Wada test: no, Wada is a property of the exits (Aguirre, Vallejo & Sanjuán 2001).
-
-The edge of an island of bounded orbits is far from other boundaries between exits, so maps with islands would always fail.
-"""
 
 
 def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -33,8 +23,7 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
     fate
         (rows, columns) integer `Fate` codes and outcomes of a map, finished or not.
     bounded
-        Whether bounded orbits are a label of their own, 0, or do not count; see `ENTROPY_COUNTS_BOUNDED` and
-        `WADA_COUNTS_BOUNDED`.
+        Whether bounded orbits are a label of their own, 0, or do not count; each measure has its `COUNTS_BOUNDED`.
 
     Returns
     -------
@@ -50,11 +39,7 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
 
 def describe_labels(labels: Any) -> dict[str, Any]:
     """How the map was made of which labels are given; empty for an array."""
-    return as_map("labels", labels).spec.provenance() if _is_map(labels) else {}
-
-
-def _is_map(labels: Any) -> bool:
-    return isinstance(labels, EscapeMap) or hasattr(labels, "data_vars")
+    return dict(read_starts("labels", labels).made_by) if hasattr(labels, "fate") else {}
 
 
 def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -65,8 +50,8 @@ def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarra
     ValueError
         For any other shape or type, and for negative labels without `valid`: they are codes of starts without an outcome.
     """
-    if _is_map(labels):
-        labels, valid = exit_labels(as_map("labels", labels).fate, bounded=bounded)
+    if hasattr(labels, "fate"):
+        labels, valid = exit_labels(read_starts("labels", labels).fate, bounded=bounded)
     labels = checked_array("labels", labels, keep_type=True)
     if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
         raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be integers, (rows, columns)")

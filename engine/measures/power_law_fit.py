@@ -101,6 +101,10 @@ class UncertaintyExponent(RecordedResult):
         """2 − α, the dimension of the basin boundary in the plane of initial conditions; NaN without an exponent."""
         return 2.0 - self.exponent
 
+    def numbers(self) -> dict[str, Any]:
+        """The scalar attributes, and the dimension of the boundary."""
+        return {**super().numbers(), "dimension": self.dimension}
+
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""

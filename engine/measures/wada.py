@@ -10,12 +10,18 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.result import RecordedResult
+from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.wording import format_count
-from engine.measures.labels import WADA_COUNTS_BOUNDED, checked_labels, describe_labels
+from engine.measures.labels import checked_labels, describe_labels
 
 MIN_BASINS = 3
 """Fewest basins for the Wada property; two basins always share their boundary."""
+
+COUNTS_BOUNDED = False
+"""Whether bounded orbits are a basin: no, Wada is a property of the exits (Aguirre, Vallejo & Sanjuán 2001).
+
+The edge of an island of bounded orbits is far from other boundaries between exits, so maps with islands would always fail.
+"""
 
 # Percentage of the boundary pixels within `radius_99`.
 _PERCENTAGE = 99
@@ -48,6 +54,7 @@ class WadaTest(RecordedResult):
     boundary_pixels: int
     shares: np.ndarray = field(repr=False)
     held_as: ClassVar = {"shares": "share"}
+    chart: ClassVar = Chart("distance", "share", "r (pixels)", "share of the boundary within r")
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """The share of the boundary pixels within each distance."""
@@ -106,7 +113,7 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     The boundaries of the 4 basins coincide within 9 pixels, 99 % of the 1756 boundary pixels within 6.
     """
     made_by = describe_labels(labels)
-    labels, valid = checked_labels(labels, valid, bounded=WADA_COUNTS_BOUNDED)
+    labels, valid = checked_labels(labels, valid, bounded=COUNTS_BOUNDED)
     basins = tuple(np.unique(labels[valid]).tolist())
     boundary = _slim_boundary(labels, valid)
     count = int(np.count_nonzero(boundary))

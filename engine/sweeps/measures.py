@@ -1,226 +1,57 @@
-"""What a sweep measures on the map of each value: functions of a map, by name."""
+"""The measures of maps, one entry each: the page, files, figures and the command line have what this table has."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from concurrent.futures import CancelledError
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping
+from operator import attrgetter, methodcaller
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from engine.foundations.codes import describe_codes
-from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap
-from engine.maps.spec import MapSpec
+from engine.maps.uncertain_pairs import WORK, compute_uncertainty_exponent
 from engine.measures.basin_entropy import compute_basin_entropy
+from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
 from engine.measures.decay_law_fits import fit_decay_laws
-from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.uncertainty_exponent import WORK, compute_uncertainty_exponent
+from engine.measures.decay_laws import DecayLaws
+from engine.measures.escape_statistics import EscapeStatistics
+from engine.measures.islands import LEAST_ISLAND, compute_islands
+from engine.measures.measure import HIGH, LOW, NO_CURVE, Bars, Curve, Measure, Quantity, Variables
+from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import compute_wada_test
 from engine.propagation.fates import Fate, renumber
-from engine.systems.outcomes import Outcome
+from engine.sweeps.measured_map import MeasuredMap, SweepPoint
+from engine.trajectories.flux import EscapeFlux, compute_flux
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-# Smaller connected parts of the bounded starts are not counted as islands, in pixels.
-_LEAST_ISLAND = 4
-_LOW, _HIGH = "lower end of the 95 % interval of the {}", "upper end of the 95 % interval of the {}"
-# A tenth of the work for a single map: about ten times faster, with intervals up to three times as wide.
-_WORK = 0.1 * WORK
+_describe = methodcaller("describe")
 
 
-@dataclass(frozen=True)
-class SweepPoint:
-    """The measurement at one value.
-
-    Attributes
-    ----------
-    map_spec
-        The map to measure.
-    name, value
-        The name of the energy or of the parameter, and its value.
-    measures
-        Names of `MEASURES`.
-    numbers
-        The fate in the sweep of each fate of the map, from 0 on; as in `ParameterFamily`.
-    outcomes
-        The outcomes of the sweep.
-    """
-
-    map_spec: MapSpec
-    name: str
-    value: float
-    measures: tuple[str, ...]
-    numbers: tuple[int, ...]
-    outcomes: tuple[Outcome, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class MeasuredMap:
-    """A complete map and the measurement that it is for."""
-
-    point: SweepPoint
-    frame: EscapeMap
-    execution: Execution
-
-    @cached_property
-    def statistics(self) -> EscapeStatistics:
-        """Counts of the interior starts."""
-        return compute_statistics(self.frame)
-
-    @property
-    def pixel_area(self) -> float:
-        """Area of a pixel, in units of the axes."""
-        window, (columns, rows) = self.frame.spec.find_window(), self.frame.spec.resolution
-        return (window.x_high - window.x_low) * (window.ordinate_high - window.ordinate_low) / (columns * rows)
-
-
-Variables = Mapping[str, Any]
-"""Variables of a dataset by name, as xarray takes them: dimensions, values and attributes."""
-
-
-def compute_point(point: SweepPoint, *, frame: EscapeMap | None = None, execution: Execution = DEFAULT_EXECUTION) -> xr.Dataset:
-    """Measure one value.
-
-    Parameters
-    ----------
-    point
-        The request.
-    frame
-        The map of `point.map_spec`; None to compute it.
-    execution
-        How the computation runs.
-
-    Returns
-    -------
-    Dataset of the measures, whose first dimension, of size 1, is that of the values.
-
-    Raises
-    ------
-    concurrent.futures.CancelledError
-        When cancelled.
-    """
-    # Slow to import.
-    import xarray as xr
-
-    if frame is None:
-        frame = compute_map(point.map_spec, execution=execution.part(0, 2))
-    if not frame.complete:
-        raise CancelledError
-    measured = MeasuredMap(point, frame, execution.part(1, 2))
-    variables: dict[str, Any] = {}
-    for name in point.measures:
-        variables |= MEASURES[name](measured)
-    value = ((), point.value, {"long_name": point.name, "units": "1"})
-    return xr.Dataset(variables, {point.name: value}).expand_dims(point.name)
-
-
-def _number(value: float, words: str) -> tuple[tuple[()], float, dict[str, str]]:
-    return (), value, {"long_name": words, "units": "1"}
-
-
-def _measure_shares(measured: MeasuredMap) -> Variables:
+def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variables:
     """Shares of the interior starts that are bounded, and of each outcome, with 95 % intervals (Wilson 1927).
 
     The intervals are those of independent random starts.
     """
-    statistics, numbers = measured.statistics, measured.point.numbers
-    shares, low, high = np.zeros((3, len(measured.point.outcomes) + 1))
-    for fate, number in enumerate(numbers):
+    shares, low, high = np.zeros((3, len(point.outcomes) + 1))
+    for fate, number in enumerate(point.numbers):
         shares[number] = statistics.shares[fate]
         low[number], high[number] = statistics.share_intervals[fate]
-    words = {"share": "share of the interior starts", "share_low": _LOW.format("share"), "share_high": _HIGH.format("share")}
+    words = {"share": "share of the interior starts", "share_low": LOW.format("share"), "share_high": HIGH.format("share")}
     return {
-        "outcome": ("outcome", np.arange(shares.size), _describe_fates(measured.point)),
+        "outcome": ("outcome", np.arange(shares.size), _describe_fates(point)),
         **{
             name: ("outcome", values, {"long_name": words[name], "units": "1"})
             for name, values in (("share", shares), ("share_low", low), ("share_high", high))
         },
-        "direct_share": _number(statistics.direct_share, "share that escapes without an upward crossing of y = 0"),
     }
 
 
-def _measure_escape_times(measured: MeasuredMap) -> Variables:
-    """Escape times; NaN if no orbit escapes."""
-    return {
-        "mean_escape_time": _number(measured.statistics.mean_escape_time, "mean escape time"),
-        "median_escape_time": _number(measured.statistics.median_escape_time, "median escape time"),
-    }
-
-
-def _measure_islands(measured: MeasuredMap) -> Variables:
-    """Connected parts of the bounded starts, where pixels that share a corner are connected; areas in units of the axes."""
-    # Slow to import.
-    from scipy import ndimage
-
-    bounded = measured.frame.fate == Fate.BOUNDED
-    parts, _ = ndimage.label(bounded, np.ones((3, 3)))
-    pixels = np.bincount(parts.ravel())[1:]
-    islands = pixels[pixels >= _LEAST_ISLAND]
-    return {
-        "bounded_area": _number(np.count_nonzero(bounded) * measured.pixel_area, "area of the bounded starts"),
-        "islands": _number(islands.size, f"connected parts of the bounded starts with at least {_LEAST_ISLAND} pixels"),
-        "largest_island": _number(islands.max(initial=0) * measured.pixel_area, "area of the largest of these parts"),
-    }
-
-
-def _measure_entropy(measured: MeasuredMap) -> Variables:
-    """Basin entropies with their standard errors, see `compute_basin_entropy`."""
-    entropy = compute_basin_entropy(measured.frame)
-    return {
-        "s_b": _number(entropy.s_b, "basin entropy"),
-        "s_b_error": _number(entropy.s_b_error, "standard error of the basin entropy"),
-        "s_bb": _number(entropy.s_bb, "boundary basin entropy"),
-        "s_bb_error": _number(entropy.s_bb_error, "standard error of the boundary basin entropy"),
-    }
-
-
-def _measure_wada(measured: MeasuredMap) -> Variables:
-    """See `compute_wada_test`; NaN for fewer than three basins."""
-    distance = compute_wada_test(measured.frame).radius_99
-    return {"wada_distance": _number(distance, "pixels within which 99 % of the boundaries coincide")}
-
-
-def _measure_decay_rate(measured: MeasuredMap) -> Variables:
-    """Exponential law of late escapes, see `fit_decay_laws`; NaN where it is ruled out or the escapes are too few."""
-    fit = fit_decay_laws(measured.statistics, measured.frame.spec.t_max).exponential
-    found = (fit.rate, fit.low, fit.high) if fit is not None and fit.plausible else (math.nan,) * 3
-    return _with_interval("decay_rate", found, "rate of the exponential law of late escapes")
-
-
-def _measure_exponent(measured: MeasuredMap) -> Variables:
-    """See `compute_uncertainty_exponent`; NaN if it is undetermined or no exit is open."""
-    spec, found = measured.frame.spec, (math.nan,) * 3
-    if spec.potential.well.open_channels(spec.common_energy or 0.0):
-        fit = compute_uncertainty_exponent(spec, work=_WORK, execution=measured.execution)
-        found = fit.exponent, fit.low, fit.high
-    return _with_interval("exponent", found, "uncertainty exponent")
-
-
-def _with_interval(name: str, found: tuple[float, ...], words: str) -> Variables:
-    value, low, high = found
-    return {
-        name: _number(value, words),
-        f"{name}_low": _number(low, _LOW.format(words)),
-        f"{name}_high": _number(high, _HIGH.format(words)),
-    }
-
-
-def _measure_accuracy(measured: MeasuredMap) -> Variables:
-    return {"worst_energy_error": _number(measured.frame.worst_energy_error, "largest relative energy error of any orbit")}
-
-
-def _keep_map(measured: MeasuredMap) -> Variables:
+def _describe_map(point: SweepPoint, frame: EscapeMap) -> Variables:
     """All arrays of the map, as in `EscapeMap.to_xarray`; fates have the numbers of the sweep."""
-    dataset, fate = measured.frame.to_xarray(), measured.frame.fate
-    renumbered = renumber(fate, np.array(measured.point.numbers, fate.dtype))
-    attributes = {**dataset["fate"].attrs, **_describe_fates(measured.point)}
+    dataset, fate = frame.to_xarray(), frame.fate
+    renumbered = renumber(fate, np.array(point.numbers, fate.dtype))
+    attributes = {**dataset["fate"].attrs, **_describe_fates(point)}
     kept = {str(name): variable for name, variable in dataset.variables.items()}
     return kept | {"fate": (dataset["fate"].dims, renumbered, attributes)}
 
@@ -229,23 +60,199 @@ def _describe_fates(point: SweepPoint) -> dict[str, str]:
     return describe_codes(Fate, [outcome.label for outcome in point.outcomes])
 
 
-MEASURES: Mapping[str, Callable[[MeasuredMap], Variables]] = MappingProxyType(
-    {
-        "shares": _measure_shares,
-        "escape_times": _measure_escape_times,
-        "islands": _measure_islands,
-        "basin_entropy": _measure_entropy,
-        "wada": _measure_wada,
-        "decay_rate": _measure_decay_rate,
-        "uncertainty_exponent": _measure_exponent,
-        "accuracy": _measure_accuracy,
-        "maps": _keep_map,
-    }
-)
-"""The measures of a sweep by name; each gives variables of its dataset."""
+def _read_decay_rate(laws: DecayLaws) -> tuple[float, float, float]:
+    """Of the exponential law; NaN where it is ruled out or the escapes are too few."""
+    fit = laws.exponential
+    return (fit.rate, fit.low, fit.high) if fit is not None and fit.plausible else (math.nan,) * 3
 
-QUICK_CURVES = ("shares", "escape_times", "islands", "basin_entropy", "wada", "decay_rate")
-"""Measures that are curves against the energy or a parameter and take little longer than the map."""
 
-CURVES = (*QUICK_CURVES, "uncertainty_exponent")
-"""All measures that are curves."""
+def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
+    """None if no exit is open."""
+    spec = measured.spec
+    if not spec.potential.well.open_channels(spec.common_energy or 0.0):
+        return None
+    return compute_uncertainty_exponent(spec, work=measured.effort * WORK, execution=measured.execution)
+
+
+def _find_chaotic_share(measured: MeasuredMap) -> ChaoticShare | None:
+    """None with gaps such as the discs of centres, near which deviation vectors are not computed."""
+    return None if measured.spec.potential.gaps else compute_chaotic_share(measured.find_characters())
+
+
+def _find_flux(measured: MeasuredMap) -> EscapeFlux | None:
+    """None on a slice of several energies or potentials, without exits over saddles, and in a frame that rotates."""
+    spec = measured.spec
+    if spec.common_energy is None or spec.plane.parameter is not None:
+        return None
+    has_flux = spec.potential.channels and not spec.potential.rotation and spec.common_energy > spec.potential.well.bottom
+    return compute_flux(spec.potential, spec.common_energy) if has_flux else None
+
+
+_ALL = (
+    Measure(
+        "shares", "Shares of the interior starts", "how many starts end where",
+        lambda measured: measured.statistics,
+        (
+            Quantity("direct_share", "share that escapes without an upward crossing of y = 0", attrgetter("direct_share")),
+        ),
+        curve=Curve("percentage of starts"),
+        other_variables=_describe_shares,
+        help="The shares of the interior starts that escape through each exit, and of those that stay, against the energy or a "
+        "parameter. Just above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one after "
+        "the other as the energy rises.",
+    ),
+    Measure(
+        "escape_times", "Escape time", "how long orbits stay",
+        lambda measured: measured.statistics,
+        (
+            Quantity("mean_escape_time", "mean escape time", attrgetter("mean_escape_time"), label="mean"),
+            Quantity("median_escape_time", "median escape time", attrgetter("median_escape_time"), label="median"),
+        ),
+        curve=Curve("escape time", logarithmic=True),
+        help="Mean and median of the escape time of the orbits that escape. A mean far above the median comes from a few "
+        "sticky orbits, and then it depends on t_max.",
+    ),
+    Measure(
+        "islands", "Area of the bounded starts", "how much never escapes",
+        lambda measured: compute_islands(measured.starts),
+        (
+            Quantity(
+                "bounded_area", "area of the bounded starts", attrgetter("area", "area_error"), Bars.GRID_ERROR, "all islands"
+            ),
+            Quantity(
+                "islands", f"connected parts of the bounded starts with at least {LEAST_ISLAND} pixels", attrgetter("count")
+            ),
+            Quantity(
+                "largest_island", "area of the largest of these parts", attrgetter("largest", "largest_error"),
+                Bars.GRID_ERROR, "the largest",
+            ),
+        ),
+        curve=Curve("area"),
+        sentence=_describe,
+        help="The area that bounded starts cover on the slice, and that of the largest island: of pixels that touch each "
+        "other, four or more of them. At a resonance an island splits or loses its edge, and the area falls at once. Bars are "
+        "the error of counting pixels along a smooth edge.",
+    ),
+    Measure(
+        "basin_entropy", "Basin entropy", "how mixed the basins are",
+        lambda measured: compute_basin_entropy(measured.starts),
+        (
+            Quantity("s_b", "basin entropy", attrgetter("s_b", "s_b_error"), Bars.STANDARD_ERROR, "S_b"),
+            Quantity("s_bb", "boundary basin entropy", attrgetter("s_bb", "s_bb_error"), Bars.STANDARD_ERROR, "S_bb"),
+        ),
+        curve=Curve("entropy", least_top=0.72, level=(math.log(2.0), "ln 2")),
+        sentence=_describe,
+        help="How mixed the basins are in boxes of 5 by 5 pixels: S_b over all boxes, S_bb over those with more than one fate. "
+        "A smooth boundary between two basins gives S_bb at most ln 2, the dashed line; above it, boundaries are fractal "
+        "at the scale of a box. Below it there is no conclusion.",
+        terms={
+            "Basin entropy": "How mixed the fates of the starts are in small boxes, by Gibbs's formula; zero where all fates are "
+            "the same.",
+            "S_b": "The basin entropy, averaged over all boxes.",
+            "S_bb": "The basin entropy, averaged over the boxes with more than one fate; above ln 2 the boundaries are not "
+            "smooth.",
+        },
+    ),
+    Measure(
+        "wada", "Wada distance", "whether basins share one boundary",
+        lambda measured: compute_wada_test(measured.starts),
+        (
+            Quantity(
+                "wada_distance", "pixels within which 99 % of the boundaries coincide", attrgetter("radius_99"),
+                label="99 % of the boundary",
+            ),
+        ),
+        curve=Curve("pixels", least_top=10.0),
+        sentence=_describe,
+        help="The distance in pixels within which 99 % of the boundary pixels are close to all basins at once. A few pixels at "
+        "any resolution are a sign of Wada basins, in which each boundary point touches all basins. With two basins "
+        "there is nothing to measure.",
+        terms={
+            "Wada": "Basins have the Wada property if each point on the boundary of one of them is on the boundary of all "
+            "others, too."
+        },
+    ),
+    Measure(
+        "decay_rate", "Decay law", "how the number inside falls",
+        lambda measured: fit_decay_laws(measured.statistics, measured.spec.t_max),
+        (
+            Quantity("decay_rate", "rate of the exponential law of late escapes", _read_decay_rate, Bars.INTERVAL, "κ"),
+        ),
+        curve=Curve("κ"),
+        sentence=_describe,
+        help="The rate κ of the exponential law S(t) ∝ exp(−κ t) that the late escapes follow, with its 95 % interval. There is "
+        "no point where an exponential law is ruled out, mostly because orbits stick to islands, or where few orbits escape.",
+        terms={
+            "κ": "The decay rate of an exponential law: the share of orbits still inside at time t is proportional to exp(−κ t).",
+            "γ": "The exponent of a power law: the share of orbits still inside at time t is proportional to t^(−γ).",
+        },
+    ),
+    Measure(
+        "flux", "Flux", "how fast mixed motion leaves",
+        _find_flux,
+        (
+            Quantity("flux", "flux through all exits", attrgetter("total")),
+            Quantity(
+                "mixed_decay_rate", "flux through all exits over the volume inside", attrgetter("decay_rate"),
+                label="flux over volume",
+            ),
+        ),
+        curve=Curve("rate"),
+        sentence=_describe,
+        place="through all exits",
+        help="The flux through the exits over the phase-space volume inside: the rate at which orbits leave if the motion inside "
+        "is mixed. Near islands orbits leave more slowly.",
+    ),
+    Measure(
+        "uncertainty_exponent", "Uncertainty exponent", "how little better starts help",
+        _find_exponent,
+        (
+            Quantity(
+                "exponent", "uncertainty exponent", attrgetter("exponent", "low", "high"), Bars.INTERVAL, "α"
+            ),
+        ),
+        curve=Curve("α", least_top=1.0),
+        sentence=_describe,
+        slow=True,
+        place="in the whole view",
+        help="The uncertainty exponent α, measured with new pairs of starts at each value. Near 0 a more accurate start "
+        "hardly helps to predict the exit: the boundary nearly fills the plane. Near 1 boundaries are smooth. Bars are 95 "
+        "% intervals.",
+        terms={
+            "Uncertainty exponent": "The exponent α of the share of uncertain starts, which is proportional to ε^α for an error "
+            "ε of the start. The dimension of the boundary in the plane is 2 − α."
+        },
+    ),
+    Measure(
+        "chaotic_share", "Chaotic share", "how many bounded orbits are chaotic",
+        _find_chaotic_share,
+        (
+            Quantity(
+                "chaotic_share", "share of chaotic orbits among the bounded ones", attrgetter("share", "low", "high"),
+                Bars.INTERVAL, "of the bounded orbits",
+            ),
+        ),
+        curve=Curve("share", least_top=1.0),
+        sentence=_describe,
+        slow=True,
+        help="The share of the bounded orbits that are chaotic. They are sticky: they stay near the edge of an island, and may "
+        "escape after t_max. Bars are 95 % intervals, as for independent random starts.",
+    ),
+    Measure(
+        "accuracy", "Accuracy", "how well energy is conserved",
+        lambda measured: measured.frame,
+        (
+            Quantity("worst_energy_error", "largest relative energy error of any orbit", attrgetter("worst_energy_error")),
+        ),
+    ),
+    Measure("maps", "Maps", "the arrays of the maps", lambda measured: measured.frame, other_variables=_describe_map),
+)  # fmt: skip
+
+MEASURES: Mapping[str, Measure] = MappingProxyType({measure.name: measure for measure in _ALL})
+"""The measures by name."""
+
+CURVES = tuple(name for name, measure in MEASURES.items() if measure.curve != NO_CURVE)
+"""Names of all measures that are curves against the energy or a parameter."""
+
+QUICK_CURVES = tuple(name for name in CURVES if not MEASURES[name].slow)
+"""Names of those that take little longer than the map."""

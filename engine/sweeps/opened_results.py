@@ -20,7 +20,7 @@ from engine.maps.stored_maps import read_map, read_spec
 from engine.measures.basin_entropy import BasinEntropy
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics
-from engine.measures.uncertainty_exponent import UncertaintyExponent
+from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import WadaTest
 from engine.periodic.stable_manifolds import StableManifolds
 from engine.propagation.classification import Outcomes

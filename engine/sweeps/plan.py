@@ -14,8 +14,8 @@ from engine.foundations.wording import format_count
 from engine.maps.compute import compute_map
 from engine.maps.result import PIXEL_ARRAYS
 from engine.maps.spec import MapSpec
+from engine.maps.warmup import prepare_for_evidence, prepare_for_maps
 from engine.sweeps.spec import SweepSpec
-from engine.warmup import prepare_kernels
 
 # A plan is based on maps with these sides at this many values. The smaller maps show the cost that does not depend on the size.
 _COARSE_SIDES = (48, 96)
@@ -94,7 +94,8 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
     if cores is not None:
         cores = checked_count("cores", cores, 1, MOST_CORES)
     workers = cores or execution.workers
-    prepare_kernels(spec.potential)
+    prepare_for_maps(spec.potential)
+    prepare_for_evidence(spec.potential)
     count = len(spec.values)
     indices = np.unique(((np.arange(_PLANNED_VALUES) + 0.5) * count / _PLANNED_VALUES).astype(int))
     seconds = [_predict_seconds(spec.point(spec.values[index]).map_spec, execution) for index in indices]

@@ -19,7 +19,8 @@ from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow
-from engine.sweeps.measures import MEASURES, SweepPoint
+from engine.sweeps.measured_map import SweepPoint
+from engine.sweeps.measures import MEASURES
 from engine.systems.outcomes import Outcome, write_outcomes
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_potential
@@ -58,8 +59,7 @@ class SweepSpec:
     use_evidence
         As in `MapSpec`.
     measures
-        What is measured on each map, by name: "maps" keeps the arrays of the map itself; "shares", "escape_times", "islands",
-        "basin_entropy", "wada", "decay_rate", "uncertainty_exponent", which takes longest, and "accuracy".
+        What is measured on each map: names of `MEASURES`, of which "maps" keeps the arrays of the map itself.
     along
         The parameter; None for the energy. Outcomes have the numbers of its `ParameterAxis`.
     energy

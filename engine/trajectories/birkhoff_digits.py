@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS, count_agree
 from engine.exits.exit_rows import exits_of_orbit
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.foundations.result import RecordedResult
+from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate
@@ -37,6 +37,7 @@ class BirkhoffDigits(RecordedResult):
     windows: np.ndarray = field(metadata=TIME)
     digits: np.ndarray
     time_unit: float = field(default=1.0, metadata=TIME)
+    chart: ClassVar = Chart("windows", "digits", "window", "digits", logarithmic="x")
 
     @property
     def nbytes(self) -> int:

@@ -57,6 +57,37 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
     >>> round(float(times.mean()), 1), round(compute_flux(CASES["III"], 0.6).mean_passage_time, 1)
     (4.0, 4.0)
     """
+    return sample_entrances_by_exit(potential, energy, count, seed=seed)[1]
+
+
+@checks_types(potential=Potential)
+def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Random states as of `sample_entrances`, with the exit of each.
+
+    Parameters
+    ----------
+    potential, energy, count, seed
+        As of `sample_entrances`.
+
+    Returns
+    -------
+    entrances
+        (count,) int64, number of the exit through which each orbit enters.
+    states
+        (count, 4) those of `sample_entrances`.
+
+    Raises
+    ------
+    ValueError
+        As of `sample_entrances`.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, sample_entrances_by_exit
+    >>> entrances, states = sample_entrances_by_exit(CASES["III"], 0.6, 1000)
+    >>> sorted(set(entrances.tolist())), states.shape
+    ([1, 2, 3, 4], (1000, 4))
+    """
     potential.check_at_rest("random entrances")
     h = checked_number("energy", energy)
     count = checked_count("count", count, 1, LARGEST_SAMPLE)
@@ -70,7 +101,7 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
     states = np.empty((count, 4))
     for place, half in enumerate(halves):
         states[chosen == place] = half.draw(int((chosen == place).sum()), random)
-    return states
+    return np.array([orbit.channel for orbit in orbits], np.int64)[chosen], states
 
 
 class _HalfOrbit:

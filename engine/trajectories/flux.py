@@ -12,7 +12,7 @@ import numpy as np
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.foundations.arrays import read_only
-from engine.foundations.result import RecordedResult
+from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.root_finding import bisect
 from engine.foundations.validation import checked_number, checks_types
 from engine.slices.default_window import default_window
@@ -48,6 +48,9 @@ class EscapeFlux(RecordedResult):
     area: float
     area_error: float = field(repr=False)
     held_as: ClassVar = {"channels": "channel"}
+    chart: ClassVar = Chart(
+        "channel", "flux", "channel", "flux", title="Flux through the exits at h = {energy:.6g}", by_channel=True
+    )
 
     def numbers(self) -> dict[str, Any]:
         """The energy, the volume, the total flux, and the decay rate and mean passage time of mixed motion."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.foundations.result import RecordedResult
+from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
 from engine.systems.compiled import kernels_of
@@ -38,6 +38,7 @@ class Separation(RecordedResult):
 
     t: np.ndarray = field(metadata=TIME)
     distance: np.ndarray = field(metadata=LENGTH)
+    chart: ClassVar = Chart("t", "distance", "t", "distance", logarithmic="y")
 
     @property
     def nbytes(self) -> int:

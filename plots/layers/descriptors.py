@@ -8,8 +8,8 @@ import numpy as np
 
 from engine import DescriptorMap, EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
 from engine.jobs.job import Job
-from engine.jobs.map_jobs import map_job
 from engine.maps.descriptors import DEFAULT_DURATION
+from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Layer, Pixels, Setting, Settings
 from plots.layers.legend import ColourScale, Legend
 from plots.layers.picture import Picture, ShownMap

@@ -9,8 +9,8 @@ import numpy as np
 
 from engine import EscapeMap, MapSpec, OriginFateMap, Outcome
 from engine.jobs.job import Job
-from engine.jobs.map_jobs import map_job
 from engine.maps.origin_fates import join_origin_fates
+from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Layer, Pixels, Settings
 from plots.layers.legend import ColourTable, Legend
 from plots.layers.picture import Picture, ShownMap

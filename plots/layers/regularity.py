@@ -8,7 +8,7 @@ import numpy as np
 
 from engine import EscapeMap, Evidence, Fate, MapSpec, Regularity, RegularityMap, compute_regularity
 from engine.jobs.job import Job
-from engine.jobs.map_jobs import map_job
+from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Code, Layer, Pixels, Settings, occurring_entries
 from plots.layers.legend import Legend
 from plots.layers.picture import Picture, ShownMap

@@ -11,11 +11,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import DecayLaws, EscapeStatistics, Fate, Outcome, Sweep
+from engine import DecayLaws, EscapeStatistics, Fate, Measure, Outcome, Sweep
 from engine.measures.decay_laws import LawFit
 from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
 from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
-from plots.pictures.sweep_panels import CURVE_PANELS, SHARES_TITLE, CurvePanel
+from plots.pictures.sweep_panels import CURVE_PANELS, SHARES, is_measured
 from plots.printed.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 
@@ -47,32 +47,33 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
     starts = " × ".join(str(side) for side in request["resolution"])
     title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
     figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _HEIGHT_OF_COLUMN), title)
-    shown = [panel for panel in CURVE_PANELS if panel.is_of(curves)]
+    shown = [measure for measure in CURVE_PANELS if is_measured(measure, curves)]
     grid = np.ravel(figure.subplots(math.ceil((1 + len(shown)) / columns), columns)).tolist()
     draw_shares(grid[0], curves.values, curves["share"], curves.outcomes, style)
-    label_axes(grid[0], curves.symbol, "percentage of starts", style)
-    name_panel(grid[0], SHARES_TITLE, style)
+    label_axes(grid[0], curves.symbol, SHARES.curve.axis, style)
+    name_panel(grid[0], SHARES.title, style)
     add_panel_legend(grid[0], "best", style)
-    for axes, panel in zip(grid[1:], shown, strict=False):
-        _draw_panel(axes, curves, panel, style)
+    for axes, measure in zip(grid[1:], shown, strict=False):
+        _draw_panel(axes, curves, measure, style)
     for axes in grid[1 + len(shown) :]:
         axes.remove()
     return figure
 
 
-def _draw_panel(axes: Axes, curves: Sweep, panel: CurvePanel, style: FigureStyle) -> None:
-    for (name, label), colour in zip(panel.labels.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
+def _draw_panel(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle) -> None:
+    curve = measure.curve
+    for (name, label), colour in zip(measure.labels.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
         words = re.sub(r"_(\w+)", r"$_{\1}$", label)
         axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=words)
         axes.fill_between(curves.values, *curves.interval(name), color=colour, alpha=0.25, linewidth=0.0)
-    if panel.level is not None:
-        axes.axhline(panel.level[0], color=THRESHOLD, linestyle="--", linewidth=1.2, label=panel.level[1])
-    if panel.logarithmic:
+    if curve.level is not None:
+        axes.axhline(curve.level[0], color=THRESHOLD, linestyle="--", linewidth=1.2, label=curve.level[1])
+    if curve.logarithmic:
         axes.set_yscale("log")
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
     style_axes(axes, style, grid=True)
-    label_axes(axes, curves.symbol, panel.axis, style)
-    name_panel(axes, panel.title, style)
+    label_axes(axes, curves.symbol, curve.axis, style)
+    name_panel(axes, measure.title, style)
     if len(axes.lines) > 1:
         add_panel_legend(axes, "best", style)
 

@@ -15,9 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import (
-    BirkhoffDigits,
     DecayLaws,
-    EscapeFlux,
     EscapeMap,
     EscapeStatistics,
     LyapunovOrbit,
@@ -26,10 +24,8 @@ from engine import (
     PotentialReview,
     Result,
     SampledOrbits,
-    Separation,
     Sweep,
     UncertaintyExponent,
-    WadaTest,
     Window,
 )
 from engine.foundations.extras import require_package
@@ -118,8 +114,22 @@ def _picture(result: Result) -> str:
 def _draw(result: Result, axes: Axes, palette: Palette) -> None:
     for layer in LAYERS.values():
         if layer.result is type(result):
-            return _draw_layer(layer, result, axes, palette)
-    raise TypeError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
+            _draw_layer(layer, result, axes, palette)
+            return
+    chart = result.chart
+    if chart is None:
+        raise TypeError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
+    columns = result.columns()
+    x, y = columns[chart.x], columns[chart.y]
+    if chart.by_channel:
+        axes.bar(list(map(str, x)), y, color=[palette.channels[channel - 1] for channel in x])
+        style_axes(axes)
+        label_axes(axes, chart.across, chart.up)
+    else:
+        shown = np.maximum(y, 10.0**-_MOST_DECADES) if "y" in chart.logarithmic else y
+        draw_line(axes, x, shown, chart.across, chart.up, logarithmic=chart.logarithmic)
+    if chart.title:
+        name_panel(axes, chart.title.format(**result.numbers()))
 
 
 def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> None:
@@ -207,15 +217,6 @@ def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
 
 
 @_draw.register
-def _draw_flux(result: EscapeFlux, axes: Axes, palette: Palette) -> None:
-    names = [str(channel) for channel in result.channels]
-    axes.bar(names, result.flux, color=[palette.channels[channel - 1] for channel in result.channels])
-    style_axes(axes)
-    label_axes(axes, "channel", "flux")
-    name_panel(axes, f"Flux through the exits at h = {result.energy:.6g}")
-
-
-@_draw.register
 def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     if not result.channels:
         raise TypeError(f"the potential {result.name} has no exits and therefore no window to draw")
@@ -262,18 +263,3 @@ def _draw_statistics(result: EscapeStatistics, axes: Axes, palette: Palette) -> 
 def _draw_uncertainty(result: UncertaintyExponent, axes: Axes, palette: Palette) -> None:
     draw_line(axes, result.separations, result.shares, "ε", "share of uncertain pairs", logarithmic="xy")
     axes.plot(result.separations, result.amplitude * result.separations**result.exponent, "--", color=LIGHT.text, linewidth=1.2)
-
-
-@_draw.register
-def _draw_wada(result: WadaTest, axes: Axes, palette: Palette) -> None:
-    draw_line(axes, np.arange(result.shares.size), result.shares, "r (pixels)", "share of the boundary within r")
-
-
-@_draw.register
-def _draw_separation(result: Separation, axes: Axes, palette: Palette) -> None:
-    draw_line(axes, result.t, np.maximum(result.distance, 10.0**-_MOST_DECADES), "t", "distance", logarithmic="y")
-
-
-@_draw.register
-def _draw_digits(result: BirkhoffDigits, axes: Axes, palette: Palette) -> None:
-    draw_line(axes, result.windows, result.digits, "window", "digits", logarithmic="x")

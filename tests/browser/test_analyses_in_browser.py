@@ -35,7 +35,7 @@ def shown_figures(explorer: ExplorerPage) -> set[str]:
 @pytest.mark.slow
 def test_basins_are_measured(explorer: ExplorerPage) -> None:
     explorer.pick("Measures")
-    for text in ("Basin entropy", "Wada", "Escape law"):
+    for text in ("Basin entropy", "Wada", "Decay law"):
         expect(explorer.text(text)).to_be_visible()
     explorer.wait_for_data("survival_steps", "data.t.length > 10")
     assert {"survival", "uncertainty"} & shown_figures(explorer) == {"survival"}
@@ -58,7 +58,7 @@ def test_curves_are_drawn_and_a_click_opens_a_map(explorer: ExplorerPage) -> Non
     points = explorer.model_data("curve_points")
     place = int(np.argmax(points["value"]))
     explorer.button("Compute the curves").scroll_into_view_if_needed()
-    explorer.click("entropies", points["value"][place] - 1e-3, points["s_bb"][place])
+    explorer.click("shares", points["value"][place] - 1e-3, 0.5)
     explorer.wait_for_view(f"h={points['value'][place]!r}")
     explorer.pick("Orbit")
 

@@ -8,7 +8,15 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from engine import CASES, classify_orbits, compute_flux, sample_entrances, sample_starts
+from engine import (
+    CASES,
+    classify_orbits,
+    compute_exit_matching,
+    compute_flux,
+    sample_entrances,
+    sample_entrances_by_exit,
+    sample_starts,
+)
 from tests.cli.conftest import Run
 
 ENSEMBLE = ("ensemble", "III", "--energy", 0.45, "--count", 200, "--t-max", 20)
@@ -31,6 +39,21 @@ def test_orbits_can_enter_through_the_exits(run: Run, tmp_path: Path) -> None:
     entrances = sample_entrances(CASES["III"], 0.45, 200)
     np.testing.assert_array_equal(np.column_stack([table[name] for name in ("x", "y", "px", "py")]), entrances)
     np.testing.assert_array_equal(table["escape_time"], classify_orbits(CASES["III"], 0.45, entrances, 20.0).escape_time)
+
+
+def test_entering_orbits_are_counted_by_entrance_and_exit(run: Run) -> None:
+    _, out, _ = run(*ENSEMBLE, "--entering", "--json")
+    entrances, starts = sample_entrances_by_exit(CASES["III"], 0.45, 200)
+    matching = compute_exit_matching(entrances, classify_orbits(CASES["III"], 0.45, starts, 20.0))
+    found = json.loads(out)["matching"]
+    assert [(row["entrance"], row["exit"], row["count"]) for row in found] == [
+        (entrance, end, int(matching.counts[i, k]))
+        for i, entrance in enumerate(matching.entrances.tolist())
+        for k, end in enumerate(matching.ends.tolist())
+    ]
+    _, table, _ = run(*ENSEMBLE, "--entering")
+    assert table.count("entered through") == 1
+    assert matching.describe() in table
 
 
 def test_a_stem_gets_a_film_and_a_table(run: Run, tmp_path: Path) -> None:

@@ -13,12 +13,16 @@ import xarray as xr
 
 from engine import (
     CASES,
+    MEASURES,
     MapSpec,
     Plane,
     SweepSpec,
     compute_basin_entropy,
+    compute_chaotic_share,
     compute_flux,
+    compute_islands,
     compute_map,
+    compute_regularity,
     compute_statistics,
     compute_sweep,
     compute_uncertainty_exponent,
@@ -62,25 +66,38 @@ def test_lyapunov_table_lists_all_orbits_and_says_when_there_are_none(run: Run) 
 def test_measures_prints_the_descriptions_of_the_engine(run: Run) -> None:
     _, out, _ = run("measures", *MAP)
     frame = compute_map(SPEC)
-    assert out.splitlines() == [
+    described = [
+        compute_islands(frame).describe(),
         compute_basin_entropy(*exit_labels(frame.fate, bounded=True)).describe(),
         compute_wada_test(*exit_labels(frame.fate, bounded=False)).describe(),
         fit_decay_laws(compute_statistics(frame), 100.0).describe(),
+        compute_flux(CASES["II"], 0.2).describe(),
         compute_uncertainty_exponent(SPEC).describe(),
+        compute_chaotic_share(compute_regularity(frame).character).describe(),
     ]
+    assert [line for line in out.splitlines() if line in described] == described
+    assert len(out.splitlines()) == sum(measure.sentence is not None for measure in MEASURES.values())
 
 
 def test_measures_json_equals_the_engine_result(run: Run) -> None:
     _, out, _ = run("measures", *MAP, "--no-exponent", "--json")
     result, frame = json.loads(out), compute_map(SPEC)
     assert result["basin_entropy"]["s_b"] == compute_basin_entropy(*exit_labels(frame.fate, bounded=True)).s_b
-    assert result["merging"]["radius"] == compute_wada_test(*exit_labels(frame.fate, bounded=False)).radius
+    assert result["wada"]["radius"] == compute_wada_test(*exit_labels(frame.fate, bounded=False)).radius
     laws = fit_decay_laws(compute_statistics(frame), 100.0)
     assert laws.exponential is not None
-    assert result["escape_laws"]["exponential"]["rate"] == laws.exponential.rate
-    power_law = result["escape_laws"]["power_law"]
+    assert result["decay_rate"]["exponential"]["rate"] == laws.exponential.rate
+    power_law = result["decay_rate"]["power_law"]
     assert (power_law and power_law["rate"]) == (laws.power_law and laws.power_law.rate)
-    assert "uncertainty_exponent" not in result
+    assert not {"uncertainty_exponent", "chaotic_share"} & result.keys()
+
+
+def test_measures_are_chosen_by_name(run: Run) -> None:
+    _, out, _ = run("measures", *MAP, "--measure", "wada", "--measure", "basin_entropy", "--json")
+    assert list(json.loads(out)) == ["request", "basin_entropy", "wada"]
+    code, _, err = run("measures", *MAP, "--measure", "size")
+    assert code != 0
+    assert "measure=size: must be one of islands, basin_entropy" in err
 
 
 def test_table_of_curves_is_printed_whole(run: Run, tmp_path: Path) -> None:

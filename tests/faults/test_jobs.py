@@ -14,7 +14,7 @@ from app.job_clients.error_messages import sentence
 from engine import CASES, MapSpec, Plane, compute_map
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.jobs.map_jobs import map_job
+from engine.sweeps.map_jobs import map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 
 MAP = MapSpec(CASES["I"], Plane.X_PX, 0.3, (48, 48), t_max=100.0)

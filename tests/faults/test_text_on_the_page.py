@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 from collections.abc import Callable, Iterator
 from dataclasses import fields
+from functools import partial
 from html import escape
 
 import panel as pn
@@ -32,14 +33,14 @@ def orbit_controls() -> OrbitControls:
 def test_quoted_text_is_escaped() -> None:
     notice, controls, panel = Notice(), orbit_controls(), PotentialPanel(review_catalogue_entry("I"), lambda system, done: None)
     curves = CurvesView(lambda *_: None, lambda *_: None)
-    measures = BasinMeasuresView(lambda *_: None, lambda text: None, lambda: None)
+    measures = BasinMeasuresView(lambda name: None, lambda text: None, lambda: None)
     says: list[tuple[Callable[[str], None], pn.pane.HTML]] = [
         (notice.warn, notice.layout()),
         (notice.show, notice.layout()),
         (controls.say, controls.note),
         (lambda text: controls.show([ChosenOrbit((0.1, 0.2), problem=text)], 0), controls.text),
         (curves.say, curves.text),
-        (measures.say, measures.text),
+        (partial(measures.say, "wada"), measures.text),
         (panel.say, panel.message),
     ]
     for say, pane in says:

@@ -34,7 +34,7 @@ from engine import (
     start_states,
 )
 from engine.foundations.validation import LONGEST_TIME
-from engine.measures.uncertainty_exponent import fit_uncertainty
+from engine.measures.power_law_fit import fit_uncertainty
 from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits

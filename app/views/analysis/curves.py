@@ -18,26 +18,23 @@ from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
-from engine import Outcome, Sweep, System
+from engine import Measure, Outcome, Sweep, System
 from engine.systems.parameters import symbol_of
 from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
-from plots.pictures.sweep_panels import CURVE_PANELS, SHARES_TITLE, CurvePanel
+from plots.pictures.sweep_panels import CURVE_PANELS, SHARES, find_numbers
 
 START, STOP = "Compute the curves", "Stop"
 SWEPT_VALUES, REFINED_VALUES = 25, 8
 """Energies, or values of a parameter, of the curves, and further ones where the shares change most."""
 
-HINT = (
-    "Shares, basin entropy, uncertainty exponent, escape times and their decay, islands and Wada distance at "
-    f"{SWEPT_VALUES + REFINED_VALUES} values, closer together where the shares change: a minute or more."
-)
+_TITLES = ", ".join(title[0].lower() + title[1:] for title in (panel.title for panel in CURVE_PANELS))
+HINT = f"Shares, {_TITLES} at {SWEPT_VALUES + REFINED_VALUES} values, closer together where the shares change: a minute or more."
 _COLOURS = MEASURED, LAW_COLOURS["exponential"]
 _NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": [], "fate": []}
 _DASH = "8 8"
 # Range of a logarithmic axis before there are numbers.
 _FIRST_DECADES = 1.0, 100.0
 _SHARES_TEXT = "<b>$snap_y{percent}</b> of the interior starts @fate<br>at $snap_x{number}"
-_SHARES = "shares"
 _NAMES = tuple(name for panel in CURVE_PANELS for name in panel.labels)
 _NO_POINTS: dict[str, list[float]] = {"value": [], **{f"{name}{end}": [] for name in _NAMES for end in ("", "_low", "_high")}}
 
@@ -66,7 +63,8 @@ class CurvesView:
         self._axis = Range1d(0.0, 1.0)
         # Automatic ranges would warn in the browser as long as there are no numbers.
         self._values = {
-            panel.name: Range1d(*(_FIRST_DECADES if panel.logarithmic else (0.0, panel.least_top))) for panel in CURVE_PANELS
+            panel.name: Range1d(*(_FIRST_DECADES if panel.curve.logarithmic else (0.0, panel.curve.least_top)))
+            for panel in CURVE_PANELS
         }
         self.points = ColumnDataSource(_NO_POINTS, name="curve_points")
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
@@ -137,9 +135,9 @@ class CurvesView:
     def _scale_values(self, curves: Sweep) -> None:
         """Fit the ranges of all but the shares."""
         for panel in CURVE_PANELS:
-            numbers, axis = panel.find_numbers(curves), self._values[panel.name]
-            if not panel.logarithmic:
-                set_range(axis, 0.0, 1.05 * max([*numbers, panel.least_top]))
+            numbers, axis = find_numbers(panel, curves), self._values[panel.name]
+            if not panel.curve.logarithmic:
+                set_range(axis, 0.0, 1.05 * max([*numbers, panel.curve.least_top]))
             elif numbers.size:
                 set_decades(axis, float(numbers.min()), float(numbers.max()))
 
@@ -171,7 +169,7 @@ class CurvesView:
     def _build_shares(self) -> list[pn.viewable.Viewable]:
         return self._with_key(self._draw_shares(), self._legend)
 
-    def _build_panel(self, panel: CurvePanel) -> list[pn.viewable.Viewable]:
+    def _build_panel(self, panel: Measure) -> list[pn.viewable.Viewable]:
         return self._with_key(self._draw_panel(panel), _make_key(panel))
 
     def _with_key(self, plot: figure, key: pn.viewable.Viewable) -> list[pn.viewable.Viewable]:
@@ -190,13 +188,13 @@ class CurvesView:
                 plot.xaxis.axis_label = self.shown.symbol
 
     def _draw_shares(self) -> figure:
-        plot = square_figure(_SHARES, SHARES_TITLE, x_axis_label=" ", x_range=self._axis, y_range=Range1d(0.0, 1.0))
+        plot = square_figure(SHARES.name, SHARES.title, x_axis_label=" ", x_range=self._axis, y_range=Range1d(0.0, 1.0))
         shares = plot.add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
         plot.add_tools(chart_hover(_SHARES_TEXT, [shares], line_policy="nearest"))
         return plot
 
-    def _draw_panel(self, panel: CurvePanel) -> figure:
-        scale = {"y_axis_type": "log"} if panel.logarithmic else {}
+    def _draw_panel(self, panel: Measure) -> figure:
+        scale = {"y_axis_type": "log"} if panel.curve.logarithmic else {}
         plot = square_figure(
             panel.name, panel.title, x_axis_label=" ", x_range=self._axis, y_range=self._values[panel.name], **scale
         )
@@ -208,9 +206,9 @@ class CurvesView:
             bars = f", {panel.bars} @{low}{{number}} to @{high}{{number}}" if panel.bars else ""
             text = f"{panel.title}, {label}: <b>@{name}{{number}}</b>{bars}<br>at @value{{number}}"
             plot.add_tools(chart_hover(text, [marks], mode="vline"))
-        if panel.level is not None:
+        if panel.curve.level is not None:
             line: dict[str, Any] = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
-            plot.add_layout(Span(location=panel.level[0], dimension="width", **line))
+            plot.add_layout(Span(location=panel.curve.level[0], dimension="width", **line))
         return plot
 
 
@@ -219,11 +217,11 @@ def _is_dashed(code: int) -> bool:
     return code > 0 and code % 2 == 0
 
 
-def _make_key(panel: CurvePanel) -> pn.viewable.Viewable:
+def _make_key(panel: Measure) -> pn.viewable.Viewable:
     bars = f" with its {panel.bars}" if panel.bars else ""
     entries = [Entry(label + bars, colour) for label, colour in zip(panel.labels.values(), _COLOURS, strict=False)]
-    if panel.level is not None:
-        entries.append(Entry(panel.level[1], THRESHOLD))
+    if panel.curve.level is not None:
+        entries.append(Entry(panel.curve.level[1], THRESHOLD))
     return TextPane(legend(entries), margin=(0, 10))
 
 

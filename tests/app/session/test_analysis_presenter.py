@@ -67,7 +67,7 @@ def frame() -> EscapeMap:
 @pytest.fixture(autouse=True)
 def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Little work for each exponent of the curves against energy."""
-    monkeypatch.setattr("engine.sweeps.measures._WORK", 1e6)
+    monkeypatch.setattr("engine.sweeps.measures.WORK", 1e7)
 
 
 @pytest.fixture
@@ -164,18 +164,21 @@ def test_basins_are_measured_and_laws_are_fitted_in_the_box(begin: Callable[...,
     session = begin(analysis=Analysis.MEASURES)
     session.show(frame)
     measures = session.presenter.measures
-    session.wait_for(lambda: all(name in measures.text.object for name in ("Basin entropy", "Wada", "Escape law")))
-    assert len(measures.steps.data["t"]) > 10
-    whole = float(measures.steps.data["share"][0])
+    session.wait_for(lambda: all(name in measures.text.object for name in ("Basin entropy", "Wada", "Decay law", "Flux")))
+    steps = measures.survival.steps
+    assert len(steps.data["t"]) > 10
+    whole = float(steps.data["share"][0])
     session.state.box = Window(-0.2, 0.3, -0.2, 0.2)
-    session.wait_for(lambda: len(measures.steps.data["t"]) > 0 and float(measures.steps.data["share"][0]) != whole)
+    session.wait_for(
+        lambda: len(measures.survival.steps.data["t"]) > 0 and float(measures.survival.steps.data["share"][0]) != whole
+    )
 
 
 @pytest.mark.usefixtures("frame")
-def test_another_map_cancels_the_measurement_of_the_exponent(begin: Callable[..., Session]) -> None:
+def test_another_map_cancels_a_slow_measure(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.MEASURES)
     session.wait_for(lambda: session.jobs.in_flight == 0)
-    session.presenter.measures.button.clicks += 1
+    session.presenter.measures.buttons["chaotic_share"].clicks += 1
     assert session.jobs.in_flight == 1
     session.presenter.begin(replace(session.state.map_spec(), energy=0.3))
     assert session.jobs.in_flight == 0

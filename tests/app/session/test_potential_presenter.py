@@ -13,9 +13,9 @@ from app.state.history import History
 from app.state.view_state import ViewState
 from engine import CASES, System
 from engine.jobs.manager import Jobs
+from engine.maps.warmup import prepare_for_maps
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
-from engine.warmup import prepare_for_maps
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
 

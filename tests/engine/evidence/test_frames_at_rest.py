@@ -25,8 +25,8 @@ from engine import (
     sample_entrances,
 )
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
+from engine.evidence.exit_entry_points import find_entry_points
 from engine.maps.run import looks_for_tori
-from engine.periodic.exit_entry_points import find_entry_points
 from engine.periodic.unstable_manifold import UnstableManifold
 from engine.propagation.evidence import Evidence
 from engine.systems.outcomes import Centre

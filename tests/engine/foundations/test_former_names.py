@@ -26,6 +26,7 @@ from engine import (
     open_result,
 )
 from engine.foundations.former_names import FORMER_NAMES
+from engine.sweeps.measures import QUICK_CURVES
 
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (12, 10), t_max=200.0, use_evidence=False)
 SWEEP = SweepSpec(CASES["III"], Plane.X_PX, (0.3, 0.4, 0.5), (12, 10), t_max=300.0, measures=("maps",))
@@ -70,8 +71,7 @@ def test_the_former_functions_of_orbits_refuse_another_potential() -> None:
 def test_the_former_request_of_curves_is_one_of_a_sweep() -> None:
     with pytest.warns(DeprecationWarning, match="^CurvesSpec is deprecated: use SweepSpec$"):
         spec = engine.CurvesSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), 500.0, exponent=False)  # type: ignore[attr-defined]
-    measures = ("shares", "escape_times", "islands", "basin_entropy", "wada", "decay_rate")
-    assert spec == SweepSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), t_max=500.0, measures=measures)
+    assert spec == SweepSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
 
 
 def test_an_unknown_name_is_no_former_one() -> None:

@@ -1,10 +1,8 @@
 from __future__ import annotations
 
-from fractions import Fraction
-
 import pytest
 
-from engine.foundations.wording import format_count, format_decimals, format_number, format_time, format_whole, short_fraction
+from engine.foundations.wording import format_count, format_decimals, format_number, format_time, format_whole
 
 
 @pytest.mark.parametrize(("value", "text"), [(999.0, "999"), (1e3, "1 000"), (123456.7, "123 457"), (1e6, "1 000 000")])
@@ -32,13 +30,3 @@ def test_numbers_have_typographic_signs(value: float, text: str) -> None:
 @pytest.mark.parametrize(("value", "text"), [(0.3123, "0.31"), (-0.3, "−0.30"), (-0.001, "0.00")])
 def test_decimals_are_fixed_and_zero_has_no_sign(value: float, text: str) -> None:
     assert format_decimals(value, 2) == text
-
-
-@pytest.mark.parametrize("text", ["0", "1/2", "3/4", "121/8", "1/3", "1/120", "10/81"])
-def test_short_fractions_stay_fractions(text: str) -> None:
-    assert short_fraction(float(Fraction(text)), 0.0) == Fraction(text)
-
-
-def test_a_fraction_is_as_close_as_the_tolerance() -> None:
-    assert short_fraction(1.0 / 3.0 + 1e-9, 1e-10) is None
-    assert short_fraction(1.0 / 3.0 + 1e-9, 1e-8) == Fraction(1, 3)

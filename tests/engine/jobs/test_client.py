@@ -8,7 +8,7 @@ from engine import CASES, MapSpec, Plane, integrate_orbit
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.jobs.map_jobs import map_job
+from engine.sweeps.map_jobs import map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 
 SLOW = [MapSpec(CASES["III"], Plane.X_PX, 0.26, (128, 128), t_max=t_max) for t_max in (1e6, 2e6, 3e6)]

@@ -27,8 +27,8 @@ from engine import (
 from engine.foundations.execution import Execution
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.jobs.map_jobs import map_job
 from engine.jobs.orbit_semaphore import SMALL_JOB
+from engine.sweeps.map_jobs import map_job
 from tests.app.clock import Clock
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 from tests.waiting import wait_until

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.measures.basin_entropy import compute_basin_entropy
-from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
+from engine.measures.basin_entropy import COUNTS_BOUNDED, compute_basin_entropy
+from engine.measures.labels import exit_labels
 
 LN2 = math.log(2.0)
 
@@ -169,4 +169,4 @@ def test_the_description_states_the_conclusion(labels: np.ndarray, words: str) -
 def test_the_boundaries_of_henon_heiles_are_beyond_ln2() -> None:
     """The boundaries are fractal: Aguirre, Vallejo & Sanjuán 2001, Phys. Rev. E 64, 066208."""
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (150, 150), t_max=1e3))
-    assert compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED)).beyond_ln2
+    assert compute_basin_entropy(*exit_labels(frame.fate, bounded=COUNTS_BOUNDED)).beyond_ln2

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.measures.labels import WADA_COUNTS_BOUNDED, exit_labels
-from engine.measures.wada import WadaTest, compute_wada_test
+from engine.measures.labels import exit_labels
+from engine.measures.wada import COUNTS_BOUNDED, WadaTest, compute_wada_test
 
 
 def stripes(width: int, number: int = 3, rows: int = 10) -> np.ndarray:
@@ -66,7 +66,7 @@ def newton(side: int) -> WadaTest:
 
 
 @cache
-def exits(case: str, energy: float, side: int, bounded: bool = WADA_COUNTS_BOUNDED) -> WadaTest:
+def exits(case: str, energy: float, side: int, bounded: bool = COUNTS_BOUNDED) -> WadaTest:
     frame = compute_map(MapSpec(CASES[case], Plane.X_PX, energy, (side, side), t_max=1e3))
     return compute_wada_test(*exit_labels(frame.fate, bounded=bounded))
 

@@ -35,7 +35,9 @@ from engine import (
     fit_decay_laws,
 )
 from engine.slices.default_window import default_window
-from engine.sweeps.measures import QUICK_CURVES, SweepPoint, compute_point
+from engine.sweeps.measured_map import SweepPoint
+from engine.sweeps.measures import QUICK_CURVES
+from engine.sweeps.points import compute_point
 from tests.engine.slices.test_parameter_family import THIRD_EXIT
 
 SPEC = SweepSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
@@ -96,7 +98,7 @@ def test_the_law_of_late_escapes_is_that_of_the_map() -> None:
 
 
 def test_exponent_is_computed_where_exits_are_open(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.sweeps.measures._WORK", 1e6)
+    monkeypatch.setattr("engine.sweeps.measures.WORK", 1e7)
     found = compute_sweep(
         SweepSpec(CASES["III"], Plane.X_PX, (0.2, 0.6), (40, 40), t_max=500.0, measures=["uncertainty_exponent"])
     )

@@ -14,8 +14,8 @@ import pytest
 from engine import CASES, EscapeMap, Execution, MapSpec, Plane, compute_map, open_result
 from engine.foundations.arrays import read_only
 from engine.jobs.job import Job, run_job
-from engine.jobs.map_jobs import map_job
 from engine.maps.pixels import PixelAnalysis
+from engine.sweeps.map_jobs import map_job
 from plots.layers import layer, map_analyses, map_images, table
 from plots.layers.map_analyses import MapAnalyses
 from plots.layers.map_images import picture_pixels

@@ -7,25 +7,16 @@ import re
 import pytest
 
 from app.views.analysis.basin_measures import BasinMeasuresView
-from engine import (
-    CASES,
-    MapSpec,
-    Window,
-    compute_basin_entropy,
-    compute_map,
-    compute_statistics,
-    compute_wada_test,
-    fit_decay_laws,
-)
-from engine.jobs.map_jobs import BasinMeasures
+from engine import CASES, MapSpec, Window, compute_map
+from engine.sweeps.points import measure_map
 
 
 @pytest.fixture
 def view() -> BasinMeasuresView:
-    shown = BasinMeasuresView(lambda: None, lambda text: None, lambda: None)
+    shown = BasinMeasuresView(lambda name: None, lambda text: None, lambda: None)
     frame = compute_map(MapSpec(CASES["II"], "x_px", 0.25, (40, 40), t_max=100.0))
-    shown.show_basins(BasinMeasures(compute_basin_entropy(frame), compute_wada_test(frame)))
-    shown.show_laws(fit_decay_laws(compute_statistics(frame), frame.spec.t_max))
+    for name in ("basin_entropy", "wada", "decay_rate"):
+        shown.show(name, measure_map(frame, name))
     return shown
 
 

@@ -10,8 +10,15 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.components.widgets import copy_button, number_rows
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
-from engine import CASES, MapSpec, Plane, compute_basin_entropy, compute_map, compute_wada_test, integrate_orbit
-from engine.jobs.map_jobs import BasinMeasures
+from engine import (
+    CASES,
+    MapSpec,
+    Plane,
+    compute_basin_entropy,
+    compute_map,
+    compute_wada_test,
+    integrate_orbit,
+)
 from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import compute_orbit_curves
 
@@ -46,12 +53,13 @@ def test_an_orbit_is_copied_with_its_indicators(copied: list[str]) -> None:
 def test_measures_are_copied_and_those_of_another_map_are_not(copied: list[str]) -> None:
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (30, 30), t_max=100.0))
     entropy = compute_basin_entropy(frame)
-    view = BasinMeasuresView(lambda: None, copied.append, lambda: None)
-    view.show_basins(BasinMeasures(entropy, compute_wada_test(frame)))
+    view = BasinMeasuresView(lambda name: None, copied.append, lambda: None)
+    view.show("basin_entropy", entropy)
+    view.show("wada", compute_wada_test(frame))
     view.copy.clicks += 1
     view.begin()
     view.copy.clicks += 1
     rows = [line.split("\t") for line in copied[0].splitlines()]
     assert ["Basin entropy", "s_b", repr(entropy.s_b)] in rows
-    assert {row[0] for row in rows} == {"Basin entropy", "Wada"}
+    assert {row[0] for row in rows} == {"Basin entropy", "Wada distance"}
     assert copied[1] == ""

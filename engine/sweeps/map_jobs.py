@@ -1,9 +1,9 @@
-"""Jobs of maps, and of the analyses that need a complete map."""
+"""Jobs of maps, of their measures, and of sweeps."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from engine.foundations.execution import Execution
@@ -12,44 +12,18 @@ from engine.jobs.job import Job, Queue
 from engine.maps.compute import LARGEST_RUN, compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
-from engine.measures.decay_law_fits import fit_decay_laws
-from engine.measures.decay_laws import DecayLaws
-from engine.measures.escape_statistics import compute_statistics, pixels_inside
-from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
-from engine.measures.wada import WadaTest, compute_wada_test
 from engine.slices.axes import ParameterAxis
 from engine.slices.parameter_family import find_members
 from engine.slices.window import Window
-from engine.sweeps.measures import SweepPoint, compute_point
+from engine.sweeps.measured_map import SweepPoint
+from engine.sweeps.measures import MEASURES
+from engine.sweeps.points import compute_point, measure_map
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
 from engine.systems.system import TYPED
-from engine.trajectories.flux import EscapeFlux, compute_flux
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-@dataclass(frozen=True)
-class BasinMeasures:
-    """Measures of the basins of escape that need only the pixels of a map.
-
-    Attributes
-    ----------
-    entropy
-        Basin entropy.
-    merging
-        Merging test for Wada basins.
-    """
-
-    entropy: BasinEntropy
-    merging: WadaTest
-
-    @property
-    def nbytes(self) -> int:
-        """Approximate size in bytes."""
-        return self.merging.shares.nbytes + 1024
 
 
 def map_job(spec: MapSpec) -> Job[EscapeMap]:
@@ -66,20 +40,10 @@ def members_job(axis: ParameterAxis | None) -> Job[None] | None:
     return Job(find_members, (axis,), queue=Queue.LIMITED)
 
 
-def basin_measures_job(spec: MapSpec, box: Window | None = None) -> Job[BasinMeasures]:
-    """The job of the basin entropy and the Wada test of a map, or of the pixels in a box."""
-    return Job(_measure_basins, (map_job(spec), box))
-
-
-def decay_laws_job(spec: MapSpec, box: Window | None = None) -> Job[DecayLaws]:
-    """The job of the decay laws of a map's escape times, or of those in a box."""
-    return Job(_fit_laws, (map_job(spec), box), queue=Queue.LONG_CALL)
-
-
-def flux_job(spec: MapSpec) -> Job[EscapeFlux] | None:
-    """The job of the flux through the exits at the energy of a map; None on a slice of several energies or potentials."""
-    several = spec.common_energy is None or spec.plane.parameter is not None
-    return None if several else Job(compute_flux, (spec.potential, spec.common_energy))
+def measure_job(spec: MapSpec, name: str, box: Window | None = None) -> Job[Any]:
+    """The job of a measure of a map, or of the starts in a box; slow ones make many short calls."""
+    queue = Queue.BACKGROUND if MEASURES[name].slow else Queue.LONG_CALL
+    return Job(measure_map, (map_job(spec), name, None if MEASURES[name].place else box), queue=queue)
 
 
 def sweep_job(spec: SweepSpec) -> Job[Sweep]:
@@ -96,16 +60,6 @@ def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | No
     shorter = [key for key in same_energy if key.t_max <= spec.t_max and replace(key, t_max=spec.t_max) == spec]
     found: EscapeMap | None = cache.get(map_job(max(shorter, key=lambda key: key.t_max))) if shorter else None
     return found if found is not None and found.batch is not None else None
-
-
-def _measure_basins(escape_map: EscapeMap, box: Window | None) -> BasinMeasures:
-    fate = escape_map.fate[pixels_inside(escape_map, box)]
-    entropy = compute_basin_entropy(*exit_labels(fate, bounded=ENTROPY_COUNTS_BOUNDED))
-    return BasinMeasures(entropy, compute_wada_test(*exit_labels(fate, bounded=WADA_COUNTS_BOUNDED)))
-
-
-def _fit_laws(escape_map: EscapeMap, box: Window | None) -> DecayLaws:
-    return fit_decay_laws(compute_statistics(escape_map, box))
 
 
 def _measure_point(point: SweepPoint, frame: EscapeMap, *, execution: Execution) -> xr.Dataset:

@@ -17,8 +17,6 @@ from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate
 
-__all__ = ["HORIZON", "UncertaintyExponent", "compute_uncertainty_exponent", "fit_uncertainty"]
-
 HORIZON = 1e4
 """Longest integration time of the pairs, in units of the well.
 

@@ -10,7 +10,8 @@ import pytest
 from engine import CASES
 from engine.foundations.execution import Execution, SerialExecutor
 from engine.maps.spec import MapSpec
-from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
+from engine.maps.uncertain_pairs import compute_uncertainty_exponent
+from engine.measures.power_law_fit import UncertaintyExponent
 from engine.propagation.classification import classify_orbits
 from engine.slices.planes import Plane
 from engine.slices.window import Window

@@ -32,7 +32,6 @@ from engine.slices.section import SECTION
 from engine.systems.compiled import kernels_of
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
-from engine.trajectories.trajectory import integrate_orbit
 
 # Integration time, in units of the well, of the calls that trigger compilation.
 _T_MAX = 10.0
@@ -167,34 +166,32 @@ def prepare_for_evidence(potential: Potential) -> None:
     if not potential.tori_are_evidence:
         return
     well, start = potential.in_well_units, _start(potential) / potential.units.state
-    _make_in_turn(
+    call_after_maps(
         lambda: count_agreeing_digits(well, start, _T_MAX, execution=_EXECUTION),
         lambda: find_section_points(well, start, 1, _T_MAX, execution=_EXECUTION),
         lambda: find_invariant_curve(np.zeros((LEAST_POINTS, 2))),
     )
 
 
-def prepare_kernels(potential: Potential) -> None:
-    """Compile all kernels of a potential, or load them from the cache, by calling each with minimal input.
+def prepare_for_analyses(potential: Potential) -> None:
+    """Compile the kernels of regularity, descriptors and stable manifolds, or load them from the cache.
 
     Parameters
     ----------
     potential
-        Any `Potential` with an exit. Compilation takes some seconds, once per machine.
+        Any `Potential` with an exit.
     """
-    prepare_for_maps(potential)
     prepare_for_evidence(potential)
-    _make_in_turn(
-        lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time),
-        lambda: compute_lagrangian_descriptor(_compute_small_map(potential, _open_energy(potential)), execution=_EXECUTION),
+    call_after_maps(
+        lambda: compute_lagrangian_descriptor(_compute_small_map(potential, _open_energy(potential)), execution=_EXECUTION)
     )
     if potential.channels and not potential.gaps:
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
-        _make_in_turn(
+        call_after_maps(
             lambda: compute_regularity(_compute_small_map(potential, potential.well.energy_at(0.5)), execution=_EXECUTION)
         )
     if potential.channels and not potential.rotation:
-        _make_in_turn(lambda: find_stable_manifolds(potential, potential.well.energy_at(1.01), images=1, execution=_EXECUTION))
+        call_after_maps(lambda: find_stable_manifolds(potential, potential.well.energy_at(1.01), images=1, execution=_EXECUTION))
 
 
 def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> None:
@@ -226,8 +223,8 @@ def _start(potential: Potential) -> np.ndarray:
     return SECTION.plane.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
 
 
-def _make_in_turn(*calls: Callable[[], object]) -> None:
-    """Make the calls one after the other, each while no kernels for maps are compiled."""
+def call_after_maps(*calls: Callable[[], object]) -> None:
+    """Make calls that compile kernels one after the other, each while no kernels for maps are compiled."""
     for call in calls:
         _for_maps.wait()
         call()

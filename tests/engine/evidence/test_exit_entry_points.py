@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Plane, classify_orbits, start_states
-from engine.periodic.exit_entry_points import find_entry_points
+from engine.evidence.exit_entry_points import find_entry_points
 
 ENERGIES = [("I", 0.13), ("I", 0.4), ("II", 0.17), ("II", 0.4), ("III", 0.26), ("III", 0.6)]
 

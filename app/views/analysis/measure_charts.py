@@ -1,0 +1,128 @@
+"""Charts beside the measures of a map: uncertain pairs of starts with their power law, and the survival with its decay laws."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import panel as pn
+from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Segment, Step
+from bokeh.plotting import figure
+
+from app.views.components.legends import legend
+from app.views.components.plots import chart_hover, set_decades, set_range, square_figure
+from app.views.components.texts import TextPane
+from engine import DecayLaws, UncertaintyExponent
+from engine.measures.decay_laws import LawFit
+from plots.pictures.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
+
+_LAW_POINTS = 200
+_PAIRS_TEXT = (
+    "<b>@share{percent}</b> of the pairs have different fates<br>at a separation of @separation{number}@note<br>"
+    "95 % interval @low{percent} to @high{percent}"
+)
+_SURVIVAL_TEXT = "<b>@share{percent}</b> of the starts are still inside<br>at t = @t{number}"
+_NO_PAIRS: dict[str, list[Any]] = {name: [] for name in ("separation", "share", "low", "high", "colour", "note")}
+
+
+class PairsChart:
+    """The uncertain share against separation, with the fitted power law; it is on the page while it has a result."""
+
+    def __init__(self) -> None:
+        self._separations, self._uncertain = Range1d(1e-10, 1.0), Range1d(1e-3, 1.0)
+        self.pairs = ColumnDataSource(_NO_PAIRS, name="pairs")
+        self._line = ColumnDataSource({"separation": [], "share": []}, name="exponent_line")
+        self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
+
+    def show(self, found: UncertaintyExponent | None) -> None:
+        """Show the shares and the fit; None removes them."""
+        self.view.visible = found is not None
+        if found is None:
+            self.pairs.data, self._line.data = _NO_PAIRS, {"separation": [], "share": []}
+            return
+        shares = found.shares
+        positive = shares > 0.0
+        low, high = found.share_intervals
+        self.pairs.data = {
+            "separation": found.separations[positive], "share": shares[positive],
+            "low": low[positive], "high": high[positive],
+            "colour": np.where(found.used[positive], MEASURED, SET_ASIDE),
+            "note": np.where(found.used[positive], "", "; not used for the exponent"),
+        }  # fmt: skip
+        ends = found.separations[found.used]
+        fitted = ends if np.isfinite(found.exponent) else ends[:0]
+        self._line.data = {"separation": fitted, "share": found.amplitude * fitted**found.exponent}
+        set_range(self._separations, 0.5 * float(found.separations.min()), 2.0 * float(found.separations.max()))
+        if positive.any():
+            set_decades(self._uncertain, float(shares[positive].min()), float(shares.max()))
+
+    def build(self) -> pn.viewable.Viewable:
+        """Make the chart."""
+        self.view.objects = [pn.pane.Bokeh(self.draw(), margin=0)]
+        return self.view
+
+    def draw(self) -> figure:
+        """Make its figure."""
+        plot = square_figure(
+            "uncertainty", "Uncertain pairs of starts", x_axis_label="separation", y_axis_label="uncertain share",
+            x_range=self._separations, y_range=self._uncertain, x_axis_type="log", y_axis_type="log",
+        )  # fmt: skip
+        style: dict[str, Any] = {"x": "separation", "y": "share"}
+        plot.add_glyph(self._line, Line(line_color=LAW_COLOURS["power law"], line_width=2, **style))
+        plot.add_glyph(self.pairs, Segment(x0="separation", x1="separation", y0="low", y1="high", line_color="colour"))
+        pairs = plot.add_glyph(self.pairs, Scatter(size=8, fill_color="colour", line_color=LIGHT.halo, **style))
+        plot.add_tools(chart_hover(_PAIRS_TEXT, [pairs]))
+        return plot
+
+
+class SurvivalChart:
+    """S(t) with the fitted laws; it is on the page while there are escapes."""
+
+    def __init__(self) -> None:
+        self._times, self._survivors = Range1d(1.0, 100.0), Range1d(1e-3, 1.0)
+        self.steps = ColumnDataSource({"t": [], "share": []}, name="survival_steps")
+        self._laws = {law: ColumnDataSource({"t": [], "share": []}, name=f"{law}_law") for law in LAW_COLOURS}
+        self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
+
+    def show(self, laws: DecayLaws | None) -> None:
+        """Show S(t) with the fitted laws; with None they stay until the next ones."""
+        if laws is None:
+            return
+        self.steps.data = {"t": laws.times, "share": laws.survival}
+        self.view.visible = laws.times.size > 0
+        for fit, source in zip((laws.exponential, laws.power_law), self._laws.values(), strict=True):
+            source.data = _law_line(fit)
+        seen = laws.survival > 0.0
+        if np.count_nonzero(seen) > 1 and laws.times[seen][-1] > 0.0:
+            latest = float(laws.times[seen][-1])
+            set_range(self._times, min(1.0, 0.1 * latest), 1.5 * latest)
+            set_decades(self._survivors, float(laws.survival[seen].min()), 1.0)
+
+    def build(self) -> pn.viewable.Viewable:
+        """Make the chart with its legend."""
+        entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]
+        self.view.objects = [pn.pane.Bokeh(self.draw(), margin=0), TextPane(legend(entries), margin=(0, 10))]
+        return self.view
+
+    def draw(self) -> figure:
+        """Make its figure."""
+        plot = square_figure(
+            "survival", "Still inside", x_axis_label="t", y_axis_label="share of the starts",
+            x_range=self._times, y_range=self._survivors, x_axis_type="log", y_axis_type="log",
+        )  # fmt: skip
+        plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
+        # The mouse finds lines between points, but not steps.
+        line = plot.add_glyph(self.steps, Line(x="t", y="share", line_alpha=0.0))
+        plot.add_tools(chart_hover(_SURVIVAL_TEXT, [line], mode="vline", line_policy="prev"))
+        for law, source in self._laws.items():
+            plot.add_glyph(source, Line(x="t", y="share", line_color=LAW_COLOURS[law], line_width=2, line_dash="dashed"))
+        return plot
+
+
+def _law_line(fit: LawFit | None) -> dict[str, np.ndarray]:
+    if fit is None:
+        return {"t": np.zeros(0), "share": np.zeros(0)}
+    t = np.geomspace(fit.t_low, fit.t_high, _LAW_POINTS)
+    share = fit.curve(t)
+    drawn = share > 0.0
+    return {"t": t[drawn], "share": share[drawn]}

@@ -1,0 +1,72 @@
+"""The share of chaotic orbits among those that stay."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine.foundations.proportions import wilson_interval
+from engine.foundations.result import Result
+from engine.propagation.fates import Regularity
+
+_JUDGED = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
+
+
+@dataclass(frozen=True)
+class ChaoticShare(Result):
+    """Chaotic orbits among the bounded ones.
+
+    Attributes
+    ----------
+    chaotic, judged
+        Number of chaotic orbits, and of all bounded ones that are judged.
+    share
+        Share of the chaotic ones; NaN if none is judged.
+    low, high
+        95 % Wilson interval of the share, as for independent random starts; NaN if none is judged.
+    """
+
+    chaotic: int
+    judged: int
+    share: float
+    low: float
+    high: float
+
+    def describe(self) -> str:
+        """The share with its interval in a sentence."""
+        if not self.judged:
+            return "No orbit is bounded."
+        interval = f"{100.0 * self.low:.1f} to {100.0 * self.high:.1f} %"
+        return f"Of the {self.judged} bounded orbits {100.0 * self.share:.1f} % are chaotic ({interval})."
+
+
+def compute_chaotic_share(character: Any) -> ChaoticShare:
+    """Count the chaotic orbits among the bounded ones.
+
+    Orbits without a sign of chaos until t_max count as not chaotic, as in Zotos (2014).
+
+    Parameters
+    ----------
+    character
+        `Regularity` codes of any shape, such as those of a `RegularityMap`.
+
+    Returns
+    -------
+    The `ChaoticShare`.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_chaotic_share, compute_map, compute_regularity
+    >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (20, 20), t_max=2e3))
+    >>> share = compute_chaotic_share(compute_regularity(escapes).character)
+    >>> round(share.low, 2), round(share.share, 2), round(share.high, 2)
+    (0.17, 0.23, 0.3)
+    """
+    codes = np.asarray(character)
+    chaotic, judged = int(np.count_nonzero(codes == Regularity.CHAOTIC)), int(np.count_nonzero(np.isin(codes, _JUDGED)))
+    if not judged:
+        return ChaoticShare(0, 0, np.nan, np.nan, np.nan)
+    low, high = wilson_interval(chaotic, judged)
+    return ChaoticShare(chaotic, judged, chaotic / judged, float(low), float(high))

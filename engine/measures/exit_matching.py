@@ -1,0 +1,123 @@
+"""Through which exit orbits leave, by the exit through which they entered."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from engine.foundations.arrays import read_only
+from engine.foundations.proportions import wilson_interval
+from engine.foundations.validation import checked_integers
+from engine.measures.starts import Measurable, Starts, read_starts
+from engine.propagation.fates import Fate, OrbitResult, name_fate
+from engine.systems.outcomes import Outcome
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ExitMatching(OrbitResult):
+    """Counts of entering orbits by entrance and exit; arrays are read-only.
+
+    Attributes
+    ----------
+    entrances
+        (m,) numbers of the exits through which orbits enter.
+    ends
+        (k,) fates of orbits: `Fate.BOUNDED` of those that stay until t_max, and the outcomes from 1 on that occur.
+    counts
+        (m, k) numbers of orbits that enter and end so. Orbits whose integration failed do not count.
+    outcomes
+        What the numbers of exits are, see `Potential.outcomes`.
+    """
+
+    entrances: np.ndarray
+    ends: np.ndarray
+    counts: np.ndarray
+    outcomes: tuple[Outcome, ...] = ()
+    codes: ClassVar = {"exit": Fate}
+    row_dimension: ClassVar = "pair"
+
+    @property
+    def shares(self) -> np.ndarray:
+        """(m, k) share of each end among the orbits of an entrance; NaN without orbits."""
+        totals = self.counts.sum(axis=1, keepdims=True)
+        return np.where(totals > 0, self.counts / np.maximum(totals, 1), np.nan)
+
+    @property
+    def share_intervals(self) -> tuple[np.ndarray, np.ndarray]:
+        """(m, k) lower and upper limits of the 95 % Wilson intervals of the shares."""
+        return wilson_interval(self.counts, self.counts.sum(axis=1, keepdims=True))
+
+    @property
+    def returning_share(self) -> float:
+        """Share of the orbits that leave through the exit by which they entered; NaN without orbits."""
+        total = int(self.counts.sum())
+        same = self.counts[self.entrances[:, None] == self.ends]
+        return float(same.sum()) / total if total else float("nan")
+
+    def name_ends(self) -> Sequence[str]:
+        """The ends in words."""
+        return ["stays" if end == Fate.BOUNDED else name_fate(end, self.outcomes) for end in self.ends.tolist()]
+
+    def numbers(self) -> dict[str, Any]:
+        """Number of orbits, and share of those that leave through their entrance."""
+        return {"orbits": int(self.counts.sum()), "returning_share": self.returning_share}
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """A row for each pair of an entrance and an end."""
+        entrance, end = (grid.ravel() for grid in np.meshgrid(self.entrances, self.ends, indexing="ij"))
+        low, high = self.share_intervals
+        numbers = {"count": self.counts, "share": self.shares, "share_low": low, "share_high": high}
+        return {"entrance": entrance, "exit": end, **{name: values.ravel() for name, values in numbers.items()}}
+
+    def describe(self) -> str:
+        """The share of orbits that return, in a sentence."""
+        total = int(self.counts.sum())
+        stay = int(self.counts[:, self.ends == Fate.BOUNDED].sum())
+        if not total:
+            return "No orbit enters."
+        back = f"{100.0 * self.returning_share:.1f} % leave through the exit by which they entered"
+        return f"Of {total} orbits that enter {back}, and {100.0 * stay / total:.1f} % stay."
+
+
+def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> ExitMatching:
+    """Count entering orbits by the exit through which they entered and that through which they leave.
+
+    If orbits forget how they entered before they leave, the shares are the same for all entrances: those of the exits in the
+    flux. Differences are due to orbits that pass quickly, along the tubes that connect entrances and exits: "dynamical matching"
+    (Collins, Kramer, Carpenter, Ezra & Wiggins 2014, J. Chem. Phys. 141, 034111).
+
+    Parameters
+    ----------
+    entrances
+        (n,) number of the exit through which each orbit entered, 1 or more, as from `sample_entrances_by_exit`.
+    outcomes
+        The outcomes of these orbits, from `classify_orbits`.
+
+    Returns
+    -------
+    The `ExitMatching`; `to_pandas` has a row for each pair of an entrance and an end, with 95 % intervals.
+
+    Raises
+    ------
+    ValueError
+        If `entrances` are not one positive integer per orbit.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, classify_orbits, compute_exit_matching, sample_entrances_by_exit
+    >>> entrances, starts = sample_entrances_by_exit(CASES["III"], 0.6, 3000, seed=1)
+    >>> matching = compute_exit_matching(entrances, classify_orbits(CASES["III"], 0.6, starts, t_max=1e3))
+    >>> matching.shares[0].round(1).tolist()  # that stay, and leave through exits 1 to 4: most through the opposite one
+    [0.0, 0.0, 0.1, 0.9, 0.0]
+    """
+    starts, entered = read_starts("outcomes", outcomes), checked_integers("entrances", entrances)
+    if entered.shape != starts.fate.shape or entered.ndim != 1 or (entered.size and entered.min() < 1):
+        raise ValueError(f"entrances of shape {entered.shape}: must be one integer of 1 or more per orbit, {starts.fate.shape}")
+    known = max([len(starts.outcomes), *starts.fate.tolist()])
+    occurring = [end for end in range(1, known + 1) if end > len(starts.outcomes) or starts.outcomes[end - 1].occurs]
+    rows, ends = np.unique(entered), np.array([int(Fate.BOUNDED), *occurring])
+    counts = np.array([[np.count_nonzero((entered == row) & (starts.fate == end)) for end in ends] for row in rows], np.int64)
+    return ExitMatching(read_only(rows), read_only(ends), read_only(counts.reshape(rows.size, ends.size)), starts.outcomes)

@@ -1,0 +1,106 @@
+"""Islands: connected parts of the bounded starts, and their areas with the error of the resolution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine.foundations.result import Result
+from engine.foundations.wording import format_count
+from engine.measures.starts import Measurable, Starts, read_starts
+from engine.propagation.fates import Fate
+
+LEAST_ISLAND = 4
+"""Smaller connected parts of the bounded starts are not counted as islands, in pixels."""
+
+# Variance of a number of points of a square lattice in a region with a smooth edge, over the length of the edge.
+_VARIANCE_PER_LENGTH = 0.0724
+
+
+@dataclass(frozen=True)
+class Islands(Result):
+    """Bounded starts of a map; areas in units of the axes.
+
+    Attributes
+    ----------
+    area, area_error
+        Area of all bounded starts, and its error.
+    count
+        Number of connected parts of at least four pixels; pixels that share a corner are connected.
+    largest, largest_error
+        Area of the largest of these parts, and its error; 0 without any.
+    """
+
+    area: float
+    area_error: float
+    count: int
+    largest: float
+    largest_error: float
+
+    def describe(self) -> str:
+        """The areas in a sentence."""
+        if not self.area:
+            return "No start is bounded."
+        parts = format_count(self.count, "island")
+        return (
+            f"The bounded starts cover {self.area:.4g} ± {self.area_error:.1g} of the slice, in {parts}; the largest has "
+            f"{self.largest:.4g} ± {self.largest_error:.1g}."
+        )
+
+
+def compute_islands(starts: Measurable | Starts) -> Islands:
+    """Count the islands of a map and add up their areas.
+
+    An area is the number of pixels times the area of one. Its error comes from the resolution alone: the number of points of a
+    square lattice in a region with a smooth edge of length L, in units of the spacing, has the variance 0.0724 L if the lattice
+    lies at random (Matérn 1989, J. Microsc. 153, 269; Gundersen & Jensen 1987, J. Microsc. 147, 229). L is π/4 times the number
+    of pairs of neighbours of which one is bounded, as for an edge of all directions. Islands with an edge that is not smooth at
+    the scale of a pixel have larger errors. Orbits that escape after t_max are not part of the error.
+
+    Parameters
+    ----------
+    starts
+        A map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep.
+
+    Returns
+    -------
+    The `Islands`.
+
+    Raises
+    ------
+    ValueError
+        If it is no map.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_islands, compute_map
+    >>> islands = compute_islands(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (100, 100), t_max=1e3)))
+    >>> islands.count > 1, 0.5 < islands.area < 1.0, islands.area_error < 0.01
+    (True, True, True)
+    """
+    # Slow to import.
+    from scipy import ndimage
+
+    found = read_starts("starts", starts)
+    if found.axes is None:
+        raise ValueError("starts: must be a map")
+    bounded = found.fate == Fate.BOUNDED
+    parts, _ = ndimage.label(bounded, np.ones((3, 3)))
+    pixels = np.bincount(parts.ravel())[1:]
+    largest = parts == 1 + int(pixels.argmax()) if pixels.size else np.zeros_like(bounded)
+    if pixels.max(initial=0) < LEAST_ISLAND:
+        largest = np.zeros_like(bounded)
+    return Islands(
+        *_find_area(bounded, found.pixel_area),
+        int(np.count_nonzero(pixels >= LEAST_ISLAND)),
+        *_find_area(largest, found.pixel_area),
+    )
+
+
+def _find_area(inside: np.ndarray, pixel_area: float) -> tuple[float, float]:
+    """Area of the pixels (rows, columns) bool, and its error."""
+    edges = sum(int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in (0, 1))
+    length: Any = 0.25 * np.pi * edges
+    return float(np.count_nonzero(inside) * pixel_area), float(np.sqrt(_VARIANCE_PER_LENGTH * length) * pixel_area)

@@ -1,0 +1,160 @@
+"""A measure as one entry: its name, its computation, its numbers with their errors, and its words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+Variables = Mapping[str, Any]
+"""Variables of a dataset by name, as xarray takes them: dimensions, values and attributes."""
+
+
+class Bars(StrEnum):
+    """What the error bars of a number are; the value is their name in texts."""
+
+    NONE = ""
+    INTERVAL = "95 % interval"
+    STANDARD_ERROR = "standard error"
+    GRID_ERROR = "error of the resolution"
+
+
+LOW, HIGH = "lower end of the 95 % interval of the {}", "upper end of the 95 % interval of the {}"
+# Endings of the names of the variables of a number, with their words.
+_ENDINGS: Mapping[Bars, Mapping[str, str]] = {
+    Bars.NONE: {"": "{}"},
+    Bars.INTERVAL: {"": "{}", "_low": LOW, "_high": HIGH},
+    Bars.STANDARD_ERROR: {"": "{}", "_error": "standard error of the {}"},
+    Bars.GRID_ERROR: {"": "{}", "_error": "error of the resolution of the {}"},
+}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a measure, dimensionless or in units of the axes.
+
+    Attributes
+    ----------
+    name
+        In files, tables and CSV.
+    words
+        What it is.
+    read
+        Returns it from a result: one number, a number and its error, or a number and both ends of its interval, as `bars` says.
+    bars
+        What its error bars are.
+    label
+        In the legend of its curve; empty for a number that is no curve.
+    """
+
+    name: str
+    words: str
+    read: Callable[[Any], Any]
+    bars: Bars = Bars.NONE
+    label: str = ""
+
+    def variables(self, result: Any) -> Variables:
+        """The number and its errors as variables of a dataset; NaN if `result` is None."""
+        endings = _ENDINGS[self.bars]
+        found = (math.nan,) * len(endings) if result is None else self.read(result)
+        values = found if isinstance(found, tuple) else (found,)
+        return {
+            self.name + ending: describe_number(value, words.format(self.words))
+            for value, (ending, words) in zip(values, endings.items(), strict=True)
+        }
+
+
+def describe_number(value: float, words: str) -> tuple[tuple[()], float, dict[str, str]]:
+    """A number as a variable of a dataset."""
+    return (), value, {"long_name": words, "units": "1"}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """How the numbers of a measure are drawn against the energy or a parameter.
+
+    Attributes
+    ----------
+    axis
+        Label of the vertical axis.
+    logarithmic
+        Whether the vertical axis is.
+    least_top
+        Least height of a linear axis, which begins at 0.
+    level
+        Height of a marked line, and its label.
+    """
+
+    axis: str
+    logarithmic: bool = False
+    least_top: float = 1e-6
+    level: tuple[float, str] | None = None
+
+
+NO_CURVE = Curve("")
+"""Of measures that are not drawn."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A measure of a map.
+
+    Attributes
+    ----------
+    name
+        In the library, in files, in links and on the command line.
+    title
+        On the page and in figures.
+    meaning
+        What it tells, in about five words.
+    compute
+        Returns its result for a `MeasuredMap`; None where it is not defined.
+    quantities
+        Its numbers.
+    help
+        What it is and how to read its curve, in two to four sentences; empty without a curve.
+    curve
+        How its numbers are drawn against the energy or a parameter; `NO_CURVE` if they are not.
+    sentence
+        Returns the result in words; None if the measure is not told in words.
+    slow
+        Whether it integrates further orbits, and is measured on demand.
+    place
+        What it counts in place of the starts in a box, in words; empty if it counts those.
+    terms
+        Terms of the glossary that it needs, with their meanings.
+    other_variables
+        Returns further variables of the dataset for a `SweepPoint` and the result.
+    """
+
+    name: str
+    title: str
+    meaning: str
+    compute: Callable[[Any], Any]
+    quantities: tuple[Quantity, ...] = ()
+    help: str = ""
+    curve: Curve = NO_CURVE
+    sentence: Callable[[Any], str] | None = None
+    slow: bool = False
+    place: str = ""
+    terms: Mapping[str, str] = field(default_factory=dict)
+    other_variables: Callable[[Any, Any], Variables] | None = None
+
+    @property
+    def labels(self) -> Mapping[str, str]:
+        """Labels of its curves, by the names of their numbers."""
+        return {quantity.name: quantity.label for quantity in self.quantities if quantity.label}
+
+    @property
+    def bars(self) -> Bars:
+        """What the error bars of its curves are."""
+        return next((quantity.bars for quantity in self.quantities if quantity.label), Bars.NONE)
+
+    def variables(self, point: Any, result: Any) -> Variables:
+        """Its variables in the dataset of a sweep; numbers are NaN if `result` is None."""
+        found = {} if self.other_variables is None else dict(self.other_variables(point, result))
+        for quantity in self.quantities:
+            found |= quantity.variables(result)
+        return found

@@ -1,0 +1,109 @@
+"""A complete map as measures take it, and the measurement of one value of a sweep."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.maps.pixels import MirrorPixels
+from engine.maps.regularity import compute_regularity
+from engine.maps.result import EscapeMap
+from engine.maps.spec import MapSpec
+from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
+from engine.measures.starts import Starts, read_starts
+from engine.propagation.fates import Fate
+from engine.slices.window import Window
+from engine.systems.outcomes import Outcome
+
+MOST_JUDGED = 2000
+"""Most bounded starts, drawn at random, that are judged as regular or chaotic: enough for a 95 % interval of ± 2 %."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredMap:
+    """A complete map, or a box in it, with what several measures need.
+
+    Attributes
+    ----------
+    frame
+        The map.
+    box
+        Only the starts in it count; None for all.
+    execution
+        How further orbits are computed.
+    effort
+        Share of the usual number of further orbits: a tenth makes intervals up to three times as wide.
+    """
+
+    frame: EscapeMap
+    box: Window | None = None
+    execution: Execution = DEFAULT_EXECUTION
+    effort: float = 1.0
+
+    @property
+    def spec(self) -> MapSpec:
+        """The request of the map."""
+        return self.frame.spec
+
+    @cached_property
+    def starts(self) -> Starts:
+        """The starts that count."""
+        starts = read_starts("frame", self.frame)
+        return starts if self.box is None else starts.inside(self.box)
+
+    @cached_property
+    def statistics(self) -> EscapeStatistics:
+        """Counts of the interior starts."""
+        return compute_statistics(self.starts)
+
+    def find_characters(self) -> np.ndarray:
+        """(n,) `Regularity` codes of bounded starts that count, from new orbits: of all, or of as many as `effort` allows."""
+        place = np.s_[:, :] if self.box is None else read_starts("frame", self.frame).place(self.box)
+        counts = np.zeros(self.frame.fate.shape, bool)
+        counts[place] = self.starts.fate == Fate.BOUNDED
+        pixels = np.flatnonzero(counts)
+        most = round(self.effort * MOST_JUDGED)
+        # Along a parameter each line of pixels has its own mirror images.
+        if pixels.size > most and self.spec.plane.parameter is None:
+            pixels = np.random.default_rng(0).choice(pixels, most, replace=False)
+        regularity = compute_regularity(self._keep(pixels), execution=self.execution)
+        self.execution.raise_if_cancelled()
+        characters: np.ndarray = regularity.character.ravel()[pixels]
+        return characters
+
+    def _keep(self, pixels: np.ndarray) -> EscapeMap:
+        """The map in which only these pixels (n,) and their mirror images, which share an orbit with them, have a fate."""
+        frame = self.frame
+        kept = np.zeros(frame.fate.size, bool)
+        kept[pixels] = True
+        kept[MirrorPixels(frame.spec, frame.x, frame.ordinate).partner[pixels]] = True
+        return replace(frame, fate=np.where(kept.reshape(frame.fate.shape), frame.fate, Fate.OUTSIDE))
+
+
+@dataclass(frozen=True)
+class SweepPoint:
+    """The measurement at one value.
+
+    Attributes
+    ----------
+    map_spec
+        The map to measure.
+    name, value
+        The name of the energy or of the parameter, and its value.
+    measures
+        Names of `MEASURES`.
+    numbers
+        The fate in the sweep of each fate of the map, from 0 on; as in `ParameterFamily`.
+    outcomes
+        The outcomes of the sweep.
+    """
+
+    map_spec: MapSpec
+    name: str
+    value: float
+    measures: tuple[str, ...]
+    numbers: tuple[int, ...]
+    outcomes: tuple[Outcome, ...]
