@@ -10,13 +10,20 @@ from typing import Any
 
 import pytest
 
+from engine.integrator.portable_kernels import kernel_module
+
 SCRIPTS = Path(__file__).parent / "app" / "browser"
 
 needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
 
 
 def run_node(script: str, data: dict[str, Any], folder: Path) -> Any:
-    """What a script prints as JSON, given data as JSON; bytes become files in `folder` and their paths."""
+    """What a script prints as JSON, given data as JSON, with the kernels if it has the module of a system.
+
+    Bytes become files in `folder` and their paths.
+    """
+    if "module" in data:
+        data["kernels"] = kernel_module()
     for name, value in data.items():
         if isinstance(value, bytes):
             (folder / name).write_bytes(value)

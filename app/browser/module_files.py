@@ -1,19 +1,26 @@
-"""The modules of the engine in the browser as files; their address contains a hash of all of them, so that browsers keep them."""
+"""The modules of the engine in the browser, and the kernels, as files.
+
+Their address contains a hash of all that they depend on, so that browsers keep them.
+"""
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 from pathlib import Path
 from typing import Any
 
-from tornado.web import StaticFileHandler
+from tornado.ioloop import IOLoop
+from tornado.web import RequestHandler, StaticFileHandler
+
+from engine.integrator.portable_kernels import kernel_module, module_digest
 
 MODULES = Path(__file__).parent / "modules"
 
 
 def _digest() -> str:
-    """A hash of all modules."""
-    digest = hashlib.sha256()
+    """A hash of all modules and of what the kernels are made of."""
+    digest = hashlib.sha256(module_digest().encode())
     for path in sorted(MODULES.glob("*.js")):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()[:16]
@@ -29,6 +36,10 @@ WATCH_ADDRESS = f"{_FOLDER}/watch.js"
 """Address of the player of many orbits, which the page loads when it is asked for."""
 
 
+KERNELS_ADDRESS = f"{_FOLDER}/kernels.wasm"
+"""Address of the kernels, beside the modules."""
+
+
 class ModuleHandler(StaticFileHandler):
     """Serves a module."""
 
@@ -37,5 +48,23 @@ class ModuleHandler(StaticFileHandler):
         return self.CACHE_MAX_AGE
 
 
-ROUTE = (rf"/{_FOLDER}/([a-z_]+\.js)", ModuleHandler, {"path": str(MODULES)})
-"""Path, handler and arguments."""
+class KernelsHandler(RequestHandler):
+    """Serves the kernels, which are built at the first start of a version."""
+
+    async def get(self) -> None:
+        """Answer with the module, compressed if the browser accepts that."""
+        module = await IOLoop.current().run_in_executor(None, kernel_module)
+        self.set_header("Content-Type", "application/wasm")
+        self.set_header("Cache-Control", f"public, max-age={StaticFileHandler.CACHE_MAX_AGE}")
+        self.set_header("Vary", "Accept-Encoding")
+        if "gzip" in self.request.headers.get("Accept-Encoding", ""):
+            self.set_header("Content-Encoding", "gzip")
+            module = gzip.compress(module)
+        self.finish(module)
+
+
+ROUTES: tuple[tuple[str, type[RequestHandler], dict[str, Any]], ...] = (
+    (rf"/{_FOLDER}/([a-z_]+\.js)", ModuleHandler, {"path": str(MODULES)}),
+    (f"/{KERNELS_ADDRESS}", KernelsHandler, {}),
+)
+"""Paths, handlers and arguments."""

@@ -12,7 +12,7 @@ from bokeh.server.tornado import BokehTornado
 from bokeh.settings import settings as bokeh_settings
 from tornado.web import HTTPError
 
-from app.browser.module_files import ROUTE as MODULES
+from app.browser.module_files import ROUTES as MODULES
 from app.server.endpoints import ROUTES, NotFound
 from app.server.security_headers import SecurityHeaders
 
@@ -22,7 +22,7 @@ _FILES = "/static/(?!.*%00).*"
 OF_PAGE = ("", "/ws", _FILES)
 """Routes below the path of a page: the page, its WebSocket and its files."""
 
-OF_SERVER = ("/?", _FILES, MODULES[0], *(path for path, _ in ROUTES))
+OF_SERVER = ("/?", _FILES, *(path for path, *_ in (*MODULES, *ROUTES)))
 """Routes below the server's prefix: the redirect to the page, scripts, styles and modules, and what the operator calls."""
 
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")

@@ -15,7 +15,7 @@ from typing import Any
 from panel.io.server import DocHandler, RootHandler, WSHandler
 from tornado.web import HTTPError
 
-from app.browser.module_files import ROUTE as MODULES
+from app.browser.module_files import ROUTES as MODULES
 from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
 from app.server.endpoints import ROUTES
 from app.server.page_websocket import PageWebSocket
@@ -60,9 +60,9 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
     """
     for patterns in (per_app_patterns, toplevel_patterns):
         patterns[:] = [(path, _secured(handler), *rest) for path, handler, *rest in patterns]
-    modules = (MODULES[0], _secured(MODULES[1]), MODULES[2])
-    if all(path != modules[0] for path, *_ in toplevel_patterns):
-        toplevel_patterns += [*ROUTES, modules]
+    added = [*ROUTES, *((path, _secured(handler), arguments) for path, handler, arguments in MODULES)]
+    if all(path != added[0][0] for path, *_ in toplevel_patterns):
+        toplevel_patterns += added
 
 
 def _secured(handler: type) -> type:

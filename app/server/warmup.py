@@ -14,6 +14,7 @@ from app.runtime.process_state import ProcessState
 from app.views.analysis import statistics
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential, integrate_orbit, start_states
+from engine.integrator.portable_kernels import kernel_module
 from engine.maps.warmup import (
     call_after_maps,
     prepare_for_analyses,
@@ -40,12 +41,20 @@ _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
     "analyses": prepare_for_analyses,
 }
 
-STEPS: Mapping[str, Callable[[], None]] = {
-    **{
-        f"the kernels of case {name} for {purpose}": partial(prepare, potential)
-        for purpose, prepare in _PURPOSES.items()
+
+def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
+    """Steps that prepare the three cases for some purposes."""
+    return {
+        f"the kernels of case {name} for {purpose}": partial(_PURPOSES[purpose], potential)
+        for purpose in purposes
         for name, potential in CASES.items()
-    },
+    }
+
+
+STEPS: Mapping[str, Callable[[], object]] = {
+    **_prepare_cases("maps"),
+    "the kernels of browsers": kernel_module,
+    **_prepare_cases("evidence", "orbits", "analyses"),
     "the panes of an orbit": orbit_plots.prepare,
     "the charts of statistics": statistics.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
@@ -53,7 +62,7 @@ STEPS: Mapping[str, Callable[[], None]] = {
 """Functions that compile kernels or load them from the disk cache, by what they prepare, in the order of need."""
 
 
-def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], None]] = STEPS) -> threading.Thread:
+def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] = STEPS) -> threading.Thread:
     """Run the steps in a thread, then set `state.kernels_ready`.
 
     A failed step ends the thread and sets `state.kernels_failed`. A shutdown ends it before the next step.
@@ -64,14 +73,14 @@ def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], None]] = 
     return thread
 
 
-def warm_up(steps: Mapping[str, Callable[[], None]] = STEPS) -> None:
+def warm_up(steps: Mapping[str, Callable[[], object]] = STEPS) -> None:
     """Run the steps in this thread, for example to fill the kernel cache of a container image."""
     for name, step in steps.items():
         log.info("preparing %s", name)
         step()
 
 
-def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], None]]) -> None:
+def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], object]]) -> None:
     for name, step in steps.items():
         if state.stopping.is_set():
             return

@@ -17,6 +17,7 @@ from engine.exits.exit_rows import exit_gates
 from engine.exits.lyapunov_orbits import exit_curve_over_chord, find_orbits_in_well_units
 from engine.foundations.arrays import read_only
 from engine.integrator.kernels import events
+from engine.integrator.kernels.exit_curves import MIDDLE_COLUMN, exit_points, interpolate_exit
 from engine.systems.potential import Potential
 
 LARGEST_ERROR = 1e-6
@@ -33,11 +34,8 @@ _NEGLIGIBLE = 1e-9
 # Stands for an infinite reach, which cannot be interpolated.
 _FARTHEST_REACH = 1e6
 _POSITIONS = np.linspace(-1.0, 1.0, 21)
-# Columns of a row: gate and reach, then those of the exit curve for its axes and from `events.MIDDLE` on.
-_REACH = 1
+# Columns of a row after gate and reach, see `engine.integrator.kernels.exit_curves`.
 _CURVE_COLUMNS = np.r_[events.ORIGIN_X : events.OUTWARD_Y + 1, events.MIDDLE : events.CURVE_COLUMNS]
-_ORIGIN, _OUTWARD = slice(2, 4), slice(4, 6)
-_MIDDLE, _HALF_WIDTH, _COEFFICIENTS = 6, 7, 10
 
 _Curves = Callable[[float], dict[int, np.ndarray]]
 
@@ -114,7 +112,7 @@ def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
 
 def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -> ExitTable:
     """The table of one channel."""
-    none = np.zeros(0), np.zeros((0, _COEFFICIENTS))
+    none = np.zeros(0), np.zeros((0, MIDDLE_COLUMN))
     if highest <= saddle:
         return ExitTable(saddle, highest, *none)
     for share, count in itertools.product(_SHARES, _NODES):
@@ -123,14 +121,14 @@ def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -
         try:
             # The end of the range is tried first, because errors occur there if anywhere.
             curves_at(saddle + largest**2)
-            rows, expected = (
-                np.array([_row(curves_at(saddle + sigma**2)[channel]) for sigma in places.tolist()])
-                for places in (nodes, between)
+            inside, expected = (
+                [curves_at(saddle + sigma**2)[channel] for sigma in places.tolist()] for places in (nodes, between)
             )
         except ValueError:
             continue
+        rows = np.array([_row(curve) for curve in inside])
         found = [_points(_interpolate(nodes, rows, sigma), _POSITIONS) for sigma in between.tolist()]
-        if np.abs(np.array(found) - [_points(row, _POSITIONS) for row in expected]).max() < _SAFETY * LARGEST_ERROR:
+        if np.abs(np.array(found) - [_points(curve, _POSITIONS) for curve in expected]).max() < _SAFETY * LARGEST_ERROR:
             used = np.flatnonzero(np.abs(rows).max(axis=0) > _NEGLIGIBLE).max() + 1
             return ExitTable(saddle, saddle + share * (highest - saddle), nodes, rows[:, :used].copy())
     return ExitTable(saddle, saddle, *none)
@@ -152,22 +150,14 @@ def _row(curve: np.ndarray) -> np.ndarray:
 
 
 def _interpolate(nodes: np.ndarray, rows: np.ndarray, place: float) -> np.ndarray:
-    """The row at a place. The reach is not smooth: the smaller one of two neighbours is taken."""
-    if place in nodes:
-        same: np.ndarray = rows[np.searchsorted(nodes, place)]
-        return same
-    k = np.arange(nodes.size)
-    weights = (-1.0) ** k * np.sin(np.pi * (2 * k + 1) / (2 * nodes.size)) / (place - nodes)
-    row: np.ndarray = weights @ rows / weights.sum()
-    above = int(np.searchsorted(nodes, place))
-    row[_REACH] = rows[max(above - 1, 0) : above + 1, _REACH].min()
-    row[_OUTWARD] /= np.hypot(*row[_OUTWARD])
-    return row
+    """(columns,) the exit at a place."""
+    curve = np.zeros(events.CURVE_COLUMNS)
+    interpolate_exit(nodes, rows, place, events.CURVE, curve, np.zeros(3))
+    return curve
 
 
-def _points(row: np.ndarray, positions: np.ndarray) -> np.ndarray:
+def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:
     """(2, m) the points of an exit at s (m,)."""
-    u = np.polynomial.chebyshev.chebval(positions, row[_COEFFICIENTS:])
-    q = row[_MIDDLE] + row[_HALF_WIDTH] * positions
-    (x, y), (outward_x, outward_y) = row[_ORIGIN], row[_OUTWARD]
-    return np.array([x + u * outward_x - q * outward_y, y + u * outward_y + q * outward_x])
+    points = np.empty((2, positions.size))
+    exit_points(curve, positions, points)
+    return points

@@ -8,13 +8,13 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from math import comb
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.arrays import read_only
-from engine.integrator.kernels import events, interior
+from engine.integrator.kernels import interior
 from engine.systems.compiled import kernels_of
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.polynomial_form import PolynomialForm
@@ -52,17 +52,11 @@ def find_outside_starts(
     curve_row
         (n,) the row of `curves` for each point.
     """
-    outside = np.zeros(x.size, np.int8)
-    over_saddles = np.ascontiguousarray(curves[:, : potential.channels])
-    if (over_saddles[..., events.REACH] >= 0.0).any():
-        nearest = _finder(potential.form, potential)(x, y, energy, over_saddles, curve_row)
-        outside = np.take_along_axis(potential.well.exit_numbers(energy), nearest[:, None].astype(np.int64), axis=1)[:, 0]
-    if not potential.ends:
-        return outside
-    allowed = potential.value(x, y) <= energy
-    # A gap may lie beyond another end, and counts there.
-    for number, end in sorted(enumerate(potential.ends, potential.channels + 1), key=lambda numbered: -numbered[1].side):
-        outside[allowed & end.contains(x, y)] = number
+    found = np.zeros(x.size, np.int8)
+    _finder(potential.form, potential)(x, y, energy, curves, curve_row, found)
+    nearest = np.where(found > potential.channels, 0, found).astype(np.int64)
+    merged = np.take_along_axis(potential.well.exit_numbers(energy), nearest[:, None], axis=1)[:, 0]
+    outside: np.ndarray = np.where(found > potential.channels, found, merged)
     return outside
 
 
@@ -72,27 +66,44 @@ def find_inner_radius(potential: Potential) -> float:
 
 
 @functools.singledispatch
-def _finder(form: Any, potential: Potential) -> Callable[..., np.ndarray]:
+def _finder(form: Any, potential: Potential) -> Callable[..., None]:
     """The kernel for a form of potentials, with its first arguments."""
     raise TypeError(form)
 
 
 @_finder.register
-def _finder_of_expression(_form: ExpressionForm, potential: Potential) -> Callable[..., np.ndarray]:
-    inner_radius = find_inner_radius(potential)
-    return lambda *arguments: kernels_of(potential).find_outside(*arguments, inner_radius)
+def _finder_of_expression(_form: ExpressionForm, potential: Potential) -> Callable[..., None]:
+    return functools.partial(kernels_of(potential).find_outside, find_inner_radius(potential))
 
 
 @_finder.register
-def _finder_of_polynomial(form: PolynomialForm, _potential: Potential) -> Callable[..., np.ndarray]:
+def _finder_of_polynomial(form: PolynomialForm, _potential: Potential) -> Callable[..., None]:
+    polynomial = tabulate_polynomial(form)
+    return functools.partial(interior.find_outside_polynomial, *polynomial, np.zeros((3, len(polynomial.bernstein))))
+
+
+class PolynomialTable(NamedTuple):
+    """A polynomial as `engine.integrator.kernels.interior` takes it.
+
+    powers (terms, 2), coefficients (terms,): of V; bernstein (n, n): from the coefficients of a power series on [0, 1] to those
+    of Bernstein polynomials.
+    """
+
+    powers: np.ndarray
+    coefficients: np.ndarray
+    bernstein: np.ndarray
+
+
+def tabulate_polynomial(form: PolynomialForm) -> PolynomialTable:
+    """The terms of a polynomial for kernels."""
     powers = np.array([term[:2] for term in form.terms], np.int64).reshape(-1, 2)
     coefficients = np.array([term[2] for term in form.terms])
-    bernstein = _bernstein_matrix(max(int(powers.sum(axis=1).max(initial=0)), int(powers.max(initial=0))))
-    return functools.partial(interior.find_outside_polynomial, powers, coefficients, bernstein)
+    degree = max(int(powers.sum(axis=1).max(initial=0)), int(powers.max(initial=0)))
+    return PolynomialTable(powers, coefficients, _bernstein_matrix(degree))
 
 
 @functools.cache
 def _bernstein_matrix(degree: int) -> np.ndarray:
-    """(degree + 1, degree + 1) from the coefficients of a power series on [0, 1] to those of Bernstein polynomials."""
+    """(degree + 1, degree + 1)."""
     n = degree + 1
     return read_only(np.array([[comb(i, k) / comb(degree, k) for k in range(n)] for i in range(n)]))

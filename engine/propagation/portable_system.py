@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from engine.exits.exit_tables import ExitTable, tabulate_exits
-from engine.exits.interior import find_inner_radius
-from engine.integrator.jit.webassembly import constant_inputs, webassembly_module
-from engine.integrator.source.recurrence import LANES, TOLERANCE, generate_code
+from engine.exits.interior import find_inner_radius, tabulate_polynomial
+from engine.integrator.jit.kernel_module import HEAP_CELL
+from engine.integrator.jit.webassembly import FUNCTIONS, PAIR, webassembly_module
+from engine.integrator.kernels import events
+from engine.integrator.source.recurrence import ROWS, TOLERANCE, generate_code
 from engine.integrator.source.series import ORDER, ROTATION
-from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 from engine.propagation.fates import Fate
-from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
+
+_EXIT_COLUMNS = {
+    "count": events.CURVE_COLUMNS,
+    "originX": events.ORIGIN_X,
+    "originY": events.ORIGIN_Y,
+    "outwardX": events.OUTWARD_X,
+    "outwardY": events.OUTWARD_Y,
+    "halfWidth": events.HALF_WIDTH,
+    "shape": events.SHAPE,
+    "shapes": {
+        "closed": events.CLOSED,
+        "curve": events.CURVE,
+        "line": events.LINE,
+        "disc": events.DISC,
+        "circle": events.CIRCLE,
+    },
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,9 +45,7 @@ class PortableSystem:
     potential
         The potential, in its own units.
     module
-        WebAssembly with the functions ``step`` and ``jets``, see `engine.integrator.jit.webassembly`.
-    constants
-        Names of the inputs of ``step`` that are the same for all lanes, in order.
+        WebAssembly with the functions of its structure, see `engine.integrator.jit.webassembly`.
     table
         (m,) the coefficients in the form that the functions take.
     rotation
@@ -42,7 +56,6 @@ class PortableSystem:
 
     potential: Potential
     module: bytes
-    constants: tuple[str, ...]
     table: np.ndarray
     rotation: int | None
     exits: tuple[ExitTable, ...]
@@ -57,20 +70,20 @@ class PortableSystem:
         well, units = self.potential.in_well_units, self.potential.units
         mirror = self.potential.well.mirror_channels.tolist() if self.potential.well.mirror_in_x else None
         return {
-            "constants": list(self.constants),
             "layout": {
-                "lanes": LANES,
                 "order": ORDER,
-                "hidden": HIDDEN,
-                "gate": GATE,
-                "near": NEAR,
-                "overshoot": OVERSHOOT,
+                "rows": ROWS,
+                "lanes_together": PAIR,
                 "tolerance": TOLERANCE,
+                "heap": HEAP_CELL,
+                "functions": list(FUNCTIONS),
                 "fates": {fate.name.lower(): int(fate) for fate in Fate},
+                "exits": _EXIT_COLUMNS,
             },
             "table": self.table.tolist(),
             "rotation": self.rotation,
-            "formula": _formula_data(well.form, well),
+            "polynomial": _polynomial_data(well.form),
+            "innerRadius": find_inner_radius(well),
             "exits": [*self._tables(), *_circles(well)],
             "mirror": mirror,
             "units": {"length": units.length, "time": units.time},
@@ -90,23 +103,11 @@ def _circles(well: Potential) -> list[dict[str, object]]:
     return [{"side": end.side, "x": end.x, "y": end.y, "radius": end.radius} for end in well.ends]
 
 
-@functools.singledispatch
-def _formula_data(form: Any, well: Potential) -> dict[str, object]:
-    """V as lists and numbers."""
-    raise TypeError(form)
-
-
-@_formula_data.register
-def _terms(form: PolynomialForm, _well: Potential) -> dict[str, object]:
-    return {"terms": [list(term) for term in form.terms]}
-
-
-@_formula_data.register
-def _graph(form: ExpressionForm, well: Potential) -> dict[str, object]:
-    """The operations of V, V_x and V_y, with their numbers in place."""
-    graph, numbers = form.slopes_graph
-    nodes = [node._asdict() | {"numbers": [numbers[place] for place in node.numbers]} for node in graph.nodes]
-    return {"graph": {"nodes": nodes, "results": list(graph.results), "innerRadius": find_inner_radius(well)}}
+def _polynomial_data(form: Any) -> dict[str, object] | None:
+    """V as the interior test takes it, as lists; None for an expression."""
+    if not isinstance(form, PolynomialForm):
+        return None
+    return {name: array.tolist() for name, array in tabulate_polynomial(form)._asdict().items()}
 
 
 def make_portable_system(potential: Potential, highest: float) -> PortableSystem:
@@ -119,4 +120,4 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     code = generate_code(definition, **setting._asdict())
     table, rotation = code.tabulate(definition, well.rotation), code.entries.index(ROTATION) if setting.rotates else None
     exits = tabulate_exits(well, highest / potential.units.energy)
-    return PortableSystem(potential, webassembly_module(code), constant_inputs(code, "step"), table, rotation, exits)
+    return PortableSystem(potential, webassembly_module(code), table, rotation, exits)

@@ -6,10 +6,9 @@
 
 import {exitLines, LimitingCurves} from "./curves.js"
 import {Integrator} from "./integrator.js"
-import {Interior} from "./interior.js"
-import {exitCurves} from "./exits.js"
+import {OutsideTest} from "./interior.js"
+import {Exits} from "./exits.js"
 import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
-import {makePotential} from "./potential.js"
 import {energyUnit, space, Starts} from "./slice.js"
 import {windowAt} from "./system.js"
 import {traceOrbit} from "./trace.js"
@@ -79,10 +78,8 @@ export class Card {
   #view
   #canvas
   #limits = new LimitingCurves()
-  /** @type {import("./system.js").System | null} */
-  #system = null
-  /** @type {{integrator: Integrator, interior: Interior, potential: import("./potential.js").Potential} | null} */
-  #engine = null
+  /** @type {Integrator | null} */
+  #integrator = null
   /** @type {{timer: ReturnType<typeof setTimeout>, x: number, y: number} | null} */
   #finger = null
   #pressed = false
@@ -91,12 +88,10 @@ export class Card {
 
   /**
    * @param {import("./system.js").System} system
-   * @param {WebAssembly.Module} module
+   * @param {import("./integrator.js").Modules} modules
    */
-  setSystem(system, module) {
-    const potential = makePotential(system.formula)
-    this.#system = system
-    this.#engine = {integrator: new Integrator(system, module), interior: new Interior(potential), potential}
+  setSystem(system, modules) {
+    this.#integrator = new Integrator(system, modules)
   }
 
   /** @param {PointerEvent} event */
@@ -155,18 +150,17 @@ export class Card {
    * @param {PointerEvent} event
    */
   #show(picture, event) {
-    const [scene, system, engine] = [this.#scene(), this.#system, this.#engine]
+    const [scene, integrator] = [this.#scene(), this.#integrator]
     const place = picture && this.#start(picture, event)
-    if (!picture || !place || !scene || !system || !engine) {
+    if (!picture || !place || !scene || !integrator) {
       this.#hide()
       return
     }
-    const {potential, integrator, interior} = engine
     const {units} = scene.slice
-    const starts = new Starts(scene.slice, potential, scene.energy / energyUnit(system.units))
+    const starts = new Starts(scene.slice, integrator, scene.energy / energyUnit(integrator.system.units))
     const {found} = starts
     const exists = starts.find(place[0] / units[0], place[1] / units[1])
-    if (!exists || interior.isOutside(exitCurves(system.exits, found.h), found.h, found.x, found.y)) {
+    if (!exists || isOutside(integrator, found)) {
       this.#hide()
       return
     }
@@ -207,8 +201,9 @@ export class Card {
    * @param {import("./trace.js").Trace} trace
    */
   #draw(over, pointer, energy, trace) {
-    const [system, engine, context] = [this.#system, this.#engine, this.#canvas.getContext("2d")]
-    if (!system || !engine || !context) return
+    const [integrator, context] = [this.#integrator, this.#canvas.getContext("2d")]
+    if (!integrator || !context) return
+    const {system} = integrator
     const box = placeFor(over, pointer)
     const h = energy * energyUnit(system.units)
     const window = windowAt(system.windows.x_y, h)
@@ -222,10 +217,10 @@ export class Card {
       /** @type {string} */ colour,
       /** @type {number} */ width,
     ) => strokeLine(context, window, box, line, colour, width)
-    const limit = this.#limits.trace(system, engine.potential, {slice: space(system.units), window, energy: h})
+    const limit = this.#limits.trace(integrator, {slice: space(system.units), window, energy: h})
     for (const line of limit) draw(line, ink, 1.5)
     const {colours, labels} = this.#view()
-    for (const {channel, xs, ys} of exitLines(system, h)) draw({xs, ys}, colours[channel - 1], 3)
+    for (const {channel, xs, ys} of exitLines(integrator, h)) draw({xs, ys}, colours[channel - 1], 3)
     const {xs, ys} = pathOf(trace, system.units)
     draw({xs, ys}, trace.channel > 0 ? colours[trace.channel - 1] : ink, 1)
     const text = describe(trace, system.units.time, labels)
@@ -243,6 +238,13 @@ export class Card {
     this.#canvas.setAttribute("aria-label", text)
   }
 }
+
+/** @type {(integrator: Integrator, start: import("./system.js").Start) => boolean} */
+const isOutside = (integrator, {x, y, h}) =>
+  integrator.temporarily(() => {
+    const test = new OutsideTest(integrator, new Exits(integrator, [h]), 1)
+    return test.find([x, y, 0, 0], [h])[0] > 0
+  })
 
 /** @type {(box: DOMRect, event: PointerEvent) => boolean} */
 const contains = (box, {clientX, clientY}) =>

@@ -1,7 +1,7 @@
 // @ts-check
 /** The lines over the pictures at an energy of a preview: the limiting curve, and the exits, circles included. */
 
-import {exitCurves, exitPoint} from "./exits.js"
+import {Exits} from "./exits.js"
 import {sampleGrid, levelLines} from "./contours.js"
 import {energyAxis, energyUnit, Starts} from "./slice.js"
 
@@ -17,14 +17,14 @@ export class LimitingCurves {
   #key = ""
 
   /**
-   * @param {import("./system.js").System} system
-   * @param {import("./potential.js").Potential} potential
+   * @param {import("./integrator.js").Integrator} integrator
    * @param {Pick<import("./pixels.js").View, "slice" | "window" | "energy">} view
    */
-  trace(system, potential, {slice, window, energy}) {
+  trace(integrator, {slice, window, energy}) {
+    const {system} = integrator
     const key = JSON.stringify([system.key, slice, window])
     if (key !== this.#key || !this.#grid) {
-      const starts = new Starts(slice, potential, 0)
+      const starts = new Starts(slice, integrator, 0)
       const [unitX, unitOrdinate] = slice.units
       this.#grid = sampleGrid(window, (x, ordinate) => starts.requiredEnergy(x / unitX, ordinate / unitOrdinate))
       this.#key = key
@@ -36,19 +36,23 @@ export class LimitingCurves {
 /**
  * The lines of the open exits in units of the page, with the places of their numbers; NaN for circles.
  *
- * @param {import("./system.js").System} system
+ * @param {import("./integrator.js").Integrator} integrator
  * @param {number} energy  in units of the page
  * @returns {{channel: number, xs: number[], ys: number[], label: [number, number]}[]}
  */
-export function exitLines({exits, units}, energy) {
-  const lines = exitCurves(exits, energy / energyUnit(units)).map((curve, k) => {
-    const count = curve.side === 0 ? EXIT_POINTS : CIRCLE_POINTS
-    const points = Array.from({length: count}, (_, i) => exitPoint(curve, (2 * i) / (count - 1) - 1))
-    const [xs, ys] = [0, 1].map(axis => points.map(point => point[axis] * units.length))
-    const middle = count >> 1
-    const share = curve.side === 0 ? LABEL_SHARE : NaN
-    const label = /** @type {[number, number]} */ ([share * xs[middle], share * ys[middle]])
-    return {channel: k + 1, xs, ys, label, open: curve.open}
+export function exitLines(integrator, energy) {
+  const {units} = integrator.system
+  return integrator.temporarily(() => {
+    const exits = new Exits(integrator, [energy / energyUnit(units)])
+    const open = exits.list().filter(({isOpen}) => isOpen)
+    return open.map(exit => {
+      const count = exit.isCircle ? CIRCLE_POINTS : EXIT_POINTS
+      const positions = Array.from({length: count}, (_, i) => (2 * i) / (count - 1) - 1)
+      const [xs, ys] = exits.points(exit, positions).map(values => values.map(value => value * units.length))
+      const middle = count >> 1
+      const share = exit.isCircle ? NaN : LABEL_SHARE
+      const label = /** @type {[number, number]} */ ([share * xs[middle], share * ys[middle]])
+      return {channel: exit.number, xs, ys, label}
+    })
   })
-  return lines.filter(({open}) => open)
 }

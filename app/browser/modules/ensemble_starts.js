@@ -2,7 +2,8 @@
 /** Random starts of an ensemble; equal seeds give equal starts. */
 
 import {drawEntrances, drawTubes} from "./exit_starts.js"
-import {exitCurves} from "./exits.js"
+import {Exits} from "./exits.js"
+import {OutsideTest} from "./interior.js"
 import {energyUnit, space, Starts} from "./slice.js"
 import {windowAt} from "./system.js"
 
@@ -17,12 +18,6 @@ import {windowAt} from "./system.js"
  * @property {[number, number]} point  middle of the disc, in units of the page
  * @property {[number, number, number, number]} box  xLow, xHigh, ordinateLow, ordinateHigh, in units of the page
  * @property {number} radius  of the disc, as a share of half the window
- *
- * @typedef {object} Surroundings
- * @property {import("./system.js").System} system
- * @property {import("./potential.js").Potential} potential
- * @property {import("./interior.js").Interior} interior
- * @property {import("./integrator.js").Integrator} integrator
  */
 
 /** Draws for each start, at most; of a window without an interior there are no starts. */
@@ -33,20 +28,24 @@ const MOST_DRAWS = 200
  *
  * @param {Request} request
  * @param {import("./frames.js").Scene} scene  slice, energy and window
- * @param {Surroundings} surroundings
+ * @param {import("./integrator.js").Integrator} integrator
  * @returns {Float64Array}
  */
-export function drawStarts(request, scene, {system, potential, interior, integrator}) {
+export const drawStarts = (request, scene, integrator) => integrator.temporarily(() => draw(request, scene, integrator))
+
+/** @type {(request: Request, scene: import("./frames.js").Scene, integrator: import("./integrator.js").Integrator) => Float64Array} */
+function draw(request, scene, integrator) {
+  const {system} = integrator
   const energy = scene.energy / energyUnit(system.units)
-  const exits = exitCurves(system.exits, energy)
+  const exits = new Exits(integrator, [energy])
   const random = randomNumbers(request.seed)
-  if (request.where === "exits") return drawEntrances(request.count, exits, potential, energy, random)
-  if (request.where === "tubes") return drawTubes(request.count, exits, potential, integrator, energy, random)
+  if (request.where === "exits") return drawEntrances(request.count, integrator, exits, energy, random)
+  if (request.where === "tubes") return drawTubes(request.count, integrator, exits, energy, random)
   const isWell = request.where === "well"
   const slice = isWell ? space(system.units) : scene.slice
   const window = isWell ? windowAt(system.windows.x_y, scene.energy) : request.where === "box" ? boxOf(request) : scene.window
   if (!window) return new Float64Array(0)
-  const starts = new Starts(slice, potential, energy)
+  const [starts, test] = [new Starts(slice, integrator, energy), new OutsideTest(integrator, exits, 1)]
   const {found} = starts
   const place = request.where === "disc" ? inDisc(request, window, random) : inWindow(window, random)
   const states = new Float64Array(4 * request.count)
@@ -54,7 +53,7 @@ export function drawStarts(request, scene, {system, potential, interior, integra
   for (let draw = 0; draw < MOST_DRAWS * request.count && count < request.count; draw++) {
     const [abscissa, ordinate] = place()
     if (!starts.find(abscissa / slice.units[0], ordinate / slice.units[1])) continue
-    if (interior.isOutside(exits, energy, found.x, found.y)) continue
+    if (test.find([found.x, found.y, 0, 0], [energy])[0] > 0) continue
     if (isWell) turn(found, 2 * Math.PI * random())
     states.set([found.x, found.y, found.px, found.py], 4 * count++)
   }

@@ -2,7 +2,6 @@
 /** Random starts at the exits: orbits that enter through them, and orbits at the edge of the tubes that lead out. */
 
 import {Ensemble} from "./ensemble.js"
-import {exitPoint} from "./exits.js"
 import {Integrator} from "./integrator.js"
 import {reversedInTime} from "./system.js"
 
@@ -18,24 +17,26 @@ const BEFORE = 9
 /**
  * A part of an exit: its middle s, and the flux through this and all parts before it.
  *
- * @typedef {{curve: import("./exits.js").ExitCurve, s: number, flux: number}} Part
+ * @typedef {{exit: import("./exits.js").Exit, s: number, flux: number}} Part
+ *
+ * @typedef {{exit: import("./exits.js").Exit, s: number}} Place
  */
 
 /**
  * States on the exits over saddles that move into the well, distributed as the flux, as by `sample_entrances` of the library.
  *
  * @param {number} count
- * @param {import("./exits.js").ExitCurve[]} exits  at the energy
- * @param {import("./potential.js").Potential} potential
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {import("./exits.js").Exits} exits  at the energy
  * @param {number} energy
  * @param {() => number} random
  */
-export function drawEntrances(count, exits, potential, energy, random) {
-  const draw = drawPlaces(exits, potential, energy, random)
+export function drawEntrances(count, integrator, exits, energy, random) {
+  const source = new Openings(integrator, exits, exits.list(), energy, random)
   return collect(count, () => {
-    const place = draw()
+    const place = source.draw()
     const share = 2 * random() - 1
-    return place && launch(place, SHIFT, share, potential, energy)
+    return place && source.launch(place, SHIFT, share)
   })
 }
 
@@ -45,22 +46,21 @@ export function drawEntrances(count, exits, potential, energy, random) {
  * lines in a frame that rotates are no Lyapunov orbits, and have none.
  *
  * @param {number} count
- * @param {import("./exits.js").ExitCurve[]} exits
- * @param {import("./potential.js").Potential} potential
  * @param {import("./integrator.js").Integrator} integrator
+ * @param {import("./exits.js").Exits} exits
  * @param {number} energy
  * @param {() => number} random
  */
-export function drawTubes(count, exits, potential, integrator, energy, random) {
-  const curves = exits.filter(({returns}) => !returns)
-  const draw = drawPlaces(curves, potential, energy, random)
+export function drawTubes(count, integrator, exits, energy, random) {
+  const orbits = exits.list().filter(({returns}) => !returns)
+  const source = new Openings(integrator, exits, orbits, energy, random)
   const states = collect(count, () => {
-    const place = draw()
+    const place = source.draw()
     const along = random() < 0.5 ? 1 : -1
     const [shift, inward] = random() < 0.5 ? [SHIFT, FROM_EDGE] : [FROM_EDGE, 0]
-    return place && launch(place, shift, along * Math.sqrt(1 - inward * inward), potential, energy)
+    return place && source.launch(place, shift, along * Math.sqrt(1 - inward * inward))
   })
-  const ensemble = new Ensemble(new Integrator(reversedInTime(integrator.system), integrator.module), energy, states)
+  const ensemble = new Ensemble(new Integrator(reversedInTime(integrator.system), integrator.modules), energy, states)
   ensemble.advance(BEFORE)
   return reverse(ensemble)
 }
@@ -71,9 +71,9 @@ export function drawTubes(count, exits, potential, integrator, energy, random) {
  * @param {Ensemble} ensemble
  */
 function reverse(ensemble) {
-  const [found, {px, py}] = [/** @type {number[]} */ ([]), ensemble.momenta()]
+  const [found, {x, y, channel}, {px, py}] = [/** @type {number[]} */ ([]), ensemble, ensemble.momenta()]
   for (let i = 0; i < ensemble.count; i++) {
-    if (ensemble.channel[i] === 0) found.push(ensemble.x[i], ensemble.y[i], -px[i], -py[i])
+    if (channel[i] === 0) found.push(x[i], y[i], -px[i], -py[i])
   }
   return Float64Array.from(found)
 }
@@ -92,65 +92,73 @@ function collect(count, draw) {
   return states
 }
 
-/**
- * A function that draws places on the exits over saddles, as often as the flux through them; null if all are closed.
- *
- * @param {import("./exits.js").ExitCurve[]} exits
- * @param {import("./potential.js").Potential} potential
- * @param {number} energy
- * @param {() => number} random
- */
-function drawPlaces(exits, potential, energy, random) {
-  /** @type {Part[]} */
-  const parts = []
-  let flux = 0
-  for (const curve of exits.filter(({open, side}) => open && side === 0)) {
-    for (let k = 0; k < PARTS; k++) {
-      const s = -1 + (2 * k + 1) / PARTS
-      const [x, y] = exitPoint(curve, s)
-      flux += speed(potential, energy, x, y) * Math.hypot(...tangent(curve, s))
-      parts.push({curve, s, flux})
+/** The open exits over saddles among some. */
+class Openings {
+  /**
+   * @param {import("./integrator.js").Integrator} integrator
+   * @param {import("./exits.js").Exits} exits  at the energy
+   * @param {import("./exits.js").Exit[]} some
+   * @param {number} energy
+   * @param {() => number} random
+   */
+  constructor(integrator, exits, some, energy, random) {
+    this.#exits = exits
+    this.#random = random
+    this.#speed = (/** @type {number} */ x, /** @type {number} */ y) =>
+      Math.sqrt(Math.max(2 * (energy - integrator.value(x, y)), 0))
+    for (const exit of some.filter(({isOpen, isCircle}) => isOpen && !isCircle)) {
+      for (let k = 0; k < PARTS; k++) {
+        const s = -1 + (2 * k + 1) / PARTS
+        const {point, along} = this.#look({exit, s})
+        this.#flux += this.#speed(...point) * Math.hypot(...along)
+        this.#parts.push({exit, s, flux: this.#flux})
+      }
     }
   }
-  return () => {
-    const target = flux * random()
-    const part = parts.find(each => each.flux > target)
-    return part ? {curve: part.curve, s: part.s + (2 * random() - 1) / PARTS} : null
+
+  #exits
+  #random
+  #speed
+  #flux = 0
+  /** @type {Part[]} */
+  #parts = []
+
+  /** A place, drawn as often as the flux through it; null if all exits are closed. */
+  draw() {
+    const target = this.#flux * this.#random()
+    const part = this.#parts.find(each => each.flux > target)
+    return part ? {exit: part.exit, s: part.s + (2 * this.#random() - 1) / PARTS} : null
   }
-}
 
-/**
- * The state at a place of an exit, shifted inward, whose velocity has a share along the exit; the rest is inward.
- *
- * @param {{curve: import("./exits.js").ExitCurve, s: number}} place
- * @param {number} shift
- * @param {number} share
- * @param {import("./potential.js").Potential} potential
- * @param {number} energy
- */
-function launch({curve, s}, shift, share, potential, energy) {
-  const [tx, ty] = tangent(curve, s)
-  const length = Math.hypot(tx, ty)
-  const along = [tx / length, ty / length]
-  const side = along[1] * curve.outward[0] - along[0] * curve.outward[1] > 0 ? -1 : 1
-  const inward = [side * along[1], -side * along[0]]
-  const rest = Math.sqrt(Math.max(1 - share * share, 0))
-  const [x, y] = exitPoint(curve, s).map((value, axis) => value + shift * curve.halfWidth * inward[axis])
-  const p = speed(potential, energy, x, y)
-  return [x, y, p * (share * along[0] + rest * inward[0]), p * (share * along[1] + rest * inward[1])]
-}
+  /**
+   * The state at a place, shifted inward, whose velocity has a share along the exit; the rest is inward.
+   *
+   * @param {Place} place
+   * @param {number} shift
+   * @param {number} share
+   */
+  launch(place, shift, share) {
+    const {outward, halfWidth} = place.exit
+    const {point, along: tangent} = this.#look(place)
+    const length = Math.hypot(...tangent)
+    const along = tangent.map(component => component / length)
+    const side = along[1] * outward[0] - along[0] * outward[1] > 0 ? -1 : 1
+    const inward = [side * along[1], -side * along[0]]
+    const rest = Math.sqrt(Math.max(1 - share * share, 0))
+    const [x, y] = point.map((value, axis) => value + shift * halfWidth * inward[axis])
+    const p = this.#speed(x, y)
+    return [x, y, p * (share * along[0] + rest * inward[0]), p * (share * along[1] + rest * inward[1])]
+  }
 
-/** @type {(potential: import("./potential.js").Potential, energy: number, x: number, y: number) => number} */
-const speed = (potential, energy, x, y) => Math.sqrt(Math.max(2 * (energy - potential.value(x, y)), 0))
-
-/**
- * Derivative of the point of an exit with respect to s.
- *
- * @param {import("./exits.js").ExitCurve} curve
- * @param {number} s
- */
-function tangent(curve, s) {
-  const half = 0.5 / PARTS
-  const [before, after] = [exitPoint(curve, s - half), exitPoint(curve, s + half)]
-  return [(after[0] - before[0]) / (2 * half), (after[1] - before[1]) / (2 * half)]
+  /**
+   * The point at a place, and its derivative with respect to s.
+   *
+   * @param {Place} place
+   * @returns {{point: [number, number], along: [number, number]}}
+   */
+  #look({exit, s}) {
+    const half = 0.5 / PARTS
+    const [xs, ys] = this.#exits.points(exit, [s - half, s, s + half])
+    return {point: [xs[1], ys[1]], along: [(xs[2] - xs[0]) / (2 * half), (ys[2] - ys[0]) / (2 * half)]}
+  }
 }

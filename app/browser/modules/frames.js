@@ -56,12 +56,12 @@ export class Frames {
 
   /**
    * @param {import("./system.js").System} system
-   * @param {WebAssembly.Module} module
+   * @param {import("./integrator.js").Modules} modules
    */
-  setSystem(system, module) {
+  setSystem(system, modules) {
     this.stop()
     this.#system = system
-    this.#pool.setSystem(system, module)
+    this.#pool.setSystem(system, modules)
   }
 
   /**

@@ -1,139 +1,218 @@
 // @ts-check
-/** The WebAssembly functions of one system, and the memory with their arrays. */
-
-const BYTES = 8
-const PAGE = 65536
-const STATE_ROWS = 5
+/** The compiled kernels for one system, and the memory with their arrays; see `engine/integrator/portable_kernels.py`. */
 
 /**
- * Rows of lanes in memory; row r of lane i is `rows[r * lanes + i]`.
+ * WebAssembly: the kernels of all systems, and the functions of those of one structure.
  *
- * A block of lanes begins with what step says of the step that led here: new crossings of y = 0 and flags, as integers; then x,
- * y, px, py, t, the size of the step, and what rounding has dropped from x and y, in systems whose steps carry it.
- *
- * @typedef {object} Block
- * @property {number} address  of the state, row 2
- * @property {number} begin  address of the block
- * @property {Int32Array} integers  the low halves of the integers are at even places
- * @property {Float64Array} rows
+ * @typedef {{kernels: WebAssembly.Module, system: WebAssembly.Module}} Modules
  */
 
-export const CROSSED = 0
-export const FLAGS = 1
-export const X = 2
-export const Y = 3
-export const PX = 4
-export const PY = 5
-export const T = 6
-export const SIZE = 7
-export const X_REMAINDER = 8
-export const Y_REMAINDER = 9
-export const BLOCK_ROWS = 10
+const PAGE = 65536
+/** Space for local variables, and what is always free for arrays that a kernel makes, in bytes. */
+const [STACK, SLACK] = [PAGE, 4 * PAGE]
+const ALIGNMENT = 16
+
+/** @typedef {{float64: Float64Array, int64: Int32Array, int8: Int8Array}} Views */
+
+/** Bytes of a number, and the array that shows it; of an integer of 64 bits the lower half is at an even place. */
+const KINDS = {
+  float64: {bytes: 8, view: Float64Array},
+  int64: {bytes: 8, view: Int32Array},
+  int8: {bytes: 1, view: Int8Array},
+}
+
+/**
+ * An array in the memory of kernels.
+ *
+ * @template {keyof Views} K
+ */
+export class Numbers {
+  /**
+   * @param {WebAssembly.Memory} memory
+   * @param {K} kind
+   * @param {number} address
+   * @param {number[]} shape
+   */
+  constructor(memory, kind, address, shape) {
+    this.#memory = memory
+    this.#kind = kind
+    this.address = address
+    this.shape = shape
+    /** What a kernel takes for the array. */
+    this.passed = [address, ...shape]
+  }
+
+  #memory
+  #kind
+  /** @type {Views[K] | null} */
+  #view = null
+
+  /** The numbers; not to be kept, because the memory moves when it grows. */
+  get values() {
+    if (this.#view?.buffer !== this.#memory.buffer) this.#view = this.#look()
+    return this.#view
+  }
+
+  #look() {
+    const {bytes, view} = KINDS[this.#kind]
+    const length = (product(this.shape) * bytes) / view.BYTES_PER_ELEMENT
+    return /** @type {Views[K]} */ (new view(this.#memory.buffer, this.address, length))
+  }
+
+  /**
+   * One of the arrays along the first axis.
+   *
+   * @param {number} index
+   */
+  at(index) {
+    const [, ...shape] = this.shape
+    const address = this.address + index * product(shape) * KINDS[this.#kind].bytes
+    return new Numbers(this.#memory, this.#kind, address, shape)
+  }
+}
+
+/** @type {(numbers: number[]) => number} */
+const product = numbers => numbers.reduce((one, other) => one * other, 1)
 
 export class Integrator {
   /**
    * @param {import("./system.js").System} system
-   * @param {WebAssembly.Module} module
+   * @param {Modules} modules
    */
-  constructor(system, module) {
-    const {lanes, order} = system.layout
+  constructor(system, modules) {
+    const {functions, heap} = system.layout
     this.system = system
-    this.module = module
-    this.lanes = lanes
-    const sizes = [system.table.length, system.constants.length, BLOCK_ROWS * lanes, BLOCK_ROWS * lanes, STATE_ROWS * lanes]
-    const total = sizes.reduce((sum, size) => sum + size, 2 * (order + 1) * lanes)
-    const memory = new WebAssembly.Memory({initial: Math.ceil((total * BYTES) / PAGE) + 1})
-    this.#exports = /** @type {Record<string, Function>} */ (
-      new WebAssembly.Instance(module, {env: {__linear_memory: memory}}).exports
-    )
-    let end = 0
-    const place = (/** @type {number} */ size) => (end += size) - size
-    const array = (/** @type {number} */ begin, /** @type {number} */ size) =>
-      new Float64Array(memory.buffer, begin * BYTES, size)
-    this.#table = place(system.table.length) * BYTES
-    array(this.#table / BYTES, system.table.length).set(system.table)
-    const constants = place(system.constants.length)
-    this.#constants = array(constants, system.constants.length)
-    const block = () => {
-      const begin = place(BLOCK_ROWS * lanes)
-      return {
-        address: (begin + X * lanes) * BYTES,
-        begin: begin * BYTES,
-        integers: new Int32Array(memory.buffer, begin * BYTES, 2 * X * lanes),
-        rows: array(begin, BLOCK_ROWS * lanes),
-      }
+    this.modules = modules
+    const memory = new WebAssembly.Memory({initial: 1 + (STACK + SLACK) / PAGE})
+    const table = new WebAssembly.Table({initial: functions.length + 1, element: "anyfunc"})
+    const env = {
+      __linear_memory: memory,
+      __stack_pointer: new WebAssembly.Global({value: "i32", mutable: true}, STACK),
+      __indirect_function_table: table,
+      sin: Math.sin,
+      cos: Math.cos,
     }
-    /** @type {Block} */
-    this.now = block()
-    /** @type {Block} */
-    this.next = block()
-    const starts = place(STATE_ROWS * lanes)
-    /** Rows x, y, px, py of the steps whose series `jets` computes. */
-    this.starts = array(starts, STATE_ROWS * lanes)
-    const jet = place(2 * (order + 1) * lanes)
-    const series = array(jet, 2 * (order + 1) * lanes)
-    /** @type {import("./series.js").Jet} */
-    this.x = {jet: series, first: 0, stride: lanes, order}
-    /** @type {import("./series.js").Jet} */
-    this.y = {jet: series, first: (order + 1) * lanes, stride: lanes, order}
-    this.#addresses = {constants: constants * BYTES, starts: starts * BYTES, jet: jet * BYTES}
+    this.#memory = memory
+    this.#heap = new Numbers(memory, "int64", heap, [1])
+    this.#exports = exportsOf(modules.kernels, env)
+    const own = exportsOf(modules.system, env)
+    functions.forEach((name, k) => name in own && table.set(k + 1, own[name]))
+    /** The addresses of the functions of the system, by their names. */
+    this.address = Object.fromEntries(functions.map((name, k) => [name, k + 1]))
+    this.#free = STACK
+    this.table = this.array("float64", [system.table.length], system.table)
+    this.#point = [this.address.potential_value, ...this.table.passed]
+    this.polynomial = system.polynomial && this.#polynomial(system.polynomial)
+    /** The tables of the exits over saddles. */
+    this.exitTables = system.exits.map(exit => ("radius" in exit ? null : this.#exitTable(exit)))
   }
 
+  #memory
+  #heap
   #exports
-  #table
-  #constants
-  #addresses
+  #point
 
-  /**
-   * Set what is the same for all lanes.
-   *
-   * @param {number} tolerance
-   * @param {number} horizon
-   * @param {Pick<import("./exits.js").ExitCurve, "gate">[]} gates
-   */
-  prepare(tolerance, horizon, gates) {
-    /** @type {Record<string, number>} */
-    const values = {tolerance, horizon}
-    gates.forEach(({gate}, k) => {
-      ;[values[`g${k}x`], values[`g${k}y`], values[`g${k}`]] = gate
-    })
-    this.#constants.set(this.system.constants.map(name => values[name]))
+  /** Where memory is free. */
+  get #free() {
+    return this.#heap.values[0]
+  }
+
+  set #free(address) {
+    this.#heap.values[0] = address
   }
 
   /**
-   * One step of the first n lanes, from `now` to `next`, which then change their names.
+   * A polynomial as the interior test takes it.
    *
-   * @param {number} n
+   * @param {import("./system.js").PolynomialTable} polynomial
    */
-  step(n) {
-    this.#exports.step(this.#table, this.#addresses.constants, this.now.address, this.next.begin, n)
-    ;[this.now, this.next] = [this.next, this.now]
+  #polynomial({powers, coefficients, bernstein}) {
+    const side = bernstein.length
+    const exponents = this.array("int64", [powers.length, 2])
+    powers.flat().forEach((power, k) => (exponents.values[2 * k] = power))
+    return [
+      exponents,
+      this.array("float64", [coefficients.length], coefficients),
+      this.array("float64", [side, side], bernstein.flat()),
+      this.array("float64", [3, side]),
+    ]
+  }
+
+  /** @param {import("./system.js").ExitTable} table */
+  #exitTable({nodes, rows}) {
+    return [
+      this.array("float64", [nodes.length], nodes),
+      this.array("float64", [nodes.length, rows[0]?.length ?? 0], rows.flat()),
+    ]
   }
 
   /**
-   * Compute the series of the first n of `starts`.
+   * An array of zeros or of numbers.
    *
-   * @param {number} n
+   * @template {keyof Views} K
+   * @param {K} kind
+   * @param {number[]} shape
+   * @param {ArrayLike<number>} [numbers]
    */
-  jets(n) {
-    this.#jets(0, n)
+  array(kind, shape, numbers) {
+    const address = this.#free
+    const bytes = product(shape) * KINDS[kind].bytes
+    const end = Math.ceil((address + bytes) / ALIGNMENT) * ALIGNMENT
+    const missing = end + SLACK - this.#memory.buffer.byteLength
+    if (missing > 0) this.#memory.grow(Math.ceil(missing / PAGE))
+    this.#free = end
+    const array = new Numbers(this.#memory, kind, address, shape)
+    if (numbers) array.values.set(numbers)
+    else array.values.fill(0)
+    return array
   }
 
   /**
-   * Compute the series of one of `starts`, and of its neighbour in the pair that is computed together.
+   * Give back the memory of the arrays that are made meanwhile.
    *
-   * @param {number} lane
+   * @template T
+   * @param {() => T} use
    */
-  jetsOf(lane) {
-    this.#jets(BYTES * (lane & ~1), 1)
+  temporarily(use) {
+    const free = this.#free
+    try {
+      return use()
+    } finally {
+      this.#free = free
+    }
   }
 
   /**
-   * @param {number} offset  of the first lane, in bytes
-   * @param {number} n
+   * Call a kernel with numbers and arrays.
+   *
+   * @param {string} name
+   * @param {(number | Numbers<any>)[]} passed
+   * @returns {number}
    */
-  #jets(offset, n) {
-    const {constants, starts, jet} = this.#addresses
-    this.#exports.jets(this.#table, constants, starts + offset, jet + offset, n)
+  call(name, ...passed) {
+    const numbers = []
+    for (const each of passed) {
+      if (typeof each === "number") numbers.push(each)
+      else numbers.push(...each.passed)
+    }
+    const free = this.#free
+    const result = this.#exports[name](...numbers)
+    this.#free = free
+    return result
+  }
+
+  /**
+   * V at a point.
+   *
+   * @param {number} x
+   * @param {number} y
+   * @returns {number}
+   */
+  value(x, y) {
+    const [address, table, entries] = this.#point
+    return this.#exports.potential_at(address, table, entries, x, y)
   }
 }
+
+/** @type {(module: WebAssembly.Module, env: WebAssembly.ModuleImports) => Record<string, Function>} */
+const exportsOf = (module, env) => /** @type {any} */ (new WebAssembly.Instance(module, {env}).exports)

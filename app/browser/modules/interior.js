@@ -1,114 +1,55 @@
 // @ts-check
-/**
- * Which starts lie inside the exits: connected to the origin below the energy without crossing an exit. The path downhill from
- * the point is that of `engine/integrator/kernels/interior.py`. With an escape circle all points within it lie inside; discs around
- * centres belong to no interior.
- */
+/** Which starts lie beyond an exit; see `engine/integrator/kernels/interior.py`. */
 
-import {exitDistance, positionAcross} from "./exits.js"
-
-// Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
-const [LONGEST_STEP, SHORTEST_STEP] = [1 / 32, 1e-6]
-const MOST_STEPS = 10_000
-// Far from the exits steps grow with the distance, by this factor.
-const FAR_SHARE = 0.25
-// The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
-const [COS, SIN] = [Math.cos(0.1), Math.sin(0.1)]
-// Smallest decrease of V in a step, relative to that along the gradient.
-const DECREASE = 0.25
-// Lines to the origin stay below the energy by this, so that they do not pass over a saddle of the same energy.
-const ENERGY_MARGIN = 1e-12
-// Largest slope at a critical point.
-const NO_SLOPE = 1e-9
-
-export class Interior {
-  /** @param {import("./potential.js").Potential} potential */
-  constructor(potential) {
-    this.#potential = potential
-    this.#bottom = potential.bottom
+export class OutsideTest {
+  /**
+   * A test of as many starts at a time, whose memory is that of the integrator.
+   *
+   * @param {import("./integrator.js").Integrator} integrator
+   * @param {import("./exits.js").Exits} exits
+   * @param {number} count
+   */
+  constructor(integrator, exits, count) {
+    const {polynomial, address, table, system} = integrator
+    this.#integrator = integrator
+    this.#x = integrator.array("float64", [count])
+    this.#y = integrator.array("float64", [count])
+    this.#energies = integrator.array("float64", [count])
+    this.#rows = integrator.array("int64", [count])
+    this.#outside = integrator.array("int8", [count])
+    const points = [this.#x, this.#y, this.#energies, exits.curves, this.#rows, this.#outside]
+    this.#kernel = polynomial ? "find_outside_polynomial" : "find_outside"
+    const potential = polynomial ?? [address.potential_slopes, table, system.innerRadius]
+    this.#passed = [...potential, ...points]
   }
 
-  #potential
-  #bottom
+  #integrator
+  #x
+  #y
+  #energies
+  #rows
+  #outside
+  #kernel
+  #passed
 
   /**
-   * Whether a point is beyond an exit; false in the forbidden region.
+   * The number of an exit for each start beyond one, 0 for starts inside and in the forbidden region; until the next call.
    *
-   * @param {import("./exits.js").ExitCurve[]} curves
-   * @param {number} energy
-   * @param {number} x
-   * @param {number} y
+   * @param {ArrayLike<number>} states  x, y, px, py of each start
+   * @param {ArrayLike<number>} energies
+   * @param {ArrayLike<number>} [rows]  of their energies in the exits; 0 for all if left out
    */
-  isOutside(curves, energy, x, y) {
-    if (curves.some(curve => curve.side !== 0 && exitDistance(curve, x, y) > 0)) return true
-    return !curves.some(({side}) => side > 0) && this.#leadsOutside(curves, energy, x, y)
-  }
-
-  /**
-   * Whether the path downhill from a point ends outside.
-   *
-   * @param {import("./exits.js").ExitCurve[]} curves
-   * @param {number} energy
-   * @param {number} x
-   * @param {number} y
-   */
-  #leadsOutside(curves, energy, x, y) {
-    const potential = this.#potential
-    const level = energy - ENERGY_MARGIN
-    let odd = false
-    let step = LONGEST_STEP
-    for (let i = 0; i < MOST_STEPS; i++) {
-      const value = potential.expand(x, y)
-      const {slopeX, slopeY} = potential
-      const slope = Math.hypot(slopeX, slopeY)
-      if (value < this.#bottom) break
-      // A saddle of this energy belongs to the well.
-      if (slope < NO_SLOPE && value >= level) return false
-      if (potential.staysBelow(level)) return odd !== crossesExits(curves, x, y, 0, 0)
-      const directionX = -(COS * slopeX - SIN * slopeY) / slope
-      const directionY = -(SIN * slopeX + COS * slopeY) / slope
-      step = Math.min(2 * step, LONGEST_STEP * Math.max(1, FAR_SHARE * (Math.abs(x) + Math.abs(y))))
-      while (step > SHORTEST_STEP) {
-        if (potential.value(x + step * directionX, y + step * directionY) < value - DECREASE * step * slope) break
-        step *= 0.5
-      }
-      if (step <= SHORTEST_STEP) break
-      const [nextX, nextY] = [x + step * directionX, y + step * directionY]
-      if (crossesExits(curves, x, y, nextX, nextY)) odd = !odd
-      ;[x, y] = [nextX, nextY]
+  find(states, energies, rows = []) {
+    const [xs, ys, places] = [this.#x.values, this.#y.values, this.#rows.values]
+    for (let start = 0; start < energies.length; start++) {
+      xs[start] = states[4 * start]
+      ys[start] = states[4 * start + 1]
+      places[2 * start] = rows[start] ?? 0
     }
-    return !odd
+    this.#energies.values.set(energies)
+    const outside = this.#outside.values
+    outside.fill(0)
+    this.#integrator.call(this.#kernel, ...this.#passed)
+    return outside
   }
-}
-
-/**
- * Whether a line crosses the open exits over saddles an odd number of times.
- *
- * @param {import("./exits.js").ExitCurve[]} curves
- * @param {number} x0
- * @param {number} y0
- * @param {number} x1
- * @param {number} y1
- */
-function crossesExits(curves, x0, y0, x1, y1) {
-  let odd = false
-  for (const curve of curves) {
-    if (!curve.open || curve.side !== 0) continue
-    const s0 = positionAcross(curve, x0, y0)
-    const s1 = positionAcross(curve, x1, y1)
-    // The part of the line with −1 ≤ s ≤ 1.
-    let low = 0
-    let high = 1
-    if (s0 !== s1) {
-      const one = (-1 - s0) / (s1 - s0)
-      const other = (1 - s0) / (s1 - s0)
-      low = Math.max(low, Math.min(one, other))
-      high = Math.min(high, Math.max(one, other))
-    } else if (Math.abs(s0) > 1) continue
-    if (low >= high) continue
-    const atLow = exitDistance(curve, (1 - low) * x0 + low * x1, (1 - low) * y0 + low * y1)
-    const atHigh = exitDistance(curve, (1 - high) * x0 + high * x1, (1 - high) * y0 + high * y1)
-    if (atLow > 0 !== atHigh > 0) odd = !odd
-  }
-  return odd
 }

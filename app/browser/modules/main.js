@@ -37,6 +37,7 @@ export function start(model, el) {
     find(picture)
       .renderers.map((/** @type {any} */ renderer) => renderer.data_source)
       .find((/** @type {any} */ source) => source?.name === name)
+  const kernels = WebAssembly.compileStreaming(fetch(new URL("./kernels.wasm", import.meta.url)))
   const pool = new Pool(() => new Worker(new URL("./worker.js", import.meta.url), {type: "module"}))
   const frames = new Frames(pool, workerCount(), (view, pixels, moving) => preview.show(view, pixels, moving))
   /** @type {Preview} */
@@ -60,7 +61,7 @@ export function start(model, el) {
   )
   document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyreleased", () => preview.release())
-  /** @type {{system: import("./system.js").System, module: WebAssembly.Module} | null} */
+  /** @type {{system: import("./system.js").System, modules: import("./integrator.js").Modules} | null} */
   let taken = null
   const tellPresent = () => {
     const [colours, labels] = [() => model.view.colours ?? [], () => model.view.labels ?? []]
@@ -76,11 +77,11 @@ export function start(model, el) {
   const takeSystem = async () => {
     if (!model.system.key) return
     const {key} = model.system
-    const module = await WebAssembly.compile(model.system.module)
+    const modules = {kernels: await kernels, system: await WebAssembly.compile(model.system.module)}
     if (model.system.key !== key) return
     const {module: _, ...system} = model.system
-    for (const user of [card, preview]) user.setSystem(system, module)
-    taken = {system, module}
+    for (const user of [card, preview]) user.setSystem(system, modules)
+    taken = {system, modules}
     tellPresent()
   }
   const obey = () => {

@@ -1,7 +1,7 @@
 // @ts-check
 /** At which exit each orbit of an ensemble will end, found in portions between the frames of the display. */
 
-import {exitCurves} from "./exits.js"
+import {Exits} from "./exits.js"
 import {Integrator} from "./integrator.js"
 import {propagate} from "./propagate.js"
 
@@ -11,20 +11,17 @@ const PORTION = 256
 export class Outcomes {
   /**
    * @param {import("./system.js").System} system
-   * @param {WebAssembly.Module} module
+   * @param {import("./integrator.js").Modules} modules
    * @param {number} energy  in units of the well
    * @param {Float64Array} states  x, y, px, py of each start
    * @param {number} horizon  in units of the well
    */
-  constructor(system, module, energy, states, horizon) {
+  constructor(system, modules, energy, states, horizon) {
     const count = states.length / 4
-    this.#integrator = new Integrator(system, module)
-    this.#exits = exitCurves(system.exits, energy)
+    this.#integrator = new Integrator(system, modules)
+    this.#exits = new Exits(this.#integrator, [energy])
     this.#states = states
     this.#horizon = horizon
-    this.#fate = new Int8Array(count)
-    this.#time = new Float64Array(count)
-    this.#crossings = new Uint16Array(count)
     /** Number of the exit of each orbit; 0 where it is not known yet, and for those that stay until the horizon. */
     this.channel = new Uint8Array(count)
   }
@@ -33,9 +30,6 @@ export class Outcomes {
   #exits
   #states
   #horizon
-  #fate
-  #time
-  #crossings
   #known = 0
 
   /** Whether all are known. */
@@ -47,10 +41,9 @@ export class Outcomes {
   continue() {
     const first = this.#known
     this.#known = Math.min(first + PORTION, this.channel.length)
-    const todo = Uint32Array.from({length: this.#known - first}, (_, k) => first + k)
-    const exits = this.#exits
-    const orbits = {state: this.#states, todo, fate: this.#fate, time: this.#time, crossings: this.#crossings, exits: () => exits}
-    propagate(this.#integrator, orbits, this.#horizon, this.#integrator.system.layout.tolerance, exits)
-    for (const orbit of todo) this.channel[orbit] = Math.max(this.#fate[orbit], 0)
+    const states = this.#states.subarray(4 * first, 4 * this.#known)
+    const {tolerance} = this.#integrator.system.layout
+    const {fate} = propagate(this.#integrator, states, this.#exits, [], this.#horizon, tolerance)
+    fate.forEach((code, k) => (this.channel[first + k] = Math.max(code, 0)))
   }
 }

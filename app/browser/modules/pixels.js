@@ -1,7 +1,8 @@
 // @ts-check
 /** Fates of the starts of a view, some rows at a time. */
 
-import {exitCurves} from "./exits.js"
+import {Exits} from "./exits.js"
+import {OutsideTest} from "./interior.js"
 import {propagate} from "./propagate.js"
 import {energyAxis, energyUnit, pixelCentres, Starts} from "./slice.js"
 
@@ -53,71 +54,112 @@ export function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
 
 /**
  * @param {import("./integrator.js").Integrator} integrator
- * @param {import("./interior.js").Interior} interior
- * @param {import("./potential.js").Potential} potential
  * @param {View} view
  * @param {Part} part
  * @returns {Pixels}
  */
-export function computePixels(integrator, interior, potential, view, part) {
-  const {system} = integrator
-  const {fates} = system.layout
-  const {slice, window} = view
-  const [unitX, unitOrdinate] = slice.units
-  const x = pixelCentres(window.xLow / unitX, window.xHigh / unitX, view.columns)
-  const ordinate = pixelCentres(window.ordinateLow / unitOrdinate, window.ordinateHigh / unitOrdinate, view.rows)
-  const energy = view.energy / energyUnit(system.units)
-  const count = part.rows.length * part.columns
-  const orbits = {
-    state: new Float64Array(4 * count),
-    todo: new Uint32Array(count),
-    fate: new Int8Array(count).fill(fates.not_computed),
-    time: new Float64Array(count).fill(NaN),
-    crossings: new Uint16Array(count),
-  }
-  // The exits of the only energy, or of each along an axis.
-  const axis = energyAxis(slice)
-  const energies = [x.subarray(0, part.columns), Array.from(part.rows, row => ordinate[row])][axis] ?? [energy]
-  const exits = Array.from(energies, each => exitCurves(system.exits, each))
-  const places = [
-    (/** @type {number} */ orbit) => orbit % part.columns,
-    (/** @type {number} */ orbit) => Math.floor(orbit / part.columns),
-  ]
-  const place = places[axis] ?? (() => 0)
-  const exitsOf = (/** @type {number} */ orbit) => exits[place(orbit)]
-  const starts = new Starts(slice, potential, energy)
-  const {found} = starts
-  let todo = 0
-  let orbit = 0
-  part.rows.forEach(row => {
-    for (let column = 0; column < part.columns; column++, orbit++) {
-      if (!starts.find(x[column], ordinate[row])) orbits.fate[orbit] = fates.forbidden
-      else if (interior.isOutside(exitsOf(orbit), found.h, found.x, found.y)) orbits.fate[orbit] = fates.outside
-      else {
-        orbits.state[4 * orbit] = found.x
-        orbits.state[4 * orbit + 1] = found.y
-        orbits.state[4 * orbit + 2] = found.px
-        orbits.state[4 * orbit + 3] = found.py
-        orbits.todo[todo++] = orbit
-      }
-    }
+export function computePixels(integrator, view, part) {
+  return integrator.temporarily(() => {
+    const {system} = integrator
+    const {fates} = system.layout
+    const placed = placeStarts(integrator, view, part)
+    const fate = new Int8Array(part.rows.length * part.columns).fill(fates.forbidden)
+    const time = new Float32Array(fate.length).fill(NaN)
+    const crossings = new Uint16Array(fate.length)
+    const exits = new Exits(integrator, placed.exitEnergies)
+    const test = new OutsideTest(integrator, exits, placed.energies.length)
+    const outside = test.find(placed.states, placed.energies, placed.rows)
+    const {pixels, states, rows} = keepInside(placed, outside)
+    placed.pixels.forEach(pixel => (fate[pixel] = fates.outside))
+    const ends = propagate(integrator, states, exits, rows, view.horizon, toleranceFor(system, view))
+    pixels.forEach((pixel, orbit) => {
+      fate[pixel] = ends.fate[orbit]
+      time[pixel] = ends.time[orbit] * system.units.time
+      crossings[pixel] = ends.crossings[orbit]
+    })
+    return {fate, time, crossings}
   })
-  orbits.todo = orbits.todo.subarray(0, todo)
-  propagate(integrator, {...orbits, exits: exitsOf}, view.horizon, toleranceFor(system, view), gatesOf(exits))
-  return {
-    fate: orbits.fate,
-    time: Float32Array.from(orbits.time, time => time * system.units.time),
-    crossings: orbits.crossings,
-  }
 }
 
 /**
- * The gate of each channel that is inside its exits at several energies.
+ * Starts of some pixels.
  *
- * @param {import("./exits.js").ExitCurve[][]} exits
+ * @typedef {object} Placed
+ * @property {Uint32Array} pixels
+ * @property {Float64Array} states  x, y, px, py of each
+ * @property {Float64Array} energies
+ * @property {Uint32Array} rows  of the energies in the exits
  */
-function gatesOf(exits) {
-  return exits[0].map((_, k) =>
-    exits.map(curves => curves[k]).reduce((one, other) => (other.gate[2] < one.gate[2] ? other : one)),
-  )
+
+/**
+ * The starts of a part that are not forbidden, and the energies of the exits: the only one, or each along an axis.
+ *
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {View} view
+ * @param {Part} part
+ * @returns {Placed & {exitEnergies: ArrayLike<number>}}
+ */
+function placeStarts(integrator, {slice, window, energy, columns, rows}, part) {
+  const [unitX, unitOrdinate] = slice.units
+  const x = pixelCentres(window.xLow / unitX, window.xHigh / unitX, columns)
+  const ordinate = pixelCentres(window.ordinateLow / unitOrdinate, window.ordinateHigh / unitOrdinate, rows)
+  const common = energy / energyUnit(integrator.system.units)
+  const axis = energyAxis(slice)
+  const exitEnergies = [x.subarray(0, part.columns), Array.from(part.rows, row => ordinate[row])][axis] ?? [common]
+  const starts = new Starts(slice, integrator, common)
+  const {found} = starts
+  const most = part.rows.length * part.columns
+  const placed = makePlaced(most)
+  let count = 0
+  part.rows.forEach((row, place) => {
+    for (let column = 0; column < part.columns; column++) {
+      if (!starts.find(x[column], ordinate[row])) continue
+      placed.pixels[count] = place * part.columns + column
+      placed.energies[count] = found.h
+      placed.rows[count] = [column, place][axis] ?? 0
+      placed.states[4 * count] = found.x
+      placed.states[4 * count + 1] = found.y
+      placed.states[4 * count + 2] = found.px
+      placed.states[4 * count + 3] = found.py
+      count++
+    }
+  })
+  return {...first(placed, count), exitEnergies}
+}
+
+/** @type {(count: number) => Placed} */
+const makePlaced = count => ({
+  pixels: new Uint32Array(count),
+  states: new Float64Array(4 * count),
+  energies: new Float64Array(count),
+  rows: new Uint32Array(count),
+})
+
+/** @type {(placed: Placed, count: number) => Placed} */
+const first = ({pixels, states, energies, rows}, count) => ({
+  pixels: pixels.subarray(0, count),
+  states: states.subarray(0, 4 * count),
+  energies: energies.subarray(0, count),
+  rows: rows.subarray(0, count),
+})
+
+/**
+ * The starts that lie beyond no exit.
+ *
+ * @param {Placed} placed
+ * @param {Int8Array} outside
+ * @returns {Placed}
+ */
+function keepInside(placed, outside) {
+  const inside = makePlaced(outside.length)
+  let count = 0
+  outside.forEach((exit, start) => {
+    if (exit > 0) return
+    inside.pixels[count] = placed.pixels[start]
+    inside.states.set(placed.states.subarray(4 * start, 4 * start + 4), 4 * count)
+    inside.energies[count] = placed.energies[start]
+    inside.rows[count] = placed.rows[start]
+    count++
+  })
+  return first(inside, count)
 }

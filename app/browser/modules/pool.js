@@ -36,15 +36,15 @@ export class Pool {
    * Give a system to all workers, which are started at the first one.
    *
    * @param {import("./system.js").System} system
-   * @param {WebAssembly.Module} module
+   * @param {import("./integrator.js").Modules} modules
    */
-  setSystem(system, module) {
+  setSystem(system, modules) {
     this.cancel()
     if (this.#workers.length === 0) {
       this.#workers = Array.from({length: workerCount()}, this.#start)
       this.#idle = new Set(this.#workers)
     }
-    for (const worker of this.#workers) worker.postMessage({system, module})
+    for (const worker of this.#workers) worker.postMessage({system, modules})
   }
 
   /**

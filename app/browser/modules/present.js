@@ -4,7 +4,7 @@
  *
  * @typedef {object} Shown
  * @property {import("./system.js").System} system
- * @property {WebAssembly.Module} module
+ * @property {import("./integrator.js").Modules} modules
  * @property {() => import("./frames.js").Scene | null} scene  slice, energy and window in view; null if the browser cannot compute it
  * @property {() => string[]} colours  of the outcomes, exits first
  * @property {() => string[]} labels  of the outcomes

@@ -6,8 +6,8 @@
 
 import {pixelColumns, sameEnergy, showsScene} from "./columns.js"
 import {exitLines, LimitingCurves} from "./curves.js"
+import {Integrator} from "./integrator.js"
 import {Local, LocalWhenPresent} from "./local.js"
-import {makePotential} from "./potential.js"
 import {Outlines} from "./outlines.js"
 import {energyAxis, energyUnit, showsPositions, space} from "./slice.js"
 import {LEAST_SIDE} from "./frames.js"
@@ -83,8 +83,8 @@ export class Preview {
   #wellCurves = new LimitingCurves()
   /** @type {import("./system.js").System | null} */
   #system = null
-  /** @type {import("./potential.js").Potential | null} */
-  #potential = null
+  /** @type {Integrator | null} */
+  #integrator = null
   /** @type {ServerView | null} */
   #view = null
   /** Energy of the slider or of the player, until the server has it. @type {number | null} */
@@ -100,12 +100,12 @@ export class Preview {
    * Use a system, which is that of the view or will be.
    *
    * @param {import("./system.js").System} system
-   * @param {WebAssembly.Module} module
+   * @param {import("./integrator.js").Modules} modules
    */
-  setSystem(system, module) {
+  setSystem(system, modules) {
     this.#system = system
-    this.#potential = makePotential(system.formula)
-    this.#frames.setSystem(system, module)
+    this.#integrator = new Integrator(system, modules)
+    this.#frames.setSystem(system, modules)
     if (this.#held && this.#energy !== null) this.showEnergy(this.#energy)
     else this.#follow()
   }
@@ -199,14 +199,15 @@ export class Preview {
    * @param {boolean} moving  whether the next preview is to follow in the next frame
    */
   show(view, pixels, moving) {
-    const [system, potential, server] = [this.#system, this.#potential, this.#view]
-    if (!system || !potential || !server) return
+    const [integrator, server] = [this.#integrator, this.#view]
+    if (!integrator || !server) return
+    const {system} = integrator
     this.#shown = view
     const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data, this.#compared)
-    const limit = this.#curves.trace(system, potential, view)
-    const coloured = exitLines(system, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
+    const limit = this.#curves.trace(integrator, view)
+    const coloured = exitLines(integrator, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
     const exits = showsPositions(view.slice) ? coloured : []
-    const well = this.#traceWell(system, potential, view)
+    const well = this.#traceWell(integrator, view)
     // Each change of a range repaints all pictures: together with the pixels, or seldom.
     if (this.#window) {
       this.#x.show({start: view.window.xLow, end: view.window.xHigh})
@@ -232,13 +233,13 @@ export class Preview {
   /**
    * The window of the well and its zero-velocity curve; null where the energy is an axis, and the well stays as it is.
    *
-   * @param {import("./system.js").System} system
-   * @param {import("./potential.js").Potential} potential
+   * @param {Integrator} integrator
    * @param {import("./pixels.js").View} view
    */
-  #traceWell(system, potential, {slice, energy}) {
+  #traceWell(integrator, {slice, energy}) {
+    const {system} = integrator
     const window = energyAxis(slice) < 0 ? windowAt(system.windows.x_y, energy) : null
-    return window && {window, limit: this.#wellCurves.trace(system, potential, {slice: space(system.units), window, energy})}
+    return window && {window, limit: this.#wellCurves.trace(integrator, {slice: space(system.units), window, energy})}
   }
 
   /** Show what the server shows. */

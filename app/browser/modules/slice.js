@@ -63,7 +63,7 @@ export const energyAxis = ({axes}) => axes.indexOf("h")
 export class Starts {
   /**
    * @param {Pick<import("./system.js").Slice, "axes" | "moves" | "fixed" | "decided" | "sign">} slice
-   * @param {import("./potential.js").Potential} potential
+   * @param {{value: (x: number, y: number) => number}} potential
    * @param {number} energy  used unless h is an axis
    */
   constructor({axes, moves, fixed, decided, sign}, potential, energy) {

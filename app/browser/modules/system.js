@@ -5,28 +5,36 @@
  *
  * @typedef {object} System
  * @property {string} key  different for each system
- * @property {string[]} constants  names of the numbers that are the same for all lanes, in the order in which step takes them
  * @property {Layout} layout
- * @property {number[]} table  coefficients in the form that step and jets take
+ * @property {number[]} table  coefficients in the form that the functions of a structure take
  * @property {number | null} rotation  index of 2Ω in the table; null in a frame that does not rotate
- * @property {Formula} formula  of V
+ * @property {PolynomialTable | null} polynomial  V; null for an expression
+ * @property {number} innerRadius  radius of the gap at the origin; 0 for a well there
  * @property {ExitData[]} exits  one for each outcome: the exits of channels, then circles
  * @property {number[] | null} mirror  image of each outcome's number under x → −x; null without this symmetry
  * @property {{length: number, time: number}} units
  * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
  *
- * @typedef {{terms: [number, number, number][]} | {graph: import("./expression.js").Graph}} Formula  [i, j, c] of V = Σ c x^i y^j,
- *   or the operations of an expression
+ * V = Σ c x^i y^j as the interior test takes it.
+ *
+ * @typedef {{powers: [number, number][], coefficients: number[], bernstein: number[][]}} PolynomialTable
+ *
+ * The constants of the kernels.
  *
  * @typedef {object} Layout
- * @property {number} lanes  length of a row of lanes
  * @property {number} order  order of the series
- * @property {number} hidden  flag: the step may hide crossings of y = 0
- * @property {number} gate  flag: the step ends beyond the gate of an exit
- * @property {number} near  flag: the step may pass an exit although its end is not beyond
- * @property {number} overshoot  flag: the step ends after the horizon
+ * @property {number} rows  of the state of an orbit between two steps
+ * @property {number} lanes_together  lanes that a step computes at least
  * @property {number} tolerance  of the steps that the server takes
+ * @property {number} heap  address of the address from which on memory is free
+ * @property {string[]} functions  names of those of a structure, in the order of their addresses
  * @property {Record<"bounded" | "not_computed" | "failed" | "outside" | "forbidden", number>} fates
+ * @property {ExitColumns} exits
+ *
+ * Columns of an exit, their number, and the values of that for its shape.
+ *
+ * @typedef {Record<"count" | "originX" | "originY" | "outwardX" | "outwardY" | "halfWidth" | "shape", number>
+ *   & {shapes: Record<"closed" | "curve" | "line" | "disc" | "circle", number>}} ExitColumns
  *
  * @typedef {object} WindowTable
  * @property {number[]} energies  rising, in units of the page

@@ -1,9 +1,9 @@
 // @ts-check
 /** One orbit with its path, for the card beside the cursor. */
 
-import {crossedExit, exitCurves, findExitTime, passedExit} from "./exits.js"
-import {FLAGS, PX, PY, SIZE, T, X, X_REMAINDER, Y, Y_REMAINDER} from "./integrator.js"
-import {countUpwardCrossings, seriesValue} from "./series.js"
+import {Exits} from "./exits.js"
+import {makeOrbits} from "./propagate.js"
+import {evaluateSeries} from "./series.js"
 
 /**
  * @typedef {object} Trace
@@ -18,6 +18,8 @@ import {countUpwardCrossings, seriesValue} from "./series.js"
 
 /** Points of the path in a step. */
 const POINTS = 6
+/** Steps that are taken at a time. */
+const PORTION = 512
 
 /**
  * Follow an orbit until it escapes or for a duration in units of the well.
@@ -28,46 +30,57 @@ const POINTS = 6
  * @returns {Trace}
  */
 export function traceOrbit(integrator, start, duration) {
-  const {lanes, system, starts, x, y} = integrator
-  const exits = exitCurves(system.exits, start.h)
-  integrator.prepare(system.layout.tolerance, duration, exits)
-  integrator.now.rows.fill(0.01)
-  for (const [row, value] of [
-    [X, start.x],
-    [Y, start.y],
-    [PX, start.px],
-    [PY, start.py],
-    [T, 0],
-    [X_REMAINDER, 0],
-    [Y_REMAINDER, 0],
-  ]) {
-    integrator.now.rows[row * lanes] = value
+  return integrator.temporarily(() => follow(integrator, start, duration))
+}
+
+/** @type {typeof traceOrbit} */
+function follow(integrator, {x, y, px, py, h}, duration) {
+  const {address, table, system} = integrator
+  const {fates, tolerance, lanes_together} = system.layout
+  const exits = new Exits(integrator, [h])
+  const orbits = makeOrbits(integrator, Float64Array.of(x, y, px, py))
+  const [todo, row] = [integrator.array("int64", [1]), integrator.array("int64", [1])]
+  const steps = integrator.array("float64", [PORTION, 5])
+  const settings = [duration, 1, tolerance, lanes_together * PORTION, 0]
+  const end = () => (orbits.fate.values[0] === fates.bounded ? duration : orbits.t.values[0])
+  const [xs, ys] = [[x], [y]]
+  while (orbits.pending.values[0]) {
+    const [step, jets] = [address.step, address.jets]
+    const all = [exits.gates, exits.curves, row, ...Object.values(orbits), steps]
+    const count = integrator.call("propagate", step, jets, table, todo, ...settings, ...all)
+    const path = sampleSteps(integrator, steps, count, end())
+    xs.push(...path[0])
+    ys.push(...path[1])
   }
-  /** @type {Trace} */
-  const trace = {x: [start.x], y: [start.y], channel: 0, time: 0, crossings: 0}
-  while (trace.time < duration && trace.channel === 0) {
-    integrator.step(1)
-    const [before, after] = [integrator.next.rows, integrator.now.rows]
-    const isNear = integrator.now.integers[2 * FLAGS * lanes] & system.layout.near
-    const size = after[SIZE * lanes]
-    if (!(size > 0)) break
-    for (const [row, place] of [X, Y, PX, PY].entries()) starts[row * lanes] = before[place * lanes]
-    integrator.jets(1)
-    const [x0, y0] = [before[X * lanes], before[Y * lanes]]
-    trace.channel = crossedExit(exits, x0, y0, after[X * lanes], after[Y * lanes])
-    if (trace.channel === 0 && isNear) trace.channel = passedExit(exits, x, y, 0, size)
-    let taken = Math.min(size, duration - trace.time)
-    if (trace.channel > 0) {
-      const tau = findExitTime(exits[trace.channel - 1], x, y, 0, size)
-      if (tau > taken) trace.channel = 0
-      else taken = tau
+  const crossings = orbits.crossings.values[0] + orbits.lastCrossings.values[0]
+  return {x: xs, y: ys, channel: Math.max(orbits.fate.values[0], 0), time: end(), crossings}
+}
+
+/**
+ * x and y at some times in each of the first steps.
+ *
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {import("./integrator.js").Numbers<"float64">} steps  x, y, px, py, t at the start of each
+ * @param {number} count  of the steps
+ * @param {number} end  of the last one
+ */
+function sampleSteps(integrator, steps, count, end) {
+  const {address, table, system} = integrator
+  return integrator.temporarily(() => {
+    const width = count + (count % 2)
+    const start = integrator.array("float64", [4, width])
+    const series = integrator.array("float64", [2, system.layout.order + 1, width])
+    const [rows, times] = [/** @type {number[]} */ ([]), /** @type {number[]} */ ([])]
+    for (let k = 0; k < count; k++) {
+      const [x, y, px, py, begin] = steps.values.subarray(5 * k, 5 * k + 5)
+      ;[x, y, px, py].forEach((value, row) => (start.values[row * width + k] = value))
+      const size = (k + 1 < count ? steps.values[5 * k + 9] : end) - begin
+      for (let part = 1; part <= POINTS; part++) {
+        rows.push(k)
+        times.push((size * part) / POINTS)
+      }
     }
-    for (let k = 1; k <= POINTS; k++) {
-      trace.x.push(seriesValue(x, 0, (taken * k) / POINTS))
-      trace.y.push(seriesValue(y, 0, (taken * k) / POINTS))
-    }
-    trace.crossings += countUpwardCrossings(y, 0, taken)
-    trace.time += taken
-  }
-  return trace
+    integrator.call("compute_series", address.jets, table, start, series)
+    return evaluateSeries(integrator, series, rows, times)
+  })
 }

@@ -5,9 +5,7 @@ import {Outcomes} from "./outcomes.js"
 import {Ensemble} from "./ensemble.js"
 import {drawStarts} from "./ensemble_starts.js"
 import {Integrator} from "./integrator.js"
-import {Interior} from "./interior.js"
 import {cover, frames, onMoved, wellFrame} from "./pictures.js"
-import {makePotential} from "./potential.js"
 import {onPresent, present} from "./present.js"
 import {energyAxis, energyUnit} from "./slice.js"
 import {drawSurvival} from "./survival_chart.js"
@@ -200,16 +198,15 @@ class Watch {
    * @param {import("./present.js").Shown} shown
    * @param {import("./frames.js").Scene} scene
    */
-  #make({system, module}, scene) {
+  #make({system, modules}, scene) {
     const {where, count, seed, radius, point, box} = this.#model
-    const [potential, integrator] = [makePotential(system.formula), new Integrator(system, module)]
-    const surroundings = {system, potential, integrator, interior: new Interior(potential)}
+    const integrator = new Integrator(system, modules)
     const isMissing = (where === "disc" && !point.length) || (where === "box" && !box.length)
     const request = {where: isMissing ? "view" : where, count, seed, point, box, radius: 10 ** radius}
-    const states = drawStarts(request, scene, surroundings)
+    const states = drawStarts(request, scene, integrator)
     const energy = scene.energy / energyUnit(system.units)
     this.#ensemble = new Ensemble(integrator, energy, states)
-    this.#outcomes = new Outcomes(system, module, energy, states, LONGEST)
+    this.#outcomes = new Outcomes(system, modules, energy, states, LONGEST)
   }
 
   /** @param {boolean} on */

@@ -2,12 +2,10 @@
 /** A worker: computes the pixels of parts of views, one after the other. */
 
 import {Integrator} from "./integrator.js"
-import {Interior} from "./interior.js"
 import {computePixels} from "./pixels.js"
-import {makePotential} from "./potential.js"
 
 /**
- * @typedef {{system: import("./system.js").System, module: WebAssembly.Module}} SystemMessage
+ * @typedef {{system: import("./system.js").System, modules: import("./integrator.js").Modules}} SystemMessage
  * @typedef {{view: import("./pixels.js").View, part: import("./pixels.js").Part}} PartMessage
  */
 
@@ -17,9 +15,8 @@ let compute
 /** @param {MessageEvent<SystemMessage | PartMessage>} event */
 onmessage = ({data}) => {
   if ("system" in data) {
-    const potential = makePotential(data.system.formula)
-    const [integrator, interior] = [new Integrator(data.system, data.module), new Interior(potential)]
-    compute = (view, part) => computePixels(integrator, interior, potential, view, part)
+    const integrator = new Integrator(data.system, data.modules)
+    compute = (view, part) => computePixels(integrator, view, part)
     return
   }
   const pixels = compute(data.view, data.part)

@@ -106,5 +106,11 @@ def _hash_package(folder: Path) -> str:
 
 
 @functools.cache
+def program_digest() -> str:
+    """A hash of the sources of the kernels and of the versions of what compiles them."""
+    return hashlib.sha256(repr((_hash_package(PACKAGE), _versions())).encode()).hexdigest()[:24]
+
+
+@functools.cache
 def _versions() -> tuple[str, ...]:
     return (sys.version, *(metadata.version(package) for package in ("numba", "llvmlite", "numpy")))

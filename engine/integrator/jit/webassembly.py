@@ -1,156 +1,139 @@
 """Straight-line programs as a WebAssembly module with SIMD, for the machine of a visitor.
 
-A function of the module runs one program for two lanes at a time, as `engine.integrator.jit.llvm_emitter` writes it for vectors
-of two doubles. LLVM makes an object file, which is a module but for its exports; as the programs call nothing and have no data,
-there is nothing to link.
+The functions of a potential are those that kernels call by their addresses, with the same arguments in the same order
+(`engine.integrator.jit.function_pointers`): kernels are compiled for WebAssembly as they are, see
+`engine.integrator.jit.kernel_module`. A function with lanes runs its program for two of them at a time, as
+`engine.integrator.jit.llvm_emitter` writes it for vectors of two doubles.
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Sequence
+from typing import Any
 
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
 from llvmlite import ir
+from numba import types
+from numba.core.registry import cpu_target
 
+from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import write_program
-from engine.integrator.source.recurrence import LANES, GeneratedCode, GeneratedFunction
+from engine.integrator.jit.webassembly_object import TARGET, compile_module, target_machine
+from engine.integrator.source.recurrence import ADDED, GeneratedCode, GeneratedFunction, Place
 from engine.integrator.source.straight_line import TABLE
 
-TARGET = "wasm32-unknown-unknown"
+FUNCTIONS = ("step", "jets", "potential_value", "potential_slopes")
+"""Functions of a module, if the structure has them."""
 
-_FUNCTIONS = ("step", "jets")
-_WIDTH = 2
+PAIR = 2
+"""Numbers of a vector."""
+
 _BYTES = 8
-_SIZE, _DOUBLE = ir.IntType(32), ir.DoubleType()
-_VECTOR = ir.VectorType(_DOUBLE, _WIDTH)
-_HEADER_BYTES = 8
-# Numbers of sections and the kind of an export, see the specification of WebAssembly.
-_CUSTOM, _EXPORT, _CODE = 0, 7, 10
-_FUNCTION_EXPORT = 0
+_INT = ir.IntType(64)
 # Cached modules, some kB each.
 _MODULES = 32
 
 
 @functools.lru_cache(maxsize=_MODULES)
 def webassembly_module(code: GeneratedCode) -> bytes:
-    """The functions ``step`` and ``jets`` of the potentials of one structure as a WebAssembly module, which imports its memory.
+    """The functions of the potentials of one structure (`FUNCTIONS`) as a WebAssembly module, which imports its memory.
 
-    Each takes addresses and a number of lanes, ``(table, constants, lanes, results, n)``. `table` is that of
-    `GeneratedCode.tabulate`, `constants` the inputs that are the same for all lanes (`constant_inputs`). The arrays `lanes` and
-    `results` have rows of `LANES` numbers, for the inputs of each lane (`GeneratedFunction.lane_inputs`) and for the results of
-    the program in order: doubles or 64-bit integers. n is rounded up to an even number.
+    They take what Numba passes. The number of lanes is rounded up to an even one, which rows must have room for.
     """
-    functions = [function for function in code.functions if function.name in _FUNCTIONS]
+    machine = target_machine()
     module = ir.Module("engine")
-    module.triple = TARGET
-    for function in functions:
-        _write_loop(module, function, len(code.entries))
-    return _with_exports(_compile(module), [function.name for function in functions])
+    module.triple, module.data_layout = TARGET, str(machine.target_data)
+    for function in code.functions:
+        if function.name in FUNCTIONS:
+            _Writer(module, function, len(code.entries)).write()
+    return compile_module(llvm.parse_assembly(str(module)), machine, level=2)
 
 
-def constant_inputs(code: GeneratedCode, name: str) -> tuple[str, ...]:
-    """The inputs of a function that are the same for all lanes, in order."""
-    function = next(function for function in code.functions if function.name == name)
-    return tuple(each for each in function.program.parameters if each != TABLE and each not in function.lane_inputs)
+class _Writer:
+    """Writes a generated function into a module.
 
+    entries: number of entries of the table.
+    """
 
-def _write_loop(module: ir.Module, generated: GeneratedFunction, entries: int) -> None:
-    """A loop over pairs of lanes."""
-    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [_SIZE] * 5), generated.name)
-    table, constants, lanes, results, n = function.args
-    builder = ir.IRBuilder(function.append_basic_block())
-    program, lane_inputs = generated.program, generated.lane_inputs
-    loop, end = function.append_basic_block(), function.append_basic_block()
-    entry = builder.block
-    builder.branch(loop)
-    builder.position_at_end(loop)
-    lane = builder.phi(_SIZE)
-    lane.add_incoming(_SIZE(0), entry)
-    offset = builder.mul(lane, _SIZE(_BYTES))
-    uniform = [each for each in program.parameters if each != TABLE and each not in lane_inputs]
-    inputs = {each: _load_same(builder, constants, index) for index, each in enumerate(uniform)}
-    inputs |= {each: builder.load(_row(builder, lanes, row, offset, _VECTOR)) for row, each in enumerate(lane_inputs)}
-    inputs[TABLE] = [_load_same(builder, table, index) for index in range(entries)]
-    for row, value in enumerate(write_program(program, builder, [inputs[each] for each in program.parameters], _WIDTH)):
-        builder.store(value, _row(builder, results, row, offset, value.type), align=_BYTES)
-    following = builder.add(lane, _SIZE(_WIDTH))
-    lane.add_incoming(following, loop)
-    builder.cbranch(builder.icmp_signed("<", following, n), loop, end)
-    builder.position_at_end(end)
-    builder.ret_void()
+    def __init__(self, module: ir.Module, generated: GeneratedFunction, entries: int) -> None:
+        self._generated, self._entries = generated, entries
+        self._signature = SIGNATURES[generated.name]
+        # Numba's own layout of arguments.
+        self._context = context = cpu_target.target_context
+        kinds = self._signature.args
+        self._function = ir.Function(
+            module, context.call_conv.get_function_type(self._signature.return_type, kinds), generated.name
+        )
+        self._builder = ir.IRBuilder(self._function.append_basic_block())
+        passed = context.get_arg_packer(kinds).from_arguments(self._builder, context.call_conv.get_arguments(self._function))
+        self._arguments = dict(zip(generated.arguments, map(self._unpack, kinds, passed), strict=True))
 
+    def _unpack(self, kind: Any, value: Any) -> Any:
+        """A number, or the address of an array and the length of its rows."""
+        if not isinstance(kind, types.Array):
+            return value
+        array = self._context.make_array(kind)(self._context, self._builder, value)
+        return array.data, self._builder.extract_value(array.shape, kind.ndim - 1)
 
-def _load_same(builder: ir.IRBuilder, array: ir.Value, index: int) -> ir.Value:
-    """An element of an array, in all lanes."""
-    value = builder.load(builder.inttoptr(builder.add(array, _SIZE(index * _BYTES)), _DOUBLE.as_pointer()))
-    undefined = ir.Constant(_VECTOR, ir.Undefined)
-    first = builder.insert_element(undefined, value, _SIZE(0))
-    return builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(_SIZE, _WIDTH), [0] * _WIDTH))
+    def write(self) -> None:
+        """Write the function, with a loop over pairs of lanes if it has lanes."""
+        if self._generated.writes:
+            self._write_loop()
+            self._context.call_conv.return_value(self._builder, self._context.get_dummy_value())
+            return
+        values = self._run([self._load(Place("coefficients", column=k), 1) for k in range(self._entries)], {}, 1)
+        is_single = len(values) == 1
+        result = values[0] if is_single else self._context.make_tuple(self._builder, self._signature.return_type, values)
+        self._context.call_conv.return_value(self._builder, result)
 
+    def _write_loop(self) -> None:
+        builder, reads = self._builder, self._generated.reads
+        table = [self._load(Place("coefficients", column=k), PAIR) for k in range(self._entries)]
+        same = {name: self._load(place, PAIR) for name, place in reads.items() if place.column is not None}
+        loop, end = self._function.append_basic_block(), self._function.append_basic_block()
+        entry = builder.block
+        builder.branch(loop)
+        builder.position_at_end(loop)
+        lane = builder.phi(_INT)
+        lane.add_incoming(_INT(0), entry)
+        vector = ir.VectorType(ir.DoubleType(), PAIR)
+        own = {
+            name: builder.load(self._address(place, lane, vector), align=_BYTES)
+            for name, place in reads.items()
+            if place.column is None
+        }
+        for place, value in zip(self._generated.writes, self._run(table, same | own, PAIR), strict=True):
+            address = self._address(place, lane, value.type)
+            total = builder.add(value, builder.load(address, align=_BYTES)) if place.array in ADDED else value
+            builder.store(total, address, align=_BYTES)
+        following = builder.add(lane, _INT(PAIR))
+        lane.add_incoming(following, loop)
+        builder.cbranch(builder.icmp_signed("<", following, self._arguments["n"]), loop, end)
+        builder.position_at_end(end)
 
-def _row(builder: ir.IRBuilder, array: ir.Value, row: int, offset: ir.Value, kind: ir.Type) -> ir.Value:
-    """The address of the present lanes in a row."""
-    start = builder.add(array, _SIZE(row * LANES * _BYTES))
-    return builder.inttoptr(builder.add(start, offset), kind.as_pointer())
+    def _run(self, table: list[Any], inputs: dict[str, Any], width: int) -> list[Any]:
+        """The results of the program for some lanes."""
+        program = self._generated.program
+        known = {TABLE: table, **inputs}
+        passed = [
+            known[name] if name in known else self._in_all_lanes(self._arguments[name], width) for name in program.parameters
+        ]
+        return write_program(program, self._builder, passed, width)
 
+    def _load(self, place: Place, width: int) -> Any:
+        """A number that is the same for all lanes."""
+        return self._in_all_lanes(self._builder.load(self._address(place, _INT(place.column), ir.DoubleType())), width)
 
-def _compile(module: ir.Module) -> bytes:
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    machine = llvm.Target.from_triple(TARGET).create_target_machine(opt=3, features="+simd128", reloc="static")
-    parsed = llvm.parse_assembly(str(module))
-    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
-    passes.getModulePassManager().run(parsed, passes)
-    compiled: bytes = machine.emit_object(parsed)
-    return compiled
+    def _in_all_lanes(self, value: Any, width: int) -> Any:
+        if width == 1:
+            return value
+        undefined = ir.Constant(ir.VectorType(value.type, width), ir.Undefined)
+        first = self._builder.insert_element(undefined, value, ir.IntType(32)(0))
+        return self._builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width))
 
-
-def _with_exports(compiled: bytes, names: Sequence[str]) -> bytes:
-    """An object file with exports of its functions, and without the sections for a linker."""
-    exports = [_name(name) + bytes([_FUNCTION_EXPORT, index]) for index, name in enumerate(names)]
-    export = _section(_EXPORT, bytes([len(exports)]) + b"".join(exports))
-    kept = [
-        (export if number == _CODE else b"") + compiled[begin:end]
-        for number, begin, end in _sections(compiled)
-        if number != _CUSTOM
-    ]
-    return compiled[:_HEADER_BYTES] + b"".join(kept)
-
-
-def _sections(module: bytes) -> Iterator[tuple[int, int, int]]:
-    """(number, begin, end) of each section of a module, with its header."""
-    begin = _HEADER_BYTES
-    while begin < len(module):
-        size, length = _read_number(module, begin + 1)
-        end = begin + 1 + length + size
-        yield module[begin], begin, end
-        begin = end
-
-
-def _section(number: int, content: bytes) -> bytes:
-    return bytes([number]) + _number(len(content)) + content
-
-
-def _name(name: str) -> bytes:
-    return _number(len(name)) + name.encode()
-
-
-def _number(value: int) -> bytes:
-    """A number in the format LEB128: seven bits a byte, the lowest first."""
-    digits = bytearray()
-    while value > 0x7F:
-        digits.append(value & 0x7F | 0x80)
-        value >>= 7
-    return bytes([*digits, value])
-
-
-def _read_number(data: bytes, begin: int) -> tuple[int, int]:
-    """A number in the format LEB128, and how many bytes it takes."""
-    value = length = 0
-    while True:
-        byte = data[begin + length]
-        value |= (byte & 0x7F) << 7 * length
-        length += 1
-        if byte < 0x80:
-            return value, length
+    def _address(self, place: Place, column: Any, kind: ir.Type) -> Any:
+        """The address of a number or of a vector."""
+        data, length = self._arguments[place.array]
+        if place.row is not None:
+            column = self._builder.add(column, self._builder.mul(length, _INT(place.row)))
+        return self._builder.bitcast(self._builder.gep(data, [column]), kind.as_pointer())

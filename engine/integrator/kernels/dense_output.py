@@ -95,11 +95,17 @@ def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarra
     return later
 
 
+def _evaluate(jets: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
+    """(4, n) `evaluate_series`."""
+    states = np.empty((4, row.size))
+    evaluate_series(jets, row, tau, states)
+    return states
+
+
 @kernel
-def _evaluate(jets, row, tau):
-    """(4, n) x, y, px, py at times tau (n,) after the start of the steps `row` (n,)."""
+def evaluate_series(jets, row, tau, states):
+    """Set `states` (4, n) to x, y, px, py at times tau (n,) after the start of the steps `row` (n,)."""
     order = jets.shape[1] - 1
-    out = np.empty((4, row.size))
     for n in range(row.size):
         for axis in range(2):
             value = jets[axis, order, row[n]]
@@ -107,9 +113,8 @@ def _evaluate(jets, row, tau):
             for k in range(order - 1, -1, -1):
                 slope = slope * tau[n] + value
                 value = value * tau[n] + jets[axis, k, row[n]]
-            out[axis, n] = value
-            out[axis + 2, n] = slope
-    return out
+            states[axis, n] = value
+            states[axis + 2, n] = slope
 
 
 def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> np.ndarray:

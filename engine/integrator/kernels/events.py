@@ -49,13 +49,8 @@ def position_across(x, y, curve):
 
 
 @subroutine
-def exit_distance(x, y, curve):
-    """Distance of (x, y) from an exit, along the channel or the radius: positive beyond, negative inside."""
-    if curve[SHAPE] >= DISC:
-        radius = np.sqrt((x - curve[ORIGIN_X]) ** 2 + (y - curve[ORIGIN_Y]) ** 2)
-        return curve[HALF_WIDTH] - radius if curve[SHAPE] == DISC else radius - curve[HALF_WIDTH]
-    u = curve[OUTWARD_X] * (x - curve[ORIGIN_X]) + curve[OUTWARD_Y] * (y - curve[ORIGIN_Y])
-    s = position_across(x, y, curve)
+def exit_height(s, curve):
+    """f(s) of an exit over a saddle, with the straight lines beyond its ends."""
     beyond = 0.0
     if s < -1.0:
         beyond = curve[SLOPE_LOW] * (s + 1.0)
@@ -68,7 +63,17 @@ def exit_distance(x, y, curve):
     last = 0.0
     for k in range(CURVE_DEGREE, 0, -1):
         f, last = 2.0 * s * f - last + curve[COEFFICIENTS + k], f
-    return u - (s * f - last + curve[COEFFICIENTS] + beyond)
+    return s * f - last + curve[COEFFICIENTS] + beyond
+
+
+@subroutine
+def exit_distance(x, y, curve):
+    """Distance of (x, y) from an exit, along the channel or the radius: positive beyond, negative inside."""
+    if curve[SHAPE] >= DISC:
+        radius = np.sqrt((x - curve[ORIGIN_X]) ** 2 + (y - curve[ORIGIN_Y]) ** 2)
+        return curve[HALF_WIDTH] - radius if curve[SHAPE] == DISC else radius - curve[HALF_WIDTH]
+    u = curve[OUTWARD_X] * (x - curve[ORIGIN_X]) + curve[OUTWARD_Y] * (y - curve[ORIGIN_Y])
+    return u - exit_height(position_across(x, y, curve), curve)
 
 
 @subroutine

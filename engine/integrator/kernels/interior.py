@@ -14,7 +14,17 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_potential_slopes
-from engine.integrator.kernels.events import BEARING_X, BEARING_Y, CLOSED, SHAPE, exit_distance, position_across
+from engine.integrator.kernels.events import (
+    BEARING_X,
+    BEARING_Y,
+    CIRCLE,
+    CLOSED,
+    DISC,
+    REACH,
+    SHAPE,
+    exit_distance,
+    position_across,
+)
 
 # Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
 _LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
@@ -111,7 +121,7 @@ def _crosses_exits(x0, y0, x1, y1, curves):
     odd = False
     for k in range(curves.shape[0]):
         curve = curves[k]
-        if curve[SHAPE] == CLOSED:
+        if curve[SHAPE] == CLOSED or curve[SHAPE] >= DISC:
             continue
         s0 = position_across(x0, y0, curve)
         s1 = position_across(x1, y1, curve)
@@ -165,38 +175,65 @@ def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
 
 
 @subroutine
-def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, bottom):
-    """(n,) the channel whose saddle is nearest in direction for each point outside, 0 inside and in the forbidden region."""
-    channels = np.zeros(x.shape[0], np.int8)
+def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, bottom, outside):
+    """Set `outside` (n,) int8 to the number of an exit for each point beyond one; others, and forbidden ones, keep 0.
+
+    Beyond a circle it is that exit, else the one whose saddle is nearest in direction.
+    """
     for i in range(x.shape[0]):
         row = curves[curve_row[i]]
         value, _, _ = slopes(potential, x[i], y[i])
-        forbidden = not value <= energy[i] + _ENERGY_MARGIN
-        if forbidden or not _is_outside(slopes, is_below, potential, x[i], y[i], energy[i], row, bottom):
+        highest = energy[i] + _ENERGY_MARGIN
+        circle = _find_circle(x[i], y[i], row)
+        # At the centre of a body V need not be a number.
+        if circle > 0 and not value > highest:
+            outside[i] = circle
+        if circle > 0 or not value <= highest or not _has_exits(row):
+            continue
+        if not _is_outside(slopes, is_below, potential, x[i], y[i], energy[i], row, bottom):
             continue
         largest = -np.inf
         for k in range(row.shape[0]):
             towards = row[k, BEARING_X] * x[i] + row[k, BEARING_Y] * y[i]
-            if towards > largest:
+            if row[k, SHAPE] < DISC and towards > largest:
                 largest = towards
-                channels[i] = k + 1
-    return channels
+                outside[i] = k + 1
+
+
+@subroutine
+def _find_circle(x, y, curves):
+    """The number of the circle beyond which a point is, 0 for none; one within which orbits end may lie beyond another."""
+    found = 0
+    for shape in (CIRCLE, DISC):
+        for k in range(curves.shape[0]):
+            if curves[k, SHAPE] == shape and exit_distance(x, y, curves[k]) > 0.0:
+                found = k + 1
+    return found
+
+
+@subroutine
+def _has_exits(curves):
+    """Whether there are exits over saddles; with an escape circle there are none."""
+    found = False
+    for k in range(curves.shape[0]):
+        found |= curves[k, SHAPE] < DISC and curves[k, REACH] >= 0.0
+    return found
 
 
 @kernel
-def find_outside_polynomial(powers, coefficients, bernstein, x, y, energy, curves, curve_row):
+def find_outside_polynomial(powers, coefficients, bernstein, work, x, y, energy, curves, curve_row, outside):
     """`_find_outside` for a polynomial.
 
-    powers (terms, 2), coefficients (terms,): of V; bernstein: matrix of `engine.exits.interior`; x, y, energy (n,);
-    curves (rows, channels, columns); curve_row (n,).
+    powers (terms, 2), coefficients (terms,): of V; bernstein (n, n): matrix of `engine.exits.interior`; work (3, n): work space;
+    x, y, energy (n,); curves (rows, exits, columns); curve_row (n,).
     """
-    polynomial = (powers, coefficients, bernstein, np.zeros((3, bernstein.shape[0])))
+    polynomial = (powers, coefficients, bernstein, work)
     bottom, _, _ = _polynomial_slopes(polynomial, 0.0, 0.0)
-    return _find_outside(_polynomial_slopes, _polynomial_is_below, polynomial, x, y, energy, curves, curve_row, bottom)
+    _find_outside(_polynomial_slopes, _polynomial_is_below, polynomial, x, y, energy, curves, curve_row, bottom, outside)
 
 
 @kernel
-def find_outside(potential_slopes, coefficients, x, y, energy, curves, curve_row, inner_radius):
+def find_outside(potential_slopes, coefficients, inner_radius, x, y, energy, curves, curve_row, outside):
     """`_find_outside` for an expression; inner_radius: radius of the disc around a centre at the origin, 0.0 for a well there."""
     generated = (potential_slopes, coefficients, inner_radius)
     # The lowest value of V on the edge of the disc: a path below it cannot lead to the disc.
@@ -205,4 +242,4 @@ def find_outside(potential_slopes, coefficients, x, y, energy, curves, curve_row
         angle = 2.0 * np.pi * k / _EDGE_POINTS
         value, _, _ = _expression_slopes(generated, inner_radius * np.cos(angle), inner_radius * np.sin(angle))
         bottom = min(bottom, value)
-    return _find_outside(_expression_slopes, _expression_is_below, generated, x, y, energy, curves, curve_row, bottom)
+    _find_outside(_expression_slopes, _expression_is_below, generated, x, y, energy, curves, curve_row, bottom, outside)

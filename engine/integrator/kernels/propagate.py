@@ -96,13 +96,22 @@ class _StepBuffer(NamedTuple):
     """Steps whose events are still to be located.
 
     start (4, lanes): state; h, orbit, channel (lanes,): size of the step, number of the orbit, and the channel through which it
-    escapes, 0 where the step passes the horizon, or GOES_ON.
+    escapes, 0 where the step passes the horizon, or GOES_ON; x_jet, y_jet (ORDER + 1, lanes): work space for their series.
     """
 
     start: np.ndarray
     h: np.ndarray
     orbit: np.ndarray
     channel: np.ndarray
+    x_jet: np.ndarray
+    y_jet: np.ndarray
+
+
+@subroutine
+def _make_buffer(lanes):
+    """An empty buffer."""
+    h, orbit, channel = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
+    return _StepBuffer(np.zeros((4, lanes)), h, orbit, channel, np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes)))
 
 
 @kernel
@@ -123,8 +132,10 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     flag = np.zeros(LANES, np.int64)
     crossed = np.zeros(LANES, np.int64)
     lane_orbit = np.zeros(LANES, np.int64)
-    buffer = _StepBuffer(np.zeros((4, LANES)), np.zeros(LANES), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64))
+    buffer = _make_buffer(LANES)
     buffered = 0
+    # For one step; WebAssembly computes the series of pairs.
+    single = _make_buffer(2)
     active = min(LANES, todo.shape[0])
     next_orbit = active
     taken = 0
@@ -148,7 +159,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
             j = lane_orbit[i]
             ends, channel, failed, has_events = _judge_step(flag[i], now, new, i, final, exits, j)
             if flag[i] & NEAR != 0 and not ends:
-                channel = _passes_exit(jets, coefficients, now, i, new[5, i], exits.curves[exits.curve_row[j]])
+                channel = _passes_exit(jets, coefficients, now, i, new[5, i], exits.curves[exits.curve_row[j]], single)
                 ends = channel > 0
                 has_events = has_events or ends
             if ends:
@@ -194,15 +205,13 @@ def _judge_step(flags, now, new, i, final, exits, orbit):
 
 
 @subroutine
-def _passes_exit(jets, coefficients, now, i, h, curves):
+def _passes_exit(jets, coefficients, now, i, h, curves, buffer):
     """The number of the exit that the orbit of lane i passes and leaves again within the step of size h, 0 for none."""
-    start = np.zeros((4, 1))
+    start = buffer.start
     for c in range(4):
         start[c, 0] = now[c, i]
-    x_jet = np.zeros((ORDER + 1, 1))
-    y_jet = np.zeros((ORDER + 1, 1))
-    call_jets(jets, coefficients, 1, start[0], start[1], start[2], start[3], x_jet, y_jet)
-    return passed_exit(x_jet, y_jet, 0, h, curves)
+    call_jets(jets, coefficients, 1, start[0], start[1], start[2], start[3], buffer.x_jet, buffer.y_jet)
+    return passed_exit(buffer.x_jet, buffer.y_jet, 0, h, curves)
 
 
 @subroutine
@@ -249,9 +258,7 @@ def _buffer_step(now, new, i, orbit, channel, buffer, k):
 @subroutine
 def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
     """Locate the events in the first `n` buffered steps: upward crossings and, for orbits that end, the exit and its time."""
-    x_jet = np.empty((ORDER + 1, buffer.start.shape[1]))
-    y_jet = np.empty((ORDER + 1, buffer.start.shape[1]))
-    start = buffer.start
+    start, x_jet, y_jet = buffer.start, buffer.x_jet, buffer.y_jet
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
         j = buffer.orbit[i]

@@ -27,6 +27,7 @@ import hashlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -69,6 +70,9 @@ ROWS = 8
 """Rows of the arrays of lanes ``now`` and ``new``: x, y, px, py, t, the size of the last step, and the remainders of x and
 y, which rounding has dropped; they are 0 for structures whose steps do not carry them."""
 
+SIZE_ROW = 5
+"""The row with the size of the last step."""
+
 # Cached structures, 3 MB each with eight terms of degree 8.
 _STRUCTURES = 32
 
@@ -76,16 +80,42 @@ Definition = Terms | Expression
 """What V is: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
 
 
+class Place(NamedTuple):
+    """A number in an array that a kernel takes: ``array[row, column]``, where the column is that of the lane if it is None.
+
+    An array without rows has the row None.
+    """
+
+    array: str
+    row: int | None = None
+    column: int | None = None
+
+    def __str__(self) -> str:
+        column = "i" if self.column is None else self.column
+        return f"{self.array}[{column}]" if self.row is None else f"{self.array}[{self.row}, {column}]"
+
+
 class GeneratedFunction(NamedTuple):
     """A kernel as Python source, and the straight-line program that it calls by the program's name.
 
-    lane_inputs: the inputs of the program that differ from lane to lane, in order; the others are the same for all lanes.
+    Attributes
+    ----------
+    name, program, kernel
+        Name of the kernel; its program; its source.
+    arguments
+        Names of its arguments.
+    reads
+        Where the inputs of the program are that are not arguments.
+    writes
+        Where its results go, in order; none for those that the kernel returns.
     """
 
     name: str
     program: StraightLine
     kernel: str
-    lane_inputs: tuple[str, ...] = ()
+    arguments: tuple[str, ...]
+    reads: Mapping[str, Place] = MappingProxyType({})
+    writes: tuple[Place, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,43 +217,50 @@ def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Val
     return end, slope, [(series[0] - (end - rounded)) + (change - rounded)]
 
 
+ADDED = ("crossed", "sums")
+"""Arrays to whose numbers kernels add; they replace those of others."""
+
+
 def _lane_loop(
     program: StraightLine,
     arguments: str,
-    reads: Mapping[str, str],
-    writes: Mapping[str, Value | str],
-    constants: Mapping[str, str] | None = None,
+    reads: Mapping[str, Place],
+    writes: Mapping[Place, Value | str],
+    constants: Mapping[str, Place] | None = None,
     rows: Sequence[str] = (),
 ) -> GeneratedFunction:
     """A kernel with a loop over lanes that reads inputs from arrays, runs a straight-line program and writes its results.
 
-    reads, constants: {input: source}; writes: {left-hand side with its operator: value or source}. Constants are read before the
+    reads, constants: where inputs are; writes: values of the program, or source. Constants are read before the
     loop: read in it, each would be checked for overlap with every array that the loop writes, and beyond some 100 checks nothing
     is vectorised. rows: the arrays whose rows have the length `LANES`. As this is a constant, the compiler knows that the rows do
     not overlap; the checks of separate arrays take as long as 16 lanes.
     """
     program.results = [value.index for value in writes.values() if isinstance(value, Value)]
-    sources = {target: f"r{value.index}" if isinstance(value, Value) else value for target, value in writes.items()}
+    sources = {place: f"r{value.index}" if isinstance(value, Value) else value for place, value in writes.items()}
     name = program.name.removeprefix("_")
+    constants = constants or {}
     lines = [
         "@kernel",
         f"def {name}(coefficients, n, {arguments}):",
         *(f"    if {each}.shape[1] != {LANES}: raise ValueError('{each}: must have {LANES} columns')" for each in rows),
-        *(f"    {each} = {source}" for each, source in {TABLE: "read_table(coefficients)", **(constants or {})}.items()),
+        *(f"    {each} = {source}" for each, source in {TABLE: "read_table(coefficients)", **constants}.items()),
         "    for i in range(n):",
-        *(f"        {each} = {source}" for each, source in reads.items()),
+        *(f"        {each} = {place}" for each, place in reads.items()),
         f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
-        *(f"        {target} {source}" for target, source in sources.items()),
+        *(f"        {place} {'+=' if place.array in ADDED else '='} {source}" for place, source in sources.items()),
     ]
-    return GeneratedFunction(name, program, "\n".join(lines) + "\n", tuple(reads))
+    written = tuple(place for place, value in writes.items() if isinstance(value, Value))
+    names = ("coefficients", "n", *arguments.split(", "))
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n", names, {**constants, **reads}, written)
 
 
-_START = {"x0": "x[i]", "y0": "y[i]", "x1": "px[i]", "y1": "py[i]"}
+_START = {"x0": Place("x"), "y0": Place("y"), "x1": Place("px"), "y1": Place("py")}
 
 
-def _start_in(lanes: str) -> dict[str, str]:
+def _start_in(lanes: str) -> dict[str, Place]:
     """The inputs of the recurrence, read from the first rows of an array of lanes."""
-    return {name: f"{lanes}[{row}, i]" for row, name in enumerate(_START)}
+    return {name: Place(lanes, row) for row, name in enumerate(_START)}
 
 
 def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
@@ -239,16 +276,16 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     end = x_end, y_end, px_end, py_end
     flags = hidden + gate + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
     writes = {
-        "crossed[i] +=": where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
-        "flag[i] =": flags,
-        **{f"new[{row}, i] =": value for row, value in enumerate((*end, t_end, h, *x_remainder, *y_remainder))},
+        Place("crossed"): where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
+        Place("flag"): flags,
+        **{Place("new", row): value for row, value in enumerate((*end, t_end, h, *x_remainder, *y_remainder))},
     }
     arguments = "tolerance, horizon, gates, now, new, flag, crossed"
-    reads = {**_start_in("now"), "t0": "now[4, i]"}
+    reads = {**_start_in("now"), "t0": Place("now", 4)}
     if remainders:
-        # In WebAssembly inputs have the rows of this order.
-        reads |= {"last_size": "now[5, i]", "x_remainder": "now[6, i]", "y_remainder": "now[7, i]"}
-    return _lane_loop(program, arguments, reads, writes, gates, rows=("now", "new"))
+        reads |= {"x_remainder": Place("now", 6), "y_remainder": Place("now", 7)}
+    constants = {name: Place("gates", *place) for name, place in gates.items()}
+    return _lane_loop(program, arguments, reads, writes, constants, rows=("now", "new"))
 
 
 def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
@@ -258,10 +295,10 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
     x_end, px_end = _horner(x, h)
     y_end, py_end = _horner(y, h)
     # The sums are left to the loop: within the program they make it up to a sixth slower.
-    writes: dict[str, Value | str] = {
-        "sums[0, i] +=": "weight*(x0*x0)",
-        "sums[1, i] +=": "weight*(y0*y0)",
-        **{f"state[{row}, i] =": value for row, value in enumerate((x_end, y_end, px_end, py_end))},
+    writes: dict[Place, Value | str] = {
+        Place("sums", 0): "weight*(x0*x0)",
+        Place("sums", 1): "weight*(y0*y0)",
+        **{Place("state", row): value for row, value in enumerate((x_end, y_end, px_end, py_end))},
     }
     return _lane_loop(program, "h, weight, state, sums", _start_in("state"), writes, rows=("state", "sums"))
 
@@ -269,8 +306,12 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
 def _jets(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_jets", table)
     orbit = zip("xy", structure.orbit(program), strict=True)
-    writes = {f"{name}_jet[{k}, i] =": series[k] for name, series in orbit for k in range(ORDER + 1)}
+    writes = {Place(f"{name}_jet", k): series[k] for name, series in orbit for k in range(ORDER + 1)}
     return _lane_loop(program, "x, y, px, py, x_jet, y_jet", _START, writes)
+
+
+# A deviation vector: inputs of the recurrence, and the arrays of its components.
+_VECTOR = {"u0": "wx", "v0": "wy", "u1": "wpx", "v1": "wpy"}
 
 
 def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
@@ -289,8 +330,8 @@ def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
             add_coriolis(program, u, v)
     h = program.input("h")
     (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
-    reads = {**_START, "u0": "wx[i]", "v0": "wy[i]", "u1": "wpx[i]", "v1": "wpy[i]", "h": "duration[i]"}
-    writes = {"wx[i] =": u_end, "wy[i] =": v_end, "wpx[i] =": pu_end, "wpy[i] =": pv_end}
+    reads = {**_START, **{name: Place(array) for name, array in _VECTOR.items()}, "h": Place("duration")}
+    writes = dict(zip(map(Place, _VECTOR.values()), (u_end, v_end, pu_end, pv_end), strict=True))
     return _lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
 
 
@@ -306,7 +347,7 @@ def _point_function(name: str, append: Callable[[StraightLine], Mapping[str, Val
         f"    ({', '.join(values)},) = {program.name}({', '.join(program.parameters)})",
         f"    return {', '.join(values)}",
     ]
-    return GeneratedFunction(name, program, "\n".join(lines) + "\n")
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n", ("coefficients", "x", "y"))
 
 
 def generate_code(

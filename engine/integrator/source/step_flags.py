@@ -44,14 +44,14 @@ def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
 
 def flag_gates(
     setting: Setting, program: StraightLine, series: tuple[Series, Series], end: tuple[Value, Value], h: Value
-) -> tuple[dict[str, str], Value]:
-    """The inputs of the gates with their sources, and GATE, NEAR or 0.
+) -> tuple[dict[str, tuple[int, int]], Value]:
+    """The inputs of the gates with their rows and columns of `gates`, and GATE, NEAR or 0.
 
     A row of `gates` is g_x, g_y, g: for a channel the line g_x x + g_y y = g, for a circle its centre and its radius.
     """
     count = setting.channels + len(setting.sides)
     columns = {"x": 0, "y": 1, "": 2}
-    sources = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(count) for name, column in columns.items()}
+    sources = {f"g{k}{name}": (k, column) for k in range(count) for name, column in columns.items()}
     flag = program.constant(0)
     rows = [[program.input(f"g{k}{name}") for name in columns] for k in range(count)]
     lines, circles = rows[: setting.channels], rows[setting.channels :]

@@ -40,14 +40,14 @@ const parts = (/** @type {number} */ count) => /** @type {any[]} */ (Array.from(
 test("workers start with the first system, one core is left", () => {
   const {pool, workers} = startPool()
   assert.equal(workers.length, 0)
-  pool.setSystem(/** @type {any} */ ("system"), /** @type {any} */ ("module"))
+  pool.setSystem(/** @type {any} */ ("system"), /** @type {any} */ ("modules"))
   assert.equal(workers.length, 2)
-  assert.deepEqual(workers[0].received, [{system: "system", module: "module"}])
+  assert.deepEqual(workers[0].received, [{system: "system", modules: "modules"}])
 })
 
 test("a worker has one part at a time, and all parts are computed", () => {
   const {pool, workers} = startPool()
-  pool.setSystem(/** @type {any} */ ("system"), /** @type {any} */ ("module"))
+  pool.setSystem(/** @type {any} */ ("system"), /** @type {any} */ ("modules"))
   /** @type {any[]} */
   const done = []
   pool.compute(view, parts(3), part => done.push(part))
@@ -67,7 +67,7 @@ test("a worker has one part at a time, and all parts are computed", () => {
 
 test("another picture drops the parts that wait, and the pixels under way", () => {
   const {pool, workers} = startPool()
-  pool.setSystem(/** @type {any} */ ("system"), /** @type {any} */ ("module"))
+  pool.setSystem(/** @type {any} */ ("system"), /** @type {any} */ ("modules"))
   /** @type {any[]} */
   const done = []
   pool.compute(view, parts(9), part => done.push(["old", part]))

@@ -5,18 +5,15 @@ import {Outcomes} from "../../../app/browser/modules/outcomes.js"
 import {Ensemble} from "../../../app/browser/modules/ensemble.js"
 import {drawStarts} from "../../../app/browser/modules/ensemble_starts.js"
 import {Integrator} from "../../../app/browser/modules/integrator.js"
-import {Interior} from "../../../app/browser/modules/interior.js"
-import {makePotential} from "../../../app/browser/modules/potential.js"
-import {input, module} from "./read_input.js"
+import {input, modules} from "./read_input.js"
 
 const {system, requests, scene, energy, states, times} = input
-const potential = makePotential(system.formula)
-const surroundings = {system, potential, interior: new Interior(potential), integrator: new Integrator(system, module)}
-const draw = (/** @type {any} */ request) => [...drawStarts(request, scene, surroundings)]
+const integrator = new Integrator(system, modules)
+const draw = (/** @type {any} */ request) => [...drawStarts(request, scene, integrator)]
 
 function follow() {
   const starts = Float64Array.from(states)
-  const ensemble = new Ensemble(new Integrator(system, module), energy, starts)
+  const ensemble = new Ensemble(integrator, energy, starts)
   const frames = times.map((/** @type {number} */ time) => {
     ensemble.advance(time)
     const {x, y, channel, sectionX, sectionPx} = ensemble
@@ -29,7 +26,7 @@ function follow() {
       growth: ensemble.growth(),
     }
   })
-  const outcomes = new Outcomes(system, module, energy, starts, times.at(-1))
+  const outcomes = new Outcomes(system, modules, energy, starts, times.at(-1))
   while (!outcomes.complete) outcomes.continue()
   ensemble.advance(times[0])
   return {frames, escapeTime: [...ensemble.escapeTime], outcomes: [...outcomes.channel], again: [...ensemble.x]}

@@ -2,24 +2,22 @@
 /** Ends of orbits as the previews, the card and the player of ensembles find them, in units of the well. */
 
 import {Ensemble} from "../../../app/browser/modules/ensemble.js"
-import {exitCurves} from "../../../app/browser/modules/exits.js"
+import {Exits} from "../../../app/browser/modules/exits.js"
 import {Integrator} from "../../../app/browser/modules/integrator.js"
 import {propagate} from "../../../app/browser/modules/propagate.js"
 import {reversedInTime} from "../../../app/browser/modules/system.js"
 import {traceOrbit} from "../../../app/browser/modules/trace.js"
-import {input, module} from "./read_input.js"
+import {input, modules} from "./read_input.js"
 
 const {energy, states, horizon, isBackward} = input
 const system = isBackward ? reversedInTime(input.system) : input.system
-const integrator = new Integrator(system, module)
+const integrator = new Integrator(system, modules)
 const {layout} = system
-const count = states.length
 
 function preview() {
-  const [fate, time, crossings] = [new Int8Array(count), new Float64Array(count), new Uint16Array(count)]
-  const exits = exitCurves(system.exits, energy)
-  const [todo, state] = [Uint32Array.from(states.keys()), Float64Array.from(states.flat())]
-  propagate(integrator, {state, todo, fate, time, crossings, exits: () => exits}, horizon, layout.tolerance, exits)
+  const exits = new Exits(integrator, [energy])
+  const ends = propagate(integrator, Float64Array.from(states.flat()), exits, [], horizon, layout.tolerance)
+  const {fate, time, crossings} = ends
   return {fate: [...fate], time: [...time], crossings: [...crossings]}
 }
 

@@ -3,17 +3,14 @@
 
 import {Picture} from "../../../app/browser/modules/frames.js"
 import {Integrator} from "../../../app/browser/modules/integrator.js"
-import {Interior} from "../../../app/browser/modules/interior.js"
 import {computePixels} from "../../../app/browser/modules/pixels.js"
-import {makePotential} from "../../../app/browser/modules/potential.js"
-import {input, module} from "./read_input.js"
+import {input, modules} from "./read_input.js"
 
 const {system, views} = input
-const potential = makePotential(system.formula)
-const [integrator, interior] = [new Integrator(system, module), new Interior(potential)]
+const integrator = new Integrator(system, modules)
 const pictures = views.map((/** @type {import("../../../app/browser/modules/pixels.js").View} */ view) => {
   const picture = new Picture(system, view)
-  for (const part of picture.deal(3)) picture.add(part, computePixels(integrator, interior, potential, view, part))
+  for (const part of picture.deal(3)) picture.add(part, computePixels(integrator, view, part))
   const {fate, time, crossings} = picture.finish()
   return {fate: [...fate], time: [...time], crossings: [...crossings]}
 })

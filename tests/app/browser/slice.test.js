@@ -2,16 +2,11 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Polynomial} from "../../../app/browser/modules/potential.js"
 import {mirroredAxes, pixelCentres, space, Starts} from "../../../app/browser/modules/slice.js"
 import {windowAt} from "../../../app/browser/modules/system.js"
 import {X_PX as slice} from "./x_px.js"
 
-const potential = new Polynomial([
-  [2, 0, 0.5],
-  [0, 2, 0.5],
-  [2, 2, -1],
-])
+const potential = {value: (/** @type {number} */ x, /** @type {number} */ y) => 0.5 * (x * x + y * y) - x * x * y * y}
 /** @typedef {import("../../../app/browser/modules/system.js").Slice} Slice */
 const system = /** @type {any} */ ({mirror: [0, 2, 1, 4, 3]})
 const window = {xLow: -1, xHigh: 1, ordinateLow: -2, ordinateHigh: 2}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import http.client
 import json
 import re
@@ -18,7 +19,8 @@ from urllib.parse import urlencode
 import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
-from app.browser.module_files import ADDRESS
+from app.browser.module_files import ADDRESS, KERNELS_ADDRESS
+from engine.integrator.portable_kernels import kernel_module
 from tests.app.other_loop import run_on_new_loop
 from tests.browser.served_app import RunningApp, started_app
 from tests.page_channel import Channel
@@ -102,6 +104,17 @@ def test_modules_of_the_engine_in_the_browser_can_be_kept(served: Served) -> Non
     assert headers["X-Content-Type-Options"] == "nosniff"
     assert served.get(f"/{ADDRESS.replace('main', 'nothing')}")[0] == 404
     assert served.get("/browser/0123456789abcdef/main.js")[0] == 404
+
+
+def test_kernels_can_be_kept_and_are_compressed_for_those_who_ask(served: Served) -> None:
+    for headers in ({}, {"Accept-Encoding": "gzip"}):
+        request = urllib.request.Request(f"http://127.0.0.1:{served.port}/{KERNELS_ADDRESS}", headers=headers)
+        with urllib.request.urlopen(request, timeout=60) as answer:
+            content = answer.read()
+            assert answer.headers["Content-Type"] == "application/wasm"
+            assert int(answer.headers["Cache-Control"].partition("max-age=")[2]) > 1e7
+            assert answer.headers["X-Content-Type-Options"] == "nosniff"
+        assert (gzip.decompress(content) if headers else content) == kernel_module()
 
 
 def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None:

@@ -61,6 +61,6 @@ def test_the_browser_interpolates_the_same_exits(tmp_path: Path) -> None:
     portable = make_portable_system(potential, 1.0)
     energies, positions = some_energies(potential, 1.0), [-1.0, -0.3, 0.0, 0.8, 1.0]
     data = {"system": portable.to_dict(), "module": portable.module, "energies": energies, "positions": positions}
-    found = np.array(run_node("run_exits.js", data, tmp_path))
+    found = np.array([each["points"] for each in run_node("run_exits.js", data, tmp_path)])
     expected = [[table.points_at(energy, np.array(positions)).T for table in portable.exits] for energy in energies]
     np.testing.assert_allclose(found, expected, atol=1e-12)

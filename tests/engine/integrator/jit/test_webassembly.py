@@ -1,4 +1,4 @@
-"""The WebAssembly module: small, and its step is the native one to rounding."""
+"""The WebAssembly modules: small, and their steps are the native ones to rounding."""
 
 from __future__ import annotations
 
@@ -12,8 +12,11 @@ import pytest
 from engine import CASES, Plane, Potential, parse_formula, start_states
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.integrator.jit.webassembly import webassembly_module
-from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE, generate_code
+from engine.integrator.kernels.propagate import VECTOR, Exits
+from engine.integrator.portable_kernels import kernel_module
+from engine.integrator.source.recurrence import TOLERANCE, generate_code
 from engine.integrator.source.series import ORDER
+from engine.propagation.batch import OrbitBatch
 from engine.propagation.portable_system import make_portable_system
 from engine.systems.compiled import kernels_of
 from engine.systems.outcomes import Centre
@@ -27,7 +30,8 @@ POTENTIALS = {
     "functions": parse_formula("½log(1 + r²) − 0.5x² y exp(−y²) − x³ cos(y)/√(2 + y²)"),
 }
 ENERGY = 0.29
-LARGEST_BYTES = 5120
+STEPS, HORIZON = 6, 1.8
+LARGEST_BYTES, LARGEST_KERNELS = 5120, 11264
 
 
 def test_a_module_has_at_most_5_kb() -> None:
@@ -36,36 +40,39 @@ def test_a_module_has_at_most_5_kb() -> None:
     assert len(gzip.compress(module)) <= LARGEST_BYTES
 
 
+def test_the_kernels_have_at_most_11_kb() -> None:
+    assert len(gzip.compress(kernel_module())) <= LARGEST_KERNELS
+
+
 def starts(potential: Potential) -> np.ndarray:
-    """(n, 5) x, y, px, py, t."""
+    """(n, 4) x, y, px, py."""
     chance = np.random.default_rng(1)
     x, px = chance.uniform(-0.3, 0.3, 9), chance.uniform(-0.3, 0.3, 9)
-    states = start_states(potential, Plane.X_PX, ENERGY, x, px)
-    return np.column_stack([states, np.linspace(0.0, 10.0, 9)])
+    return start_states(potential, Plane.X_PX, ENERGY, x, px)
 
 
-def native(potential: Potential, states: np.ndarray, gates: np.ndarray, horizon: float) -> tuple[np.ndarray, ...]:
-    """The step of the kernels for this machine, its flags with crossings, and the series."""
-    kernels = kernels_of(potential)
-    now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
-    flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
-    now[:5, : len(states)] = states.T
-    kernels.step(len(states), TOLERANCE, horizon, gates, now, new, flag, crossed)
-    jets = np.zeros((2, ORDER + 1, LANES))
-    kernels.jets(len(states), *(row.copy() for row in now[:4]), *jets)
-    n = len(states)
-    return new[:, :n], np.column_stack([crossed, flag])[:n], jets.reshape(-1, LANES)[:, :n]
+def native(potential: Potential, state: np.ndarray, curves: np.ndarray) -> dict[str, np.ndarray]:
+    """The first steps of an orbit by the kernels for this machine, its crossings, and the series of the first step."""
+    kernels, steps = kernels_of(potential), np.zeros((STEPS, 5))
+    batch = OrbitBatch.from_starts(state[None], np.zeros(1, np.int64))
+    exits = Exits(exit_gates(curves), curves[None], batch.curve_row)
+    orbits = batch.for_kernels(np.ones(1, np.uint8))
+    taken = kernels.propagate(np.zeros(1, np.int64), HORIZON, True, TOLERANCE, VECTOR * STEPS, 0, exits, orbits, steps)
+    series = np.zeros((2, ORDER + 1, 1))
+    kernels.jets(1, *state[:, None], *series)
+    return {"steps": steps.ravel(), "taken": taken, "crossings": batch.crossings[0], "series": series.ravel()}
 
 
 @needs_node
 @pytest.mark.parametrize("name", ["III", "typed", "rotating", "body", pytest.param("functions", marks=pytest.mark.slow)])
-def test_the_step_is_the_native_one_to_rounding(name: str, tmp_path: Path) -> None:
-    potential, horizon = POTENTIALS[name].in_well_units, 9.8
-    states, gates = starts(potential), exit_gates(exit_curves(potential, ENERGY))
-    portable = make_portable_system(potential, ENERGY)
-    data: dict[str, Any] = {"system": portable.to_dict(), "module": portable.module, "horizon": horizon}
-    found = run_node("run_step.js", {**data, "states": states.tolist(), "gates": gates.tolist()}, tmp_path)
-    step, flags, jets = native(potential, states, gates, horizon)
-    np.testing.assert_allclose(found["new"], step, rtol=1e-13, atol=1e-15)
-    np.testing.assert_array_equal(found["flags"], flags)
-    np.testing.assert_allclose(found["jets"], jets, rtol=1e-10, atol=1e-13)
+def test_the_first_steps_are_the_native_ones_to_rounding(name: str, tmp_path: Path) -> None:
+    potential = POTENTIALS[name].in_well_units
+    states, curves = starts(potential), exit_curves(potential, ENERGY)
+    portable = make_portable_system(potential, 2.0 * ENERGY)
+    data: dict[str, Any] = {"system": portable.to_dict(), "module": portable.module, "horizon": HORIZON, "energy": ENERGY}
+    found = run_node("run_step.js", {**data, "states": states.tolist(), "count": STEPS}, tmp_path)
+    for state, orbit in zip(states, found, strict=True):
+        expected = native(potential, state, curves)
+        np.testing.assert_allclose(orbit["steps"], expected["steps"], rtol=1e-11, atol=1e-12)
+        np.testing.assert_allclose(orbit["series"], expected["series"], rtol=1e-10, atol=1e-13)
+        assert (orbit["taken"], orbit["crossings"]) == (expected["taken"], expected["crossings"])

@@ -1,0 +1,116 @@
+"""From LLVM instructions to a WebAssembly module, without a linker: an object file is a module but for its exports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import llvmlite.binding as llvm  # type: ignore[import-untyped]
+
+TARGET = "wasm32-unknown-unknown"
+
+_FEATURES = "+simd128,+bulk-memory"
+_HEADER_BYTES = 8
+# Numbers of sections, and the kind of an import or an export, see the specification of WebAssembly.
+_CUSTOM, _IMPORT, _EXPORT, _CODE = 0, 2, 7, 10
+_FUNCTION, _TABLE, _MEMORY, _GLOBAL = range(4)
+
+
+def target_machine() -> Any:
+    """The machine of LLVM for `TARGET`."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    return llvm.Target.from_triple(TARGET).create_target_machine(opt=3, features=_FEATURES, reloc="static")
+
+
+def compile_module(source: Any, machine: Any, level: int) -> bytes:
+    """A module of LLVM as one of WebAssembly, which exports its external functions by their names.
+
+    source: a parsed module of llvmlite; level: of optimisation, 2 or 3.
+    """
+    options = llvm.create_pipeline_tuning_options(speed_level=level)
+    # Unrolled loops take a third of the bytes, and no less time.
+    options.loop_unrolling = False
+    passes = llvm.create_pass_builder(machine, options)
+    # Of two runs the second finds what the first has made constant.
+    for _ in range(2):
+        passes.getModulePassManager().run(source, passes)
+    defined = [function for function in source.functions if not function.is_declaration]
+    exports = {f.name: place for place, f in enumerate(defined) if f.linkage == llvm.Linkage.external}
+    return _with_exports(machine.emit_object(source), exports)
+
+
+def _with_exports(compiled: bytes, places: dict[str, int]) -> bytes:
+    """An object file with exports of some of its functions, and without the sections for a linker."""
+    sections = list(_sections(compiled))
+    imported = sum(_count_imported_functions(compiled, begin) for number, begin, _ in sections if number == _IMPORT)
+    exports = b"".join(_name(name) + bytes([_FUNCTION]) + _number(imported + place) for name, place in places.items())
+    export = _section(_EXPORT, _number(len(places)) + exports)
+    kept = [(export if number == _CODE else b"") + compiled[begin:end] for number, begin, end in sections if number != _CUSTOM]
+    return compiled[:_HEADER_BYTES] + b"".join(kept)
+
+
+def _sections(module: bytes) -> Iterator[tuple[int, int, int]]:
+    """(number, begin, end) of each section of a module, with its header."""
+    begin = _HEADER_BYTES
+    while begin < len(module):
+        size, content = _read_number(module, begin + 1)
+        yield module[begin], begin, content + size
+        begin = content + size
+
+
+def _count_imported_functions(module: bytes, begin: int) -> int:
+    """Number of functions in the section of imports, which come before those of the module."""
+    _, place = _read_number(module, begin + 1)
+    imports, place = _read_number(module, place)
+    functions = 0
+    for _ in range(imports):
+        for _ in ("module", "name"):
+            length, place = _read_number(module, place)
+            place += length
+        kind, place = module[place], place + 1
+        functions += kind == _FUNCTION
+        place = _skip_type(module, kind, place)
+    return functions
+
+
+def _skip_type(module: bytes, kind: int, place: int) -> int:
+    """Where the type of an import ends."""
+    if kind == _FUNCTION:
+        return _read_number(module, place)[1]
+    if kind == _GLOBAL:
+        return place + 2
+    if kind == _TABLE:
+        place += 1
+    has_maximum, place = module[place] & 1, place + 1
+    for _ in range(1 + has_maximum):
+        _, place = _read_number(module, place)
+    return place
+
+
+def _section(number: int, content: bytes) -> bytes:
+    return bytes([number]) + _number(len(content)) + content
+
+
+def _name(name: str) -> bytes:
+    return _number(len(name)) + name.encode()
+
+
+def _number(value: int) -> bytes:
+    """A number in the format LEB128: seven bits a byte, the lowest first."""
+    digits = bytearray()
+    while value > 0x7F:
+        digits.append(value & 0x7F | 0x80)
+        value >>= 7
+    return bytes([*digits, value])
+
+
+def _read_number(data: bytes, begin: int) -> tuple[int, int]:
+    """A number in the format LEB128, and where it ends."""
+    value = length = 0
+    while True:
+        byte = data[begin + length]
+        value |= (byte & 0x7F) << 7 * length
+        length += 1
+        if byte < 0x80:
+            return value, begin + length

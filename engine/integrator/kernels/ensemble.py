@@ -1,0 +1,145 @@
+"""Many orbits at the same time, each with the series of the step that contains it, for an animation.
+
+The place of an orbit at any time within its step costs two polynomials; steps are taken in full vectors of lanes.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel, subroutine
+from engine.integrator.jit.function_pointers import call_jets, call_step
+from engine.integrator.kernels.events import (
+    DISC,
+    SHAPE,
+    crossed_exit,
+    find_exit_time,
+    find_zero,
+    passed_exit,
+    series_slope,
+    series_value,
+)
+from engine.integrator.kernels.propagate import VECTOR
+from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW
+from engine.integrator.source.series import ORDER
+from engine.integrator.source.step_flags import NEAR
+
+
+class Ensemble(NamedTuple):
+    """Arrays of n orbits, changed in place by `advance_ensemble`.
+
+    Attributes
+    ----------
+    ends
+        (ROWS, n) x, y, px, py, t, size and remainders at the end of the present step; before the first step those of the start.
+    begin
+        (n,) time at which the present step begins.
+    jets
+        (2, ORDER + 1, n) series of x and y in the present step.
+    leaving
+        (n,) int8: number of the exit through which this step leads out, or an earlier one has; 0 for none.
+    escape_time
+        (n,) time of the escape, or infinite.
+    last
+        (n,) time until which the orbit is followed, or infinite.
+    section
+        (2, n) x and px of the last upward crossing of y = 0.
+    """
+
+    ends: np.ndarray
+    begin: np.ndarray
+    jets: np.ndarray
+    leaving: np.ndarray
+    escape_time: np.ndarray
+    last: np.ndarray
+    section: np.ndarray
+
+
+@kernel
+def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, curves, ensemble):
+    """Take steps until that of each orbit contains `time`, unless it has left.
+
+    beyond: how long orbits are followed beyond an exit that is no disc; gates (exits, 3), curves (exits, columns): see
+    `engine.integrator.kernels.propagate.Exits`.
+    """
+    count = ensemble.begin.shape[0]
+    now = np.zeros((ROWS, LANES))
+    new = np.zeros((ROWS, LANES))
+    flag = np.zeros(LANES, np.int64)
+    crossed = np.zeros(LANES, np.int64)
+    x_jet = np.zeros((ORDER + 1, LANES))
+    y_jet = np.zeros((ORDER + 1, LANES))
+    lane_orbit = np.zeros(LANES, np.int64)
+    next_orbit = 0
+    while next_orbit < count:
+        # Lanes without an orbit take harmless steps.
+        for i in range(LANES):
+            for row in range(ROWS):
+                now[row, i] = 0.01 if row == 0 else 0.0
+        active = 0
+        while next_orbit < count and active < LANES:
+            if _is_late(ensemble, next_orbit, time):
+                for row in range(ROWS):
+                    now[row, active] = ensemble.ends[row, next_orbit]
+                lane_orbit[active] = next_orbit
+                active += 1
+            next_orbit += 1
+        if active == 0:
+            break
+        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        call_step(step, coefficients, width, tolerance, time, gates, now, new, flag, crossed)
+        call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
+        for i in range(active):
+            _keep_step(now, new, flag[i], x_jet, y_jet, i, beyond, gates, curves, ensemble, lane_orbit[i])
+            if _is_late(ensemble, lane_orbit[i], time):
+                next_orbit = min(next_orbit, lane_orbit[i])
+
+
+@kernel
+def place_ensemble(time, ensemble, places, channels):
+    """Set `places` (2, n) to x and y at a time, and `channels` (n,) of orbits that have left; orbits far outside are at NaN."""
+    for orbit in range(ensemble.begin.shape[0]):
+        if time >= ensemble.escape_time[orbit]:
+            channels[orbit] = ensemble.leaving[orbit]
+        tau = time - ensemble.begin[orbit]
+        # The size of the last step of an orbit that has broken down is not a number.
+        is_far = time > ensemble.last[orbit] or not tau <= ensemble.ends[SIZE_ROW, orbit]
+        for axis in range(2):
+            places[axis, orbit] = np.nan if is_far else series_value(ensemble.jets[axis], orbit, tau)
+
+
+@subroutine
+def _is_late(ensemble, orbit, time):
+    """Whether the step of an orbit that is followed ends before a time; the time of one that has broken down is NaN."""
+    end = ensemble.ends[4, orbit]
+    return end < time and end < ensemble.last[orbit]
+
+
+@subroutine
+def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble, orbit):
+    """Make the step of lane i the present one of its orbit, with its events."""
+    for k in range(ORDER + 1):
+        ensemble.jets[0, k, orbit] = x_jet[k, i]
+        ensemble.jets[1, k, orbit] = y_jet[k, i]
+    for row in range(ROWS):
+        ensemble.ends[row, orbit] = new[row, i]
+    size = new[SIZE_ROW, i]
+    ensemble.begin[orbit] = now[4, i]
+    if not size > 0.0:
+        ensemble.ends[4, orbit] = np.nan
+    if ensemble.escape_time[orbit] < np.inf:
+        return
+    channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
+    if channel == 0 and flags & NEAR != 0:
+        channel = passed_exit(x_jet, y_jet, i, size, curves)
+    ensemble.leaving[orbit] = channel
+    if channel > 0:
+        ensemble.escape_time[orbit] = now[4, i] + find_exit_time(x_jet, y_jet, i, size, curves[channel - 1])
+        follows = 0.0 if curves[channel - 1, SHAPE] == DISC else beyond
+        ensemble.last[orbit] = ensemble.escape_time[orbit] + follows
+    if now[1, i] < 0.0 and new[1, i] >= 0.0:
+        tau = find_zero(y_jet, i, 0.0, size)
+        ensemble.section[0, orbit] = series_value(x_jet, i, tau)
+        ensemble.section[1, orbit] = series_slope(x_jet, i, tau)

@@ -1,0 +1,90 @@
+"""Exits at any energy, interpolated in a table, and their points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel
+from engine.integrator.kernels.events import (
+    CLOSED,
+    DISC,
+    HALF_WIDTH,
+    MIDDLE,
+    ORIGIN_X,
+    ORIGIN_Y,
+    OUTWARD_X,
+    OUTWARD_Y,
+    REACH,
+    SHAPE,
+    exit_height,
+)
+
+# Columns of a table: gate and reach, then those of an exit for its axes, and from `MIDDLE` on.
+GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
+
+
+@kernel
+def interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
+    """Set an exit (columns,) over a saddle, and its gate (3,), from a table; both are zeros before.
+
+    nodes (n,): √(h − energy of the saddle), rising Chebyshev nodes of the first kind; rows (n, columns); place: between the
+    nodes, 0.0 or less for a closed channel; shape: CURVE or LINE. By the barycentric formula (Berrut & Trefethen 2004, SIAM
+    Review 46, 501). The reach is not smooth: the smaller one of two neighbours is taken.
+    """
+    count = nodes.shape[0]
+    exit_curve[OUTWARD_X] = 1.0
+    exit_curve[REACH] = 1.0
+    exit_curve[HALF_WIDTH] = 1.0
+    exit_curve[SHAPE] = CLOSED
+    gate[0] = 1.0
+    gate[2] = np.inf
+    if count == 0 or not place > 0.0:
+        return
+    exit_curve[SHAPE] = shape
+    exit_curve[OUTWARD_X] = 0.0
+    exit_curve[HALF_WIDTH] = 0.0
+    gate[2] = 0.0
+    above = 0
+    while above < count and nodes[above] < place:
+        above += 1
+    first, last, total = 0, count, 0.0
+    if above < count and nodes[above] == place:
+        first, last = above, above + 1
+    for k in range(first, last):
+        weight = 1.0
+        if last - first > 1:
+            weight = np.sin(np.pi * (2 * k + 1) / (2 * count)) / (place - nodes[k])
+            weight = weight if k % 2 == 0 else -weight
+        total += weight
+        gate[2] += weight * rows[k, GATE_COLUMN]
+        for column in range(AXES_COLUMN, MIDDLE_COLUMN):
+            exit_curve[ORIGIN_X + column - AXES_COLUMN] += weight * rows[k, column]
+        for column in range(MIDDLE_COLUMN, rows.shape[1]):
+            exit_curve[MIDDLE + column - MIDDLE_COLUMN] += weight * rows[k, column]
+    gate[2] /= total
+    for column in range(ORIGIN_X, OUTWARD_Y + 1):
+        exit_curve[column] /= total
+    for column in range(MIDDLE, exit_curve.shape[0]):
+        exit_curve[column] /= total
+    neighbour = max(above - 1, 0) if last - first > 1 else above
+    exit_curve[REACH] = min(rows[neighbour, REACH_COLUMN], rows[min(above, count - 1), REACH_COLUMN])
+    length = np.sqrt(exit_curve[OUTWARD_X] ** 2 + exit_curve[OUTWARD_Y] ** 2)
+    exit_curve[OUTWARD_X] /= length
+    exit_curve[OUTWARD_Y] /= length
+    gate[0] = exit_curve[OUTWARD_X]
+    gate[1] = exit_curve[OUTWARD_Y]
+
+
+@kernel
+def exit_points(exit_curve, positions, points):
+    """Set `points` (2, n) to those of an exit at s (n,) from −1 to 1; around a circle s goes from −1 to 1, too."""
+    for i in range(positions.shape[0]):
+        s = positions[i]
+        if exit_curve[SHAPE] >= DISC:
+            points[0, i] = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
+            points[1, i] = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)
+        else:
+            u = exit_height(s, exit_curve)
+            q = exit_curve[MIDDLE] + exit_curve[HALF_WIDTH] * s
+            points[0, i] = exit_curve[ORIGIN_X] + u * exit_curve[OUTWARD_X] - q * exit_curve[OUTWARD_Y]
+            points[1, i] = exit_curve[ORIGIN_Y] + u * exit_curve[OUTWARD_Y] + q * exit_curve[OUTWARD_X]
