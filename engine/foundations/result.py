@@ -177,7 +177,10 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
             return xr.Dataset(variables, attrs=attributes)
         dimension = self.row_dimension or next(iter(columns))
         rows = {name: (dimension, values, self._meaning(name, values)) for name, values in columns.items()}
-        entries = {name: (f"{name}_entry", values, self._meaning(name, values)) for name, values in arrays.items()}
+        entries = {
+            name: ([f"{name}_entry_{axis}" for axis in range(values.ndim)], values, self._meaning(name, values))
+            for name, values in arrays.items()
+        }
         return xr.Dataset(rows | entries, attrs=attributes | scalars)
 
     def _remaining_fields(self, stored: set[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:

@@ -120,4 +120,5 @@ def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> Exit
     occurring = [end for end in range(1, known + 1) if end > len(starts.outcomes) or starts.outcomes[end - 1].occurs]
     rows, ends = np.unique(entered), np.array([int(Fate.BOUNDED), *occurring])
     counts = np.array([[np.count_nonzero((entered == row) & (starts.fate == end)) for end in ends] for row in rows], np.int64)
-    return ExitMatching(read_only(rows), read_only(ends), read_only(counts.reshape(rows.size, ends.size)), starts.outcomes)
+    counts = read_only(counts.reshape(rows.size, ends.size))
+    return ExitMatching(read_only(rows), read_only(ends), counts, starts.outcomes, made_by=starts.made_by)

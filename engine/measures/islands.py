@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.result import Result
+from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count
 from engine.measures.starts import Measurable, Starts, read_starts
 from engine.propagation.fates import Fate
@@ -20,7 +20,7 @@ _VARIANCE_PER_LENGTH = 0.0724
 
 
 @dataclass(frozen=True)
-class Islands(Result):
+class Islands(RecordedResult):
     """Bounded starts of a map; areas in units of the axes.
 
     Attributes
@@ -96,6 +96,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
         *_find_area(bounded, found.pixel_area),
         int(np.count_nonzero(pixels >= LEAST_ISLAND)),
         *_find_area(largest, found.pixel_area),
+        made_by=found.made_by,
     )
 
 

@@ -18,8 +18,11 @@ from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import read_map, read_spec
 from engine.measures.basin_entropy import BasinEntropy
+from engine.measures.chaotic_share import ChaoticShare
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics
+from engine.measures.exit_matching import ExitMatching
+from engine.measures.islands import Islands
 from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import WadaTest
 from engine.periodic.stable_manifolds import StableManifolds
@@ -45,7 +48,7 @@ _KINDS: dict[str, Any] = {
     for kind in (
         EscapeMap, StableManifolds, Orbit, SampledOrbits, Outcomes, OrbitVerdict,
         LyapunovOrbit, EscapeFlux, Separation, BirkhoffDigits, DivergentStart, BasinEntropy, WadaTest, UncertaintyExponent,
-        EscapeStatistics, DecayLaws, Sweep, Potential, PotentialReview,
+        EscapeStatistics, DecayLaws, Islands, ChaoticShare, ExitMatching, Sweep, Potential, PotentialReview,
     )
 }  # fmt: skip
 # Readers of results that are no dataclasses of what their files hold.

@@ -34,7 +34,7 @@ def test_pairs_are_counted_and_shares_are_of_an_entrance() -> None:
     table = matching.to_pandas().set_index(["entrance", "exit"])
     assert table.loc[(2, 0), "count"] == 1
     assert (table.loc[(1, 2), "share_low"], table.loc[(1, 2), "share_high"]) == wilson_interval(2, 3)
-    assert matching.to_xarray().sizes == {"pair": 6}
+    assert matching.to_xarray().sizes["pair"] == 6
 
 
 def test_without_orbits_there_are_no_pairs() -> None:

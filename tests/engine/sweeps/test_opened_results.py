@@ -24,6 +24,7 @@ from engine import (
     ParameterAxis,
     Plane,
     Potential,
+    Regularity,
     Result,
     Slice,
     Sweep,
@@ -31,7 +32,10 @@ from engine import (
     System,
     classify_orbits,
     compute_basin_entropy,
+    compute_chaotic_share,
+    compute_exit_matching,
     compute_flux,
+    compute_islands,
     compute_lagrangian_descriptor,
     compute_map,
     compute_origin_fates,
@@ -93,6 +97,11 @@ RESULTS: dict[str, Callable[[], Result | None]] = {
     "statistics without escapes": lambda: compute_statistics(compute_map(replace(SPEC, energy=0.1))),
     "decay laws": lambda: fit_decay_laws(compute_map(replace(SPEC, resolution=(40, 40)))),
     "no decay laws": lambda: fit_decay_laws(compute_map(SPEC)),
+    "islands": lambda: compute_islands(compute_map(SPEC)),
+    "chaotic share": lambda: compute_chaotic_share([Regularity.CHAOTIC, Regularity.REGULAR]),
+    "exit matching": lambda: compute_exit_matching(
+        [1, 2] * 10, classify_orbits(III, 0.36, sample_starts(III, 0.36, 20), t_max=50.0)
+    ),
     "flux": lambda: compute_flux(III, 0.36),
     "no flux": lambda: compute_flux(III, 0.1),
     "potential": lambda: TYPED,
@@ -106,6 +115,7 @@ RESULTS: dict[str, Callable[[], Result | None]] = {
     "verdict on a bounded orbit": lambda: judge_orbit(integrate_orbit(III, (0.05, 0.0, 0.0, 0.1), t_max=50.0)),
 }
 
+OF_ARRAYS = {"Wada test of an array", "chaotic share"}
 PARAMETER = ParameterAxis("epsilon", 0.5, 2.0, System("I"))
 SHARES = ("shares", "islands")
 SWEEPS = {
@@ -196,7 +206,7 @@ def test_every_kind_of_result_is_tested() -> None:
     assert {kind.__name__ for kind in results - kinds} == set()
 
 
-@pytest.mark.parametrize("name", [name for name in RESULTS if name != "Wada test of an array"])
+@pytest.mark.parametrize("name", [name for name in RESULTS if name not in OF_ARRAYS])
 def test_a_file_says_with_which_version_and_of_which_potential_it_was_made(name: str) -> None:
     attributes = computed(name).to_xarray().attrs
     wanted = ["version", "potential", "terms", "rotation", "centres", "escape_radius", "origin"]

@@ -14,7 +14,7 @@ from plots.pictures.palette import PALETTES
 from tests.results import POTENTIAL, RESULTS, SPEC, result_of
 
 LARGEST = 100_000
-PICTURELESS = {"entropy", "verdict"}
+PICTURELESS = ("entropy", "verdict")
 DRAWN = [name for name in RESULTS if name not in PICTURELESS and not name.startswith(("review of", "divergent", "outcomes"))]
 
 
