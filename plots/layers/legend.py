@@ -33,21 +33,18 @@ class ColourScale:
 
 @dataclass(frozen=True)
 class ColourTable:
-    """Colours by two properties.
+    """Colours of orbits by their end, which has a hue, and their origin, which has a tone.
 
     Attributes
     ----------
-    caption
-        What the rows and the columns are.
     names
-        Of the rows, and of the columns.
-    colours
-        For each row the colours of its columns.
+        Of the ends, and of the origins.
+    tones
+        For each end the colours by origin.
     """
 
-    caption: str
     names: Sequence[str]
-    colours: Sequence[Sequence[str]]
+    tones: Sequence[Sequence[str]]
 
 
 @dataclass(frozen=True)
@@ -65,7 +62,7 @@ class Legend:
     scale
         Of numbers that are drawn over the classes.
     table
-        The entries as a table, which takes their place where there is little room.
+        The entries by hue and tone, which take their place where there is little room.
     sentence
         What else there is to say.
     over

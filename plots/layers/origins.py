@@ -78,11 +78,11 @@ def _entries(palette: Palette, outcomes: Sequence[Outcome]) -> list[Entry]:
 
 
 def _table(palette: Palette, outcomes: Sequence[Outcome]) -> ColourTable:
-    """The legend as a table: a row for each outcome backward in time, a column for each forward."""
+    """The legend by hue and tone: the outcomes forward in time, and for each of them those backward."""
     names = {place + 1: short_label(end.label) for place, end in zip(end_places(outcomes), outcomes, strict=True)}
     names |= {0: "bounded"}
-    colours = [[passage_colour(palette, origin, fate) for fate in names] for origin in names]
-    return ColourTable("Enters by (rows), leaves by (columns)", tuple(names.values()), colours)
+    tones = [[passage_colour(palette, origin, fate) for origin in names] for fate in names]
+    return ColourTable(tuple(names.values()), tones)
 
 
 ORIGINS = Layer(

@@ -44,7 +44,7 @@ ROUNDS = 20
 
 POLL_MS = 100
 PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
-LEGEND, SHARES, VERDICT = ".legend, .legend [title], .passages", "table[aria-label=statistics]", ".verdict"
+LEGEND, SHARES, VERDICT = ".legend, .legend [title]", "table[aria-label=statistics]", ".verdict"
 
 # What the page shows, and what has to be equal; the first difference, or null. The parts of shadow roots count.
 _DIFFERENCE = """expected => {
@@ -161,7 +161,7 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
     texts: dict[str, list[str]] = {}
     if shown.frame is not None:
         channels = [f"channel {k + 1}" for k in range(state.potential.channels)]
-        layers = {"bounded and chaotic": "judge" in state.layers, "Enters by": "origins" in state.layers}
+        layers = {"bounded and chaotic": "judge" in state.layers, "tones: from": "origins" in state.layers}
         times = state.lock_times or fitted_scale(shown.frame)
         texts[LEGEND] = [f"≤ {times.low:g}", *channels, *(name for name, is_on in layers.items() if is_on)]
     if shown.frame is not None and state.analysis is Analysis.STATISTICS:

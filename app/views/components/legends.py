@@ -66,10 +66,14 @@ def _number(value: float) -> str:
 
 
 def _table(table: ColourTable) -> str:
+    """In one line: each hue with its tones, which the words of a patch explain, and the order of the tones."""
     names = [escape(name) for name in table.names]
-    head = "".join(f"<th scope=col>{name}</th>" for name in names)
-    rows = "".join(
-        f"<tr><th scope=row>{name}</th>{''.join(f'<td>{patch(colour)}</td>' for colour in colours)}</tr>"
-        for name, colours in zip(names, table.colours, strict=True)
+    hues = "".join(
+        f"<span class='tones'>{name} {''.join(_tone(tone, name, colour) for tone, colour in zip(names, tones, strict=True))}</span>"
+        for name, tones in zip(names, table.tones, strict=True)
     )
-    return f"<table class='passages'><caption>{escape(table.caption)}</caption><tr><td></td>{head}</tr>{rows}</table>"
+    return f"{hues}<span>tones: from {', '.join(names)}</span>"
+
+
+def _tone(origin: str, end: str, colour: str) -> str:
+    return f"<span title='from {origin} to {end}'>{patch(colour)}</span>"

@@ -110,8 +110,7 @@ def _stage(frame: EscapeMap) -> str:
 def _result(frame: EscapeMap) -> str:
     """Shares and accuracy of a complete map."""
     shares = frame.fractions()
-    # A share is not broken over two lines.
-    part = {fate: percent(share).replace(" ", "\N{NO-BREAK SPACE}") for fate, share in shares.items()}
+    part = {fate: percent(share) for fate, share in shares.items()}
     ends = [(fate, end) for fate, end in enumerate(frame.spec.outcomes, 1) if end.occurs]
     # Exits of several channels have longer names.
     exits = [(fate, end.label) for fate, end in ends if end.kind is Exit]

@@ -8,6 +8,7 @@ from typing import Any
 from app.views.components.legends import picture_legend
 from engine import CASES, Fate, MapSpec, Plane, Potential, parse_formula
 from engine.systems.outcomes import Centre
+from plots.layers.origins import passage_colour
 from plots.layers.picture import ShownMap
 from plots.layers.table import map_legend
 from plots.layers.trust import TONES
@@ -57,7 +58,16 @@ def test_the_scale_has_both_ends_and_says_whether_it_is_locked() -> None:
 
 def test_layers_have_legends_of_their_own() -> None:
     assert "bounded and chaotic" in legend("characters")
-    assert "Enters by" in legend("origins")
+
+
+def test_each_exit_has_a_tone_for_each_origin() -> None:
+    ends = ("1", "2", "3", "bounded")
+    tones = re.findall("title='from (.*?) to (.*?)'><span class='patch' style='--colour:(.*?)'", legend("origins"))
+    numbers = {end: number for number, end in enumerate(ends, 1)} | {"bounded": 0}
+    assert tones == [
+        (origin, end, passage_colour(PAPER, numbers[origin], numbers[end])) for end in ends for origin in ends
+    ]
+    assert "tones: from 1, 2, 3, bounded" in legend("origins")
 
 
 def test_the_name_of_a_centre_is_text() -> None:
