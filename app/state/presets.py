@@ -138,7 +138,7 @@ PRESETS: tuple[Preset, ...] = (
         "on x = 0 stays for ever; within 0.02 of it orbits escape through all four exits.",
     ),
     Preset(
-        key="closer", title="300 000 000 000 times enlarged", group=_PLACES, picture="basins",
+        key="closer", title="Enlarged 3·10¹¹ times", group=_PLACES, picture="basins",
         invitation="Fractal down to 8·10⁻¹²",
         view=View(System("III"), Plane.X_Y, 0.60, window=Window(0.114912643464, 0.114912643472, 0.300643524596, 0.300643524604),
                   t_max=1e3, starts=(

@@ -234,7 +234,8 @@ export class Card {
     context.fillStyle = paper
     context.fillRect(0, box.height - height, width, height)
     context.fillStyle = ink
-    context.fillText(text, PADDING, box.height - PADDING)
+    // Beside a small picture the letters are narrower.
+    context.fillText(text, PADDING, box.height - PADDING, box.width - 2 * PADDING)
     this.#canvas.setAttribute("aria-label", text)
   }
 }

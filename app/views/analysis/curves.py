@@ -27,8 +27,8 @@ START, STOP = "Compute the curves", "Stop"
 SWEPT_VALUES, REFINED_VALUES = 25, 8
 """Energies, or values of a parameter, of the curves, and further ones where the shares change most."""
 
-_TITLES = ", ".join(title[0].lower() + title[1:] for title in (panel.title for panel in CURVE_PANELS))
-HINT = f"Shares, {_TITLES} at {SWEPT_VALUES + REFINED_VALUES} values, closer together where the shares change: a minute or more."
+_VALUES = SWEPT_VALUES + REFINED_VALUES
+HINT = f"The shares and each measure at {_VALUES} values, closer together where the shares change: a minute or more."
 _COLOURS = MEASURED, LAW_COLOURS["exponential"]
 _NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": [], "fate": []}
 _DASH = "8 8"

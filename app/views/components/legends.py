@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from html import escape
 
 from app.views.components.numbers import grouped
@@ -68,12 +68,12 @@ def _number(value: float) -> str:
 def _table(table: ColourTable) -> str:
     """In one line: each hue with its tones, which the words of a patch explain, and the order of the tones."""
     names = [escape(name) for name in table.names]
-    hues = "".join(
-        f"<span class='tones'>{name} {''.join(_tone(tone, name, colour) for tone, colour in zip(names, tones, strict=True))}</span>"
-        for name, tones in zip(names, table.tones, strict=True)
-    )
+    hues = "".join(_hue(end, names, tones) for end, tones in zip(names, table.tones, strict=True))
     return f"{hues}<span>tones: from {', '.join(names)}</span>"
 
 
-def _tone(origin: str, end: str, colour: str) -> str:
-    return f"<span title='from {origin} to {end}'>{patch(colour)}</span>"
+def _hue(end: str, origins: Sequence[str], tones: Sequence[str]) -> str:
+    patches = (
+        f"<span title='from {origin} to {end}'>{patch(colour)}</span>" for origin, colour in zip(origins, tones, strict=True)
+    )
+    return f"<span class='tones'>{end} {''.join(patches)}</span>"

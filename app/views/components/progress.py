@@ -67,6 +67,8 @@ class ProgressView:
         text = with_terms(_result(frame)) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
         offered = [layer.title for layer in LAYERS.values() if layer.is_offered(frame)]
         self._set(running=not frame.complete, label=next(iter(offered), STOP), text=text)
+        # The text beside an offer is long.
+        self.button.css_classes = ["solid", "offer" if offered else "stop"]
         self.button.styles = keep_place(shown=bool(offered) or not frame.complete)
         self.bar.value = int(100 * frame.progress)
 

@@ -11,6 +11,7 @@ import param
 from panel.custom import JSComponent
 
 from app.state.presets import GROUPS, PRESETS, Preset
+from app.views.components.texts import keep_numbers_whole
 from plots.layers.table import TITLES
 
 INVITATION = "Each pixel of the basins is a start, and its colour the exit through which its orbit escapes. Views to begin with:"
@@ -70,7 +71,11 @@ class Gallery:
     def invitation(self) -> pn.viewable.Viewable:
         """What a visitor sees before there is an orbit: some of the cards, in one group."""
         if self._invitation is None:
-            cards = [{**_card(preset), "group": INVITATION, "line": preset.invitation} for preset in PRESETS if preset.invitation]
+            cards = [
+                {**_card(preset), "group": INVITATION, "line": keep_numbers_whole(preset.invitation)}
+                for preset in PRESETS
+                if preset.invitation
+            ]
             self._invitation = self._make(cards, groups=[INVITATION], hint="", visible=self._invites)
         return self._invitation
 
