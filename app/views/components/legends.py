@@ -76,4 +76,4 @@ def _hue(end: str, origins: Sequence[str], tones: Sequence[str]) -> str:
     patches = (
         f"<span title='from {origin} to {end}'>{patch(colour)}</span>" for origin, colour in zip(origins, tones, strict=True)
     )
-    return f"<span class='tones'>{end} {''.join(patches)}</span>"
+    return f"<span class='tones'>{end}&nbsp;{''.join(patches)}</span>"

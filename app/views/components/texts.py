@@ -9,7 +9,7 @@ import panel as pn
 from bokeh.document import Document
 
 # A number stays with its equals sign, its groups of digits and its per cent sign.
-_IN_NUMBER = re.compile(r"(?<=\w) (?=[=≤] [−-]?\d)|(?<=[=≤]) (?=[−-]?\d)|(?<=\d) (?=%|\d{3}\b)")
+_IN_NUMBER = re.compile(r"(?<=\w) (?== [−-]?\d)|(?<=[=≤]) (?=[−-]?\d)|(?<=\d) (?=%|\d{3}\b)")
 
 
 def keep_numbers_whole(html: str) -> str:

@@ -33,7 +33,7 @@ def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: 
     ("text", "whole"),
     [
         ("Escaped at t = 3.6", "Escaped at t~=~3.6"),
-        ("error ≤ 1.9e−12, 97.5 % of 1 034 275 starts", "error~≤~1.9e−12, 97.5~% of 1~034~275 starts"),
+        ("error ≤ 1.9e−12, 97.5 % of 1 034 275 starts", "error ≤~1.9e−12, 97.5~% of 1~034~275 starts"),
         ("x = y, exit 1 at 20 times", "x = y, exit 1 at 20 times"),
         ("<path d='M1 200'>1 200</path>", "<path d='M1 200'>1~200</path>"),
     ],
