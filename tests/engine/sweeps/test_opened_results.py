@@ -281,6 +281,16 @@ def test_files_of_earlier_versions_are_opened_as_datasets(tmp_path: Path) -> Non
     xr.testing.assert_identical(open_result(tmp_path / "maps.zarr").load(), maps.drop_vars("done"))
 
 
+def test_analyses_refuse_a_map_of_a_sweep_along_a_parameter_whose_fates_have_other_numbers() -> None:
+    along = ParameterAxis("epsilon", 0.5, 2.0, System("I"))
+    window = (-0.4, 0.4, -0.4, 0.4)
+    sweep = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, [0.8], (6, 5), window, 100.0, along=along, energy=0.3))
+    one = sweep.dataset.isel(epsilon=0)
+    assert compute_statistics(one).decided == 30
+    with pytest.raises(ValueError, match="sweep along epsilon"):
+        compute_trust(one)
+
+
 def test_several_maps_are_no_map(store: Path) -> None:
     with pytest.raises(ValueError, match=r"labels: a dataset of several maps; must be one of them, such as dataset.sel"):
         compute_basin_entropy(open_result(store).dataset)
