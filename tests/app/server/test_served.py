@@ -108,7 +108,7 @@ def test_modules_of_the_engine_in_the_browser_can_be_kept(served: Served) -> Non
 
 def test_kernels_can_be_kept_and_are_compressed_for_those_who_ask(served: Served) -> None:
     for headers in ({}, {"Accept-Encoding": "gzip"}):
-        request = urllib.request.Request(f"http://127.0.0.1:{served.port}/{KERNELS_ADDRESS}", headers=headers)
+        request = urllib.request.Request(f"{served.running.root}/{KERNELS_ADDRESS}", headers=headers)
         with urllib.request.urlopen(request, timeout=60) as answer:
             content = answer.read()
             assert answer.headers["Content-Type"] == "application/wasm"
