@@ -9,6 +9,8 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+import dask
+import dask.array
 import numpy as np
 import pytest
 import xarray as xr
@@ -324,3 +326,22 @@ def test_a_file_of_another_result_is_named(tmp_path: Path) -> None:
         open_result(tmp_path / "other.nc")
     with pytest.raises(OSError, match=r"missing\.nc"):
         open_result(tmp_path / "missing.nc")
+
+
+class Failing(Result):
+    """A result whose numbers cannot be computed while the file is written."""
+
+    def to_xarray(self) -> xr.Dataset:
+        def fail() -> None:
+            raise ArithmeticError
+
+        return xr.Dataset({"number": ("x", dask.array.from_delayed(dask.delayed(fail)(), (3,), float))})
+
+
+def test_a_result_that_cannot_be_written_leaves_the_earlier_file(tmp_path: Path) -> None:
+    computed("potential").save(tmp_path / "result.nc")
+    earlier = (tmp_path / "result.nc").read_bytes()
+    with pytest.raises(ArithmeticError):
+        Failing().save(tmp_path / "result.nc")
+    assert [path.name for path in tmp_path.iterdir()] == ["result.nc"]
+    assert (tmp_path / "result.nc").read_bytes() == earlier
