@@ -42,10 +42,11 @@ class LayerOptions:
         return replace(self, values={**self.values, **needed})
 
     def check(self, spec: MapSpec) -> None:
-        """Raise ValueError if a layer is not defined for the map."""
+        """Raise ValueError if a layer is not defined for the map, or a setting is out of range."""
         for layer in self.layers:
             if sentence := layer.refusal(spec):
                 raise ValueError(f"{layer.name}: {sentence}")
+            layer.job(spec, self.values)
 
 
 def read_layers(**values: Any) -> LayerOptions:

@@ -5,6 +5,7 @@ The pictures are drawn by another package, which is imported at the first of the
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
@@ -22,8 +23,6 @@ from engine.foundations.stored_fields import write_field
 from engine.foundations.summary import show_numbers, summarize
 
 if TYPE_CHECKING:
-    import os
-
     import pandas as pd
     import xarray as xr
     from matplotlib.axes import Axes
@@ -209,9 +208,16 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         OSError
             If the file cannot be written.
         """
-        if Path(path).suffix != ".nc":
+        wanted = Path(path)
+        if wanted.suffix != ".nc":
             raise ValueError(f"path={path}: must end in .nc")
-        self.to_xarray().to_netcdf(path)
+        # An interrupted call leaves the file that it would replace as it is.
+        part = wanted.with_name(f".{wanted.name}.{os.getpid()}.part")
+        try:
+            self.to_xarray().to_netcdf(part)
+            part.replace(wanted)
+        finally:
+            part.unlink(missing_ok=True)
 
     def _meaning(self, name: str, values: Any) -> dict[str, str]:
         """Attributes of a variable: what its codes are, or that its numbers are dimensionless."""

@@ -22,6 +22,7 @@ from engine.maps.stages import OnChange, Stage
 from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.fates import Fate
 from engine.propagation.speed_integrals import integrate_speed
+from engine.systems.potential import Potential
 
 DEFAULT_DURATION = 10.0
 """τ in units of the well by default, about one and a half periods of the motion in it."""
@@ -142,13 +143,7 @@ def compute_lagrangian_descriptor(
     """
     escape_map = as_map("escape_map", escape_map)
     escape_map.check_complete("escape_map")
-    time_unit = escape_map.spec.potential.units.time
-    given = DEFAULT_DURATION * time_unit if duration is None else duration
-    choices: dict[str, Any] = {
-        "duration": escape_map.spec.potential.checked_t_max(given, name="duration"),
-        "power": _checked_power(power),
-        "direction": _checked_direction(direction),
-    }
+    choices = checked_choices(escape_map.spec.potential, duration, power, direction)
 
     def begin(pixels: EscapeMap, _place: Place) -> _DescriptorRun:
         return _DescriptorRun(pixels, **choices)
@@ -156,9 +151,19 @@ def compute_lagrangian_descriptor(
     return analyse_map(escape_map, begin, DescriptorMap, on_frame, execution, **choices)
 
 
+def checked_choices(potential: Potential, duration: float | None, power: float, direction: TimeDirection | str) -> dict[str, Any]:
+    """Return the parameters of `compute_lagrangian_descriptor` by name, with their defaults; ValueError for one out of range."""
+    given = DEFAULT_DURATION * potential.units.time if duration is None else duration
+    return {
+        "duration": potential.checked_t_max(given, name="duration"),
+        "power": _checked_power(power),
+        "direction": _checked_direction(direction),
+    }
+
+
 def _checked_power(power: float) -> float:
-    checked = checked_number("power", power, "above 0 and at most 1", 1.0)
-    if checked <= 0.0:
+    checked = checked_number("power", power, "above 0 and at most 1")
+    if not 0.0 < checked <= 1.0:
         raise ValueError(f"power={power}: must be above 0 and at most 1")
     return checked
 

@@ -62,6 +62,11 @@ def read_map(dataset: xr.Dataset) -> EscapeMap:
 def read_spec(dataset: xr.Dataset) -> MapSpec:
     """The request of a map, from the attributes of its dataset; the energy of one map of a sweep is its coordinate h."""
     found = dataset.attrs
+    if found.get("along"):
+        raise ValueError(
+            f"dataset: is of a sweep along {found['axis']}, whose fates have the numbers of the sweep; must be a map of "
+            "compute_map, or one of a sweep over energies"
+        )
     try:
         chosen = json.loads(found["system"])
         system = System(**chosen) if chosen else System("I")

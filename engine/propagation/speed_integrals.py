@@ -6,13 +6,13 @@ import numpy as np
 
 from engine.exits.exit_rows import exit_gates
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.integrator.source.recurrence import TOLERANCE
+from engine.integrator.source.recurrence import ROWS, TIME_ROW, TOLERANCE
 from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# A tile takes some milliseconds.
-_TILES_PER_TASK = 8
+# A tile takes some milliseconds, and a task less than 0.1 s, so that a computation is cancelled soon.
+_TILES_PER_TASK, _STEPS_PER_TILE = 8, 100
 
 
 def integrate_speed(
@@ -50,18 +50,33 @@ def integrate_speed(
     -------
     (n,) the integrals; NaN for orbits whose steps become too short.
     """
-    orbits, gates = np.column_stack([states, curve_row]), exit_gates(curves)
-    return map_tiles(
-        _integrate_tile, potential, orbits, curves, gates, duration, power, execution=execution, tiles_per_task=_TILES_PER_TASK
-    )
+    gates, rows = exit_gates(curves), np.asarray(curve_row)[:, None]
+    # Of each orbit: its rows for the kernel, and its integral so far.
+    orbits = np.column_stack([states, np.zeros((len(states), ROWS + 1 - states.shape[1]))])
+    pending = np.arange(len(orbits))
+    while pending.size:
+        tiles = np.column_stack([orbits[pending], rows[pending]])
+        orbits[pending] = map_tiles(
+            _integrate_tile, potential, tiles, curves, gates, duration, power,
+            shape=(ROWS + 1,), execution=execution, tiles_per_task=_TILES_PER_TASK,
+        )  # fmt: skip
+        if execution.is_cancelled:
+            orbits[pending[~np.isposinf(orbits[pending, TIME_ROW])], -1] = np.nan
+            break
+        pending = pending[np.isfinite(orbits[pending, TIME_ROW])]
+    return orbits[:, -1]
 
 
 def _integrate_tile(
     potential: Potential, tile: np.ndarray, curves: np.ndarray, gates: np.ndarray, duration: float, power: float
 ) -> np.ndarray:
-    """(lanes,) integrals of a tile (5, lanes) of states and rows of curves; runs in a worker."""
-    integral = np.zeros(tile.shape[1])
-    curve_row = tile[4].astype(np.int64)
+    """(lanes, ROWS + 1) orbits and their integrals after some steps; runs in a worker.
+
+    tile (ROWS + 2, lanes): orbits as of `ROWS`, their integrals so far, and their rows of curves.
+    """
+    orbits, integral, curve_row = tile[:ROWS].copy(), tile[ROWS].copy(), tile[ROWS + 1].astype(np.int64)
     with np.errstate(invalid="ignore"):
-        kernels_of(potential).integrate_speed(TOLERANCE, duration, power, gates, curves, curve_row, tile[:4].copy(), integral)
-    return integral
+        kernels_of(potential).integrate_speed(
+            TOLERANCE, duration, power, _STEPS_PER_TILE, gates, curves, curve_row, orbits, integral
+        )
+    return np.column_stack([orbits.T, integral])

@@ -8,7 +8,7 @@ import numpy as np
 
 from engine import DescriptorMap, EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
 from engine.jobs.job import Job
-from engine.maps.descriptors import DEFAULT_DURATION
+from engine.maps.descriptors import DEFAULT_DURATION, checked_choices
 from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Layer, Pixels, Setting, Settings
 from plots.layers.legend import ColourScale, Legend
@@ -61,12 +61,9 @@ def _colours(palette: Palette) -> list[str]:
 
 
 def _job(spec: MapSpec, settings: Settings) -> Job[DescriptorMap]:
-    options = (
-        ("duration", DURATION.value_in(settings) * spec.potential.units.time),
-        ("power", POWER.value_in(settings)),
-        ("direction", DIRECTION.value_in(settings)),
-    )
-    return Job(compute_lagrangian_descriptor, (map_job(spec),), options)
+    duration = DURATION.value_in(settings) * spec.potential.units.time
+    choices = checked_choices(spec.potential, duration, POWER.value_in(settings), DIRECTION.value_in(settings))
+    return Job(compute_lagrangian_descriptor, (map_job(spec),), tuple(choices.items()))
 
 
 def _limits(found: DescriptorMap) -> tuple[float, float]:

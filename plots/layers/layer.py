@@ -246,6 +246,7 @@ class Layer:
         Class of its result, which describes itself in a sentence, ``describe()``, and may be incomplete.
     job
         What computes the result of a map; the settings also have the number of the option under the name of the layer.
+        ValueError for a setting that is out of range.
     refusal
         Why a map cannot have the layer; empty if it can.
     count

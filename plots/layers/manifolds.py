@@ -74,7 +74,7 @@ def _job(spec: MapSpec, settings: Settings) -> Job[StableManifolds]:
 def _refusal(spec: MapSpec) -> str:
     if spec.plane != SECTION.plane or spec.backward:
         return f"Stable manifolds are curves in the {SECTION.plane.title} plane and are drawn on maps forward in time there only."
-    return ""
+    return "Stable manifolds are found in frames that do not rotate only." if spec.potential.rotation else ""
 
 
 MANIFOLDS = Layer(

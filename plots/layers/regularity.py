@@ -49,6 +49,11 @@ def _job(spec: MapSpec, settings: Settings) -> Job[RegularityMap]:
     return Job(compute_regularity, (map_job(spec),))
 
 
+def _refusal(spec: MapSpec) -> str:
+    has_gaps = bool(spec.potential.gaps)
+    return "Regular and chaotic orbits are found with fixed steps, which cannot pass close to a body." if has_gaps else ""
+
+
 def _codes(regularity: RegularityMap, frame: EscapeMap | None) -> np.ndarray:
     fate = np.full(regularity.character.shape, Fate.BOUNDED) if frame is None else frame.fate
     return pixel_codes(fate, regularity.character, bounded_too=True)
@@ -76,6 +81,7 @@ REGULARITY = Layer(
     stage="bounded orbits",
     result=RegularityMap,
     job=_job,
+    refusal=_refusal,
     pixels=Pixels(
         column="character",
         codes=_codes,

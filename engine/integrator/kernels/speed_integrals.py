@@ -11,7 +11,7 @@ from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import crossed_exit, find_exit_time, passed_exit, series_slope
 from engine.integrator.kernels.propagate import VECTOR
-from engine.integrator.source.recurrence import LANES, ROWS
+from engine.integrator.source.recurrence import LANES, ROWS, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, NEAR, OVERSHOOT
 
@@ -31,27 +31,31 @@ _MOST_HALVINGS = 40
 
 
 @kernel
-def integrate_speed(step, jets, coefficients, tolerance, duration, power, gates, curves, curve_row, state, integral):
-    """The integral of |v|^power over `duration`, or until an orbit crosses an exit.
+def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget, gates, curves, curve_row, orbits, integral):
+    """Continue the integral of |v|^power over `duration`, or until an orbit crosses an exit, by at most `budget` steps.
 
-    gates (exits, 3); curves (energies, exits, columns); curve_row (lanes,): the row of `curves` of each orbit; state (4, lanes),
-    lanes a multiple of `VECTOR` up to `LANES`; integral (lanes,): zeros, NaN for an orbit whose steps become too short.
+    gates (exits, 3); curves (energies, exits, columns); curve_row (lanes,): the row of `curves` of each orbit; orbits (ROWS,
+    lanes), lanes a multiple of `VECTOR` up to `LANES`: see `ROWS`; the time is infinite where the integral is complete;
+    integral (lanes,): so far, NaN for an orbit whose steps become too short.
     """
-    lanes = state.shape[1]
+    lanes = orbits.shape[1]
     now = np.zeros((ROWS, LANES))
-    for c in range(4):
+    for c in range(ROWS):
         for i in range(lanes):
-            now[c, i] = state[c, i]
+            now[c, i] = orbits[c, i]
     new = np.zeros((ROWS, LANES))
     flag = np.zeros(LANES, np.int64)
     crossed = np.zeros(LANES, np.int64)
     lane_orbit = np.zeros(lanes, np.int64)
     for i in range(lanes):
         lane_orbit[i] = i
+        orbits[TIME_ROW, i] = np.inf
     x_jet = np.zeros((ORDER + 1, LANES))
     y_jet = np.zeros((ORDER + 1, LANES))
     active = lanes
-    while active > 0:
+    taken = 0
+    while active > 0 and taken < budget:
+        taken += 1
         width = (active + VECTOR - 1) // VECTOR * VECTOR
         call_step(step, coefficients, width, tolerance, duration, gates, now, new, flag, crossed)
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
@@ -72,6 +76,9 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, gates,
                     y_jet[k, i] = y_jet[k, active]
                 lane_orbit[i] = lane_orbit[active]
         now, new = new, now
+    for i in range(active):
+        for c in range(ROWS):
+            orbits[c, lane_orbit[i]] = now[c, i]
 
 
 @subroutine

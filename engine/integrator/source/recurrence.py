@@ -70,8 +70,8 @@ ROWS = 8
 """Rows of the arrays of lanes ``now`` and ``new``: x, y, px, py, t, the size of the last step, and the remainders of x and
 y, which rounding has dropped; they are 0 for structures whose steps do not carry them."""
 
-SIZE_ROW = 5
-"""The row with the size of the last step."""
+TIME_ROW, SIZE_ROW = 4, 5
+"""The rows with the time, and with the size of the last step."""
 
 # Cached structures, 3 MB each with eight terms of degree 8.
 _STRUCTURES = 32

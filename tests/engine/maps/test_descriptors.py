@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from threading import Event
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,6 +28,7 @@ from engine import (
     compute_map,
 )
 from engine.exits.exit_rows import exit_curves
+from engine.foundations.execution import SerialExecutor
 from engine.maps.descriptors import DEFAULT_DURATION
 from engine.propagation.speed_integrals import integrate_speed
 from engine.slices.axes import Coordinate
@@ -126,6 +129,25 @@ def test_a_cancelled_computation_has_what_was_computed() -> None:
     assert not found.complete
     known = np.isfinite(found.descriptor)
     assert 0 < known.sum() < np.sum(frame.interior)
+
+
+def test_long_integrals_are_cancelled_before_they_are_complete() -> None:
+    cancel = Event()
+
+    class CancelsAtSecondCall(SerialExecutor):
+        calls = 0
+
+        def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            self.calls += 1
+            if self.calls > 1:
+                cancel.set()
+            return super().submit(fn, *args, **kwargs)
+
+    # To the end the integral of one bounded orbit takes minutes.
+    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.1, (1, 1), t_max=20.0))
+    found = compute_lagrangian_descriptor(frame, duration=1e8, execution=Execution(CancelsAtSecondCall(), cancel))
+    assert not found.complete
+    assert np.isnan(found.descriptor).all()
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,8 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+import dask
+import dask.array
 import numpy as np
 import pytest
 import xarray as xr
@@ -281,6 +283,16 @@ def test_files_of_earlier_versions_are_opened_as_datasets(tmp_path: Path) -> Non
     xr.testing.assert_identical(open_result(tmp_path / "maps.zarr").load(), maps.drop_vars("done"))
 
 
+def test_analyses_refuse_a_map_of_a_sweep_along_a_parameter_whose_fates_have_other_numbers() -> None:
+    along = ParameterAxis("epsilon", 0.5, 2.0, System("I"))
+    window = (-0.4, 0.4, -0.4, 0.4)
+    sweep = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, [0.8], (6, 5), window, 100.0, along=along, energy=0.3))
+    one = sweep.dataset.isel(epsilon=0)
+    assert compute_statistics(one).decided == 30
+    with pytest.raises(ValueError, match="sweep along epsilon"):
+        compute_trust(one)
+
+
 def test_several_maps_are_no_map(store: Path) -> None:
     with pytest.raises(ValueError, match=r"labels: a dataset of several maps; must be one of them, such as dataset.sel"):
         compute_basin_entropy(open_result(store).dataset)
@@ -314,3 +326,22 @@ def test_a_file_of_another_result_is_named(tmp_path: Path) -> None:
         open_result(tmp_path / "other.nc")
     with pytest.raises(OSError, match=r"missing\.nc"):
         open_result(tmp_path / "missing.nc")
+
+
+class Failing(Result):
+    """A result whose numbers cannot be computed while the file is written."""
+
+    def to_xarray(self) -> xr.Dataset:
+        def fail() -> None:
+            raise ArithmeticError
+
+        return xr.Dataset({"number": ("x", dask.array.from_delayed(dask.delayed(fail)(), (3,), float))})
+
+
+def test_a_result_that_cannot_be_written_leaves_the_earlier_file(tmp_path: Path) -> None:
+    computed("potential").save(tmp_path / "result.nc")
+    earlier = (tmp_path / "result.nc").read_bytes()
+    with pytest.raises(ArithmeticError):
+        Failing().save(tmp_path / "result.nc")
+    assert [path.name for path in tmp_path.iterdir()] == ["result.nc"]
+    assert (tmp_path / "result.nc").read_bytes() == earlier
