@@ -48,7 +48,7 @@ class DescriptorMap(PixelAnalysis):
     spec
         The map's request.
     descriptor
-        (rows, columns) M = ∫ |v|^p dt, in units length^p time^(1 − p) of the potential; NaN for starts that are forbidden,
+        (rows, columns) M = ``∫ |v|^p dt``, in units length^p time^(1 − p) of the potential; NaN for starts that are forbidden,
         outside or not computed yet, and for orbits whose steps become too short. Read-only.
     duration
         τ, dimensionless.
@@ -91,9 +91,9 @@ def compute_lagrangian_descriptor(
     on_frame: Callable[[DescriptorMap], None] | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> DescriptorMap:
-    """Integrate M = ∫ |v|^p dt along the orbit of each start of a complete map, over the time τ.
+    """Integrate M = ``∫ |v|^p dt`` along the orbit of each start of a complete map, over the time τ.
 
-    |v| is the speed √(ẋ² + ẏ²) in the frame of the potential, which may rotate. M changes rapidly across the stable manifolds of
+    ``|v|`` is the speed √(ẋ² + ẏ²) in the frame of the potential, which may rotate. M changes rapidly across the stable manifolds of
     unstable periodic orbits if it is integrated forward in time, and across the unstable ones backward.
 
     An integral ends where its orbit crosses an exit, collides or passes the escape radius. Beyond an exit the motion has no
