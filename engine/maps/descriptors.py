@@ -93,8 +93,8 @@ def compute_lagrangian_descriptor(
 ) -> DescriptorMap:
     """Integrate M = ``∫ |v|^p dt`` along the orbit of each start of a complete map, over the time τ.
 
-    ``|v|`` is the speed √(ẋ² + ẏ²) in the frame of the potential, which may rotate. M changes rapidly across the stable manifolds of
-    unstable periodic orbits if it is integrated forward in time, and across the unstable ones backward.
+    ``|v|`` is the speed √(ẋ² + ẏ²) in the frame of the potential, which may rotate. M changes rapidly across the stable manifolds
+    of unstable periodic orbits if it is integrated forward in time, and across the unstable ones backward.
 
     An integral ends where its orbit crosses an exit, collides or passes the escape radius. Beyond an exit the motion has no
     bound: in most wells orbits run to infinity within a finite time, where the integral diverges, and what they do there says
@@ -130,7 +130,7 @@ def compute_lagrangian_descriptor(
     -----
     Mancho, Wiggins, Curbelo & Mendoza 2013, Commun. Nonlinear Sci. Numer. Simul. 18, 3530, integrate any bounded positive
     property of orbits, among them powers of the modulus of the velocity. Lopesino, Balibrea-Iniesta, García-Garrido, Wiggins &
-    Mancho 2017, Int. J. Bifurcation Chaos 27, 1730001, have the theory for another integrand, Σ |ẋ_i|^p over all coordinates,
+    Mancho 2017, Int. J. Bifurcation Chaos 27, 1730001, have the theory for another integrand, ``Σ |ẋ_i|^p`` over all coordinates,
     whose units differ between positions and momenta.
 
     Examples
