@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +45,11 @@ class History:
         """t and value of the polygon around the envelope."""
         t, low, high = self.band
         return np.concatenate([t, t[::-1]]), np.concatenate([low, high[::-1]])
+
+
+def find_decades(low: float, high: float) -> tuple[float, float]:
+    """Ends of a logarithmic axis: the power of ten below `low`, and a little above `high`."""
+    return 10.0 ** math.floor(math.log10(low)), 1.3 * high
 
 
 def reduce_history(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> History:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -11,10 +10,10 @@ import numpy as np
 from engine import Orbit
 from engine.foundations.wording import format_number
 from engine.propagation.fates import CHAOS_THRESHOLD
-from plots.pictures.histories import History, reduce_history
+from plots.pictures.histories import History, find_decades, reduce_history
 
 _LEAST_SALI, _LARGEST_SALI = 1e-17, 10.0
-_LEAST_EXPONENT, _LARGEST_EXPONENT = 1e-7, 1.3
+_LEAST_EXPONENT, _LARGEST_EXPONENT = 1e-7, 1.0
 _LEAST_R2 = 1e-3
 
 
@@ -68,7 +67,7 @@ class OrbitQuantity:
 def _exponent_limits(histories: Sequence[History]) -> tuple[float, float]:
     """From the power of ten below the last values."""
     lowest = min(float(history.line[1][-1]) for history in histories)
-    return 10.0 ** math.floor(math.log10(lowest)), _LARGEST_EXPONENT
+    return find_decades(lowest, _LARGEST_EXPONENT)
 
 
 def _r2_limits(histories: Sequence[History]) -> tuple[float, float]:

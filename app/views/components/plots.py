@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
@@ -21,6 +20,7 @@ from app.browser.javascript import callback_code
 from app.state.help_texts import title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
+from plots.pictures.histories import find_decades
 
 _OFFSET_LABEL = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
@@ -151,8 +151,8 @@ def set_range(edges: Range1d, low: float, high: float) -> None:
 
 
 def set_decades(edges: Range1d, low: float, high: float) -> None:
-    """Set a logarithmic axis to start at the power of ten below `low` and to end a little above `high`."""
-    set_range(edges, 10.0 ** math.floor(math.log10(low)), 1.3 * high)
+    """Set the ends of a logarithmic axis, also for the reset tool; see `find_decades`."""
+    set_range(edges, *find_decades(low, high))
 
 
 def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
