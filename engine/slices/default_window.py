@@ -68,8 +68,8 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
 
     Examples
     --------
-    >>> from escape_explorer import CASES, Plane, default_window
-    >>> window = default_window(CASES["III"], Plane.X_PX, 0.45)
+    >>> from escape_explorer import CASES, MapSpec, Plane
+    >>> window = MapSpec(CASES["III"], Plane.X_PX, 0.45).find_window()
     >>> round(window.x_low, 4), round(window.x_high, 4)
     (-1.0056, 1.0056)
     """

@@ -37,9 +37,8 @@ def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy
 
     Examples
     --------
-    >>> from escape_explorer import CASES, Plane, default_window, trace_zero_velocity_curve
-    >>> window = default_window(CASES["I"], Plane.X_PX, 0.19)
-    >>> len(trace_zero_velocity_curve(CASES["I"], Plane.X_PX, 0.19, window))
+    >>> from escape_explorer import CASES, MapSpec, Plane
+    >>> len(MapSpec(CASES["I"], Plane.X_PX, 0.19).trace_zero_velocity_curve())
     1
     """
     # Along an axis h the required energy is the one that is missing.

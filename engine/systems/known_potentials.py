@@ -47,8 +47,8 @@ def channel_family(n: int) -> Potential:
 
     Examples
     --------
-    >>> from escape_explorer import channel_family
-    >>> potential = channel_family(5)
+    >>> from escape_explorer import POTENTIALS
+    >>> potential = POTENTIALS["C5"]
     >>> potential.channels, round(potential.escape_energy, 6)
     (5, 0.3)
     """

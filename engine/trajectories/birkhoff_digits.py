@@ -82,8 +82,8 @@ def compute_birkhoff_digits(
 
     Examples
     --------
-    >>> from escape_explorer import CASES, compute_birkhoff_digits
-    >>> compute_birkhoff_digits(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).digits.round(1)
+    >>> from escape_explorer import CASES, integrate_orbit
+    >>> integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).compute_birkhoff_digits().digits.round(1)
     array([8.9])
     """
     start, units = checked_state("state", state), potential.units

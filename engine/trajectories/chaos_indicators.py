@@ -128,18 +128,9 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
     Returns
     -------
     One `IndicatorVerdict` each for SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
-    given, the digits. An orbit that escapes is chaotic while
-    inside where SALI or the growth of a deviation vector reached the threshold of chaos before; otherwise it gets values but no
-    conclusion, as does a start outside: no orbit that escapes is regular, and one that escapes early may not show its chaos.
-
-    Examples
-    --------
-    >>> from escape_explorer import CASES, evaluate_indicators, integrate_orbit
-    >>> for indicator in evaluate_indicators(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.3), t_max=2e3)):
-    ...     print(indicator.name, indicator.conclusion)
-    SALI no sign of chaos
-    Lyapunov exponent no sign of chaos
-    Birkhoff digits of halves regular
+    given, the digits; `OrbitVerdict.findings` has them. An orbit that escapes is chaotic while inside where SALI or the growth of
+    a deviation vector reached the threshold of chaos before; otherwise it gets values but no conclusion, as does a start
+    outside: no orbit that escapes is regular, and one that escapes early may not show its chaos.
     """
     return tuple(_evaluate(indicator, orbit, digits) for indicator in INDICATORS if indicator.applies(orbit, digits))
 
