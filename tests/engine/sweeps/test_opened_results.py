@@ -38,17 +38,12 @@ from engine import (
     compute_exit_matching,
     compute_flux,
     compute_islands,
-    compute_lagrangian_descriptor,
     compute_map,
-    compute_origin_fates,
     compute_regularity,
-    compute_separation,
     compute_statistics,
     compute_sweep,
     compute_trust,
-    compute_uncertainty_exponent,
     compute_wada_test,
-    find_divergent_start,
     find_lyapunov_orbits,
     find_stable_manifolds,
     fit_decay_laws,
@@ -61,6 +56,7 @@ from engine import (
     sample_starts,
 )
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
+from tests.results import result_of
 
 C = Coordinate
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
@@ -78,26 +74,23 @@ SPECS = {
     "parameter": MapSpec(CASES["I"], Slice(C.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), 0.2, (6, 6), t_max=50.0),
 }
 
+# Those of other tests, with their names, and others.
+SHARED = (
+    "trust", "origins", "descriptors", "separation", "divergent start", "entropy", "exponent", "Wada test",
+    "Lyapunov orbit", "manifolds", "verdict", "review", "decay laws",
+)  # fmt: skip
 RESULTS: dict[str, Callable[[], Result | None]] = {
+    **{name: functools.partial(result_of, name) for name in SHARED},
+    "outcomes": lambda: classify_orbits(III, 0.36, sample_starts(III, 0.36, 20), t_max=50.0),
     "regularity": lambda: compute_regularity(compute_map(replace(SPEC, t_max=1200.0))),
-    "trust": lambda: compute_trust(compute_map(SPEC)),
-    "origins": lambda: compute_origin_fates(SPEC),
-    "descriptors": lambda: compute_lagrangian_descriptor(compute_map(SPEC), duration=2.0),
     "escaping orbit": lambda: integrate_orbit(TYPED, STATE, t_max=50.0),
     "bounded orbit": lambda: integrate_orbit(III, (0.05, 0.0, 0.0, 0.1), t_max=50.0),
     "sampled orbits": lambda: sample_orbits(III, sample_starts(III, 0.36, 5), [0.0, 2.0, 9.0]),
     "sampled orbits at own times": lambda: sample_orbits(III, sample_starts(III, 0.36, 2), [[0.0, 2.0], [1.0, 9.0]]),
-    "outcomes": lambda: classify_orbits(III, 0.36, sample_starts(III, 0.36, 20), t_max=50.0),
-    "separation": lambda: compute_separation(III, STATE, (0.1, 0.0, 0.05, 0.60001), 10.0),
     "digits": lambda: compute_birkhoff_digits(CASES["I"], (0.1, 0.0, 0.05, 0.3), 2e3),
-    "divergent start": lambda: find_divergent_start(III, Plane.X_PX, 0.45, 0.1, 0.0, 50.0),
-    "entropy": lambda: compute_basin_entropy(compute_map(SPEC)),
-    "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
-    "Wada test": lambda: compute_wada_test(compute_map(SPEC)),
     "Wada test of an array": lambda: compute_wada_test(np.zeros((3, 3), int)),
     "statistics": lambda: compute_statistics(compute_map(SPEC), (-0.3, 0.3, -0.3, 0.3)),
     "statistics without escapes": lambda: compute_statistics(compute_map(replace(SPEC, energy=0.1))),
-    "decay laws": lambda: fit_decay_laws(compute_map(replace(SPEC, resolution=(40, 40)))),
     "no decay laws": lambda: fit_decay_laws(compute_map(SPEC)),
     "islands": lambda: compute_islands(compute_map(SPEC)),
     "chaotic share": lambda: compute_chaotic_share([Regularity.CHAOTIC, Regularity.REGULAR]),
@@ -107,13 +100,9 @@ RESULTS: dict[str, Callable[[], Result | None]] = {
     "flux": lambda: compute_flux(III, 0.36),
     "no flux": lambda: compute_flux(III, 0.1),
     "potential": lambda: TYPED,
-    "review": lambda: review_potential(III),
     "review with a refusal": lambda: review_potential(parse_formula("x⁴ + y⁴")),
-    "Lyapunov orbit": lambda: find_lyapunov_orbits(III, 0.36)[1],
     "Lyapunov orbit of a rotating system": lambda: find_lyapunov_orbits(POTENTIALS["Hill"], -2.1)[0],
-    "manifolds": lambda: find_stable_manifolds(CASES["I"], 0.19, images=1),
     "no manifolds": lambda: find_stable_manifolds(CASES["I"], 0.1, images=1),
-    "verdict": lambda: judge_orbit(integrate_orbit(III, STATE, t_max=50.0)),
     "verdict on a bounded orbit": lambda: judge_orbit(integrate_orbit(III, (0.05, 0.0, 0.0, 0.1), t_max=50.0)),
 }
 
