@@ -155,5 +155,5 @@ def _difference(one: EscapeMap, other: EscapeMap) -> str:
     if not counted.any():
         return "no start in the window has an orbit in both."
     differ = counted & (one.fate != other.fate)
-    of_all = " of ".join(format_whole(np.count_nonzero(pixels)) for pixels in (differ, counted))
+    of_all = " of ".join(format_whole(int(np.count_nonzero(pixels))) for pixels in (differ, counted))
     return f"{of_all} starts have different outcomes ({percent(float(np.mean(differ[counted])))})."
