@@ -43,8 +43,6 @@ class OrbitPresenter:
         Marks on the maps, and the picture of the paths.
     on_start
         Called with x and ordinate of a start that is typed.
-    on_verdicts
-        Called with the orbits when their results change.
     """
 
     def __init__(
@@ -53,10 +51,9 @@ class OrbitPresenter:
         marks: Markers,
         well: WellView,
         on_start: Callable[[float, float], None],
-        on_verdicts: Callable[[Sequence[ChosenOrbit]], None],
     ) -> None:
         state, jobs, locked, latest = context.state, context.jobs, context.locked, context.latest
-        self._state, self._marks, self._well, self._on_verdicts = state, marks, well, on_verdicts
+        self._state, self._results, self._marks, self._well = state, context.results, marks, well
         self._open_view = context.open_view
         self._shown: tuple[ChosenOrbit, ...] = ()
         # The interval of time in view, and the curves restricted to it; None is the whole duration.
@@ -66,11 +63,11 @@ class OrbitPresenter:
         actions = OrbitActions(
             add=locked(on_start),
             choose=locked(self._choose),
-            remove=locked(lambda: state.remove_start(state.chosen)),
-            clear=locked(lambda: state.param.update(starts=(), chosen=0)),
-            find_divergent_start=locked(lambda: self._divergent_start.search()),
-            open_plane=locked(self._open_plane),
-            show_all_times=locked(lambda: self._brush(None)),
+            remove=lambda: state.remove_start(state.chosen),
+            clear=lambda: state.param.update(starts=(), chosen=0),
+            find_divergent_start=lambda: self._divergent_start.search(),
+            open_plane=self._open_plane,
+            show_all_times=lambda: self._brush(None),
             copy=context.copy,
         )
         self.controls: OrbitControls = OrbitControls(actions)
@@ -91,10 +88,6 @@ class OrbitPresenter:
         """Request the orbits of the state."""
         self._end_message()
         self._orbits.follow()
-
-    def find_divergent_start(self) -> None:
-        """Search for the nearest start that escapes elsewhere than the chosen orbit."""
-        self._divergent_start.search()
 
     def set_palette(self, palette: Palette) -> None:
         """Change the colours."""
@@ -179,7 +172,7 @@ class OrbitPresenter:
         with pn.io.hold():
             self.controls.show(orbits, self._state.chosen)
             self.controls.show_indicators(verdicts)
-            self._on_verdicts(orbits)
+            self._results.orbits = tuple(orbits)
 
     def _brush(self, interval: Interval | None) -> None:
         """Restrict the curves to an interval of time; None shows the whole duration."""

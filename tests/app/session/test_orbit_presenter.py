@@ -42,7 +42,6 @@ class Session:
             self.marks,
             self.well,
             lambda x, ordinate: None,
-            lambda orbits: None,
         )
 
     def has_paths(self) -> bool:
