@@ -29,8 +29,9 @@ def __getattr__(name: str) -> Any:
     if name == "__all__":
         # With `import *` all of these are imported.
         return [*engine.__all__, *(["Explorer"] if find_spec("panel") else [])]
-    if name in engine.FORMER_NAMES:
-        return engine.find_former_name(name, stacklevel=3)
+    former_names = import_module("engine.foundations.former_names")
+    if name in former_names.FORMER_NAMES:
+        return former_names.find_former_name(name, stacklevel=3)
     if name not in engine.__all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(engine, name)

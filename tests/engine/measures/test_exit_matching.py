@@ -14,8 +14,7 @@ from engine import (
     sample_entrances,
     sample_entrances_by_exit,
 )
-from engine.foundations.proportions import wilson_interval
-from engine.measures.starts import Starts
+from engine.measures.starts import Starts, wilson_interval
 
 UNEQUAL = Potential("unequal", ((2, 0, 0.5), (0, 2, 0.6), (1, 2, -1.0), (3, 0, 0.3)))
 ENERGY = 1.2 * UNEQUAL.escape_energy
