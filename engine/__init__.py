@@ -1,7 +1,8 @@
 """Escapes in open Hamiltonian systems with two degrees of freedom and any smooth potential with a well.
 
 These are the public names of the library. All results show themselves in notebooks and have `plot`, `to_pandas`, `to_xarray` and
-`to_holoviews`, see `Result`. Names of other modules are for the programs of this repository, and may change with any version.
+`to_holoviews`, see `Result`; the classes of results that are not named here are in `results`. Names of other modules are for the
+programs of this repository, and may change with any version.
 
 - systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `write_formula`, `review_potential`
 - starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `start_states`, `sample_starts`
@@ -21,42 +22,26 @@ import typing
 from engine.exits.lyapunov_orbits import LyapunovOrbit as LyapunovOrbit
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits as find_lyapunov_orbits
 from engine.foundations.execution import Execution as Execution
-from engine.foundations.former_names import find_former_name as _find_former_name
 from engine.foundations.result import Result as Result
 from engine.maps.compute import compute_map as compute_map
-from engine.maps.descriptors import DescriptorMap as DescriptorMap
 from engine.maps.descriptors import TimeDirection as TimeDirection
 from engine.maps.descriptors import compute_lagrangian_descriptor as compute_lagrangian_descriptor
-from engine.maps.origin_fates import OriginFateMap as OriginFateMap
 from engine.maps.origin_fates import compute_origin_fates as compute_origin_fates
-from engine.maps.regularity import RegularityMap as RegularityMap
 from engine.maps.regularity import compute_regularity as compute_regularity
 from engine.maps.result import EscapeMap as EscapeMap
 from engine.maps.spec import MapSpec as MapSpec
 from engine.maps.trust import Trust as Trust
-from engine.maps.trust import TrustMap as TrustMap
 from engine.maps.trust import compute_trust as compute_trust
 from engine.maps.uncertain_pairs import compute_uncertainty_exponent as compute_uncertainty_exponent
-from engine.measures.basin_entropy import BasinEntropy as BasinEntropy
 from engine.measures.basin_entropy import compute_basin_entropy as compute_basin_entropy
-from engine.measures.chaotic_share import ChaoticShare as ChaoticShare
 from engine.measures.chaotic_share import compute_chaotic_share as compute_chaotic_share
 from engine.measures.decay_law_fits import fit_decay_laws as fit_decay_laws
-from engine.measures.decay_laws import DecayLaws as DecayLaws
-from engine.measures.decay_laws import LawFit as LawFit
-from engine.measures.escape_statistics import EscapeStatistics as EscapeStatistics
 from engine.measures.escape_statistics import compute_statistics as compute_statistics
-from engine.measures.exit_matching import ExitMatching as ExitMatching
 from engine.measures.exit_matching import compute_exit_matching as compute_exit_matching
-from engine.measures.islands import Islands as Islands
 from engine.measures.islands import compute_islands as compute_islands
 from engine.measures.measure import Measure as Measure
-from engine.measures.power_law_fit import UncertaintyExponent as UncertaintyExponent
-from engine.measures.wada import WadaTest as WadaTest
 from engine.measures.wada import compute_wada_test as compute_wada_test
-from engine.periodic.stable_manifolds import StableManifolds as StableManifolds
 from engine.periodic.stable_manifolds import find_stable_manifolds as find_stable_manifolds
-from engine.propagation.classification import Outcomes as Outcomes
 from engine.propagation.classification import classify_orbits as classify_orbits
 from engine.propagation.evidence import Evidence as Evidence
 from engine.propagation.fates import Fate as Fate
@@ -73,7 +58,6 @@ from engine.sweeps.measures import MEASURES as MEASURES
 from engine.sweeps.opened_results import open_result as open_result
 from engine.sweeps.plan import plan_sweep as plan_sweep
 from engine.sweeps.spec import SweepSpec as SweepSpec
-from engine.sweeps.sweep import Sweep as Sweep
 from engine.sweeps.sweep import compute_sweep as compute_sweep
 from engine.systems.formulas.formula_parser import parse_formula as parse_formula
 from engine.systems.formulas.formula_tokens import FormulaError as FormulaError
@@ -83,26 +67,21 @@ from engine.systems.known_potentials import POTENTIALS as POTENTIALS
 from engine.systems.outcomes import Centre as Centre
 from engine.systems.outcomes import Outcome as Outcome
 from engine.systems.potential import Potential as Potential
-from engine.systems.review.potential_review import PotentialReview as PotentialReview
 from engine.systems.review.potential_review import review_potential as review_potential
 from engine.systems.system import System as System
-from engine.trajectories.birkhoff_digits import BirkhoffDigits as BirkhoffDigits
 from engine.trajectories.entrances import sample_entrances as sample_entrances
 from engine.trajectories.entrances import sample_entrances_by_exit as sample_entrances_by_exit
-from engine.trajectories.flux import EscapeFlux as EscapeFlux
 from engine.trajectories.flux import compute_flux as compute_flux
-from engine.trajectories.nearest_divergent_start import DivergentStart as DivergentStart
 from engine.trajectories.nearest_divergent_start import find_divergent_start as find_divergent_start
-from engine.trajectories.orbit_verdicts import OrbitVerdict as OrbitVerdict
 from engine.trajectories.orbit_verdicts import judge_orbit as judge_orbit
-from engine.trajectories.sampled_orbits import SampledOrbits as SampledOrbits
 from engine.trajectories.sampled_orbits import sample_orbits as sample_orbits
-from engine.trajectories.separation import Separation as Separation
 from engine.trajectories.separation import compute_separation as compute_separation
 from engine.trajectories.trajectory import Orbit as Orbit
 from engine.trajectories.trajectory import integrate_orbit as integrate_orbit
 
 if not typing.TYPE_CHECKING:
     __all__ = sorted(name for name, value in vars().items() if name[0] != "_" and not isinstance(value, types.ModuleType))
+    from engine.foundations.former_names import find_former_name
+
     # Type checkers would take any name for one of the module.
-    __getattr__ = _find_former_name
+    __getattr__ = find_former_name

@@ -17,8 +17,9 @@ from app.views.components.numbers import grouped, percent, percent_range
 from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
-from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
+from engine import EscapeMap, Fate, Window, compute_statistics
 from engine.propagation.fates import UNRESOLVED
+from engine.results import EscapeStatistics
 from plots.pictures.palette import PAPER, Palette
 from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
 
