@@ -84,7 +84,7 @@ class Explorer:
         self.comparison = ComparisonPresenter(
             context, self.maps, lambda sentence: self.analyses.note(compared=sentence), self.links.refuse_comparison
         )
-        self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_overloaded)
+        self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_crowded)
         self._browser_systems = LatestRequest(jobs, self.engine.show_system, lambda sentence: None, self._locked)
         self.orbits = OrbitPresenter(context, self.maps.marks, self.maps.well, self._add_start, self._show_orbits)
         self.watch = WatchPresenter(context)
