@@ -6,8 +6,6 @@ from scipy import optimize, stats
 
 from engine import (
     CASES,
-    DecayLaws,
-    EscapeStatistics,
     MapSpec,
     Plane,
     Window,
@@ -19,6 +17,7 @@ from engine import (
 )
 from engine.measures.decay_laws import DecayLaw, LawFit
 from engine.measures.escape_statistics import MAX_SURVIVAL_POINTS, compute_survival
+from engine.results import DecayLaws, EscapeStatistics
 
 T_LOW, T_HIGH = 2.0, 1e4
 KAPPA, GAMMA = 0.05, 1.5
