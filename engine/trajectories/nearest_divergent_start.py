@@ -69,7 +69,7 @@ def find_divergent_start(
     energy: Energy,
     x: float,
     ordinate: float,
-    t_max: float = 1e5,
+    t_max: float | None = None,
     *,
     furthest: float | None = None,
     execution: Execution = DEFAULT_EXECUTION,
