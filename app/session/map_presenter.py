@@ -60,7 +60,7 @@ class MapPresenter:
             alone=alone,
         )
         self.toolbar = MapToolbar(state, locked(self.view.set_drag))
-        self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_overloaded)
+        self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded)
         self.progress = ProgressView(
             locked(self.requests.stop_map), locked(self.requests.request_map), lambda name: state.switch_layer(name, on=True)
         )

@@ -8,7 +8,7 @@ from functools import partial
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from engine import EscapeMap
-from engine.slices.energies import highest_energy
+from engine.slices.axes import highest_energy
 from plots.layers.table import LAYER_OF, TITLES
 from plots.printed.figure_files import (
     curves_figure_bytes,
