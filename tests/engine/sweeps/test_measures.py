@@ -58,7 +58,7 @@ def test_the_example_of_the_guide_is_measured_like_any_other(
 
 
 def test_documents_list_all_measures() -> None:
-    text = (ROOT / "docs" / "curves.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
     assert [name for name in MEASURES if f"| `{name}` |" not in text] == []
 
 
