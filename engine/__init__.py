@@ -1,7 +1,8 @@
 """Escapes in open Hamiltonian systems with two degrees of freedom and any smooth potential with a well.
 
 These are the public names of the library. All results show themselves in notebooks and have `plot`, `to_pandas`, `to_xarray` and
-`to_holoviews`, see `Result`. Names of other modules are for the programs of this repository, and may change with any version.
+`to_holoviews`, see `Result`; the classes of results that are not named here are in `results`. Names of other modules are for the
+programs of this repository, and may change with any version.
 
 - systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `write_formula`, `review_potential`
 - starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `start_states`, `sample_starts`
@@ -19,29 +20,26 @@ from typing import TYPE_CHECKING
 
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.foundations.execution import Execution
-from engine.foundations.former_names import FORMER_NAMES as FORMER_NAMES
 from engine.foundations.former_names import find_former_name as find_former_name
 from engine.foundations.result import Result
 from engine.maps.compute import compute_map
-from engine.maps.descriptors import DescriptorMap, TimeDirection, compute_lagrangian_descriptor
-from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
-from engine.maps.regularity import RegularityMap, compute_regularity
+from engine.maps.descriptors import TimeDirection, compute_lagrangian_descriptor
+from engine.maps.origin_fates import compute_origin_fates
+from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.maps.trust import Trust, TrustMap, compute_trust
+from engine.maps.trust import Trust, compute_trust
 from engine.maps.uncertain_pairs import compute_uncertainty_exponent
-from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
-from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
+from engine.measures.basin_entropy import compute_basin_entropy
+from engine.measures.chaotic_share import compute_chaotic_share
 from engine.measures.decay_law_fits import fit_decay_laws
-from engine.measures.decay_laws import DecayLaws, LawFit
-from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.exit_matching import ExitMatching, compute_exit_matching
-from engine.measures.islands import Islands, compute_islands
+from engine.measures.escape_statistics import compute_statistics
+from engine.measures.exit_matching import compute_exit_matching
+from engine.measures.islands import compute_islands
 from engine.measures.measure import Measure
-from engine.measures.power_law_fit import UncertaintyExponent
-from engine.measures.wada import WadaTest, compute_wada_test
-from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
-from engine.propagation.classification import Outcomes, classify_orbits
+from engine.measures.wada import compute_wada_test
+from engine.periodic.stable_manifolds import find_stable_manifolds
+from engine.propagation.classification import classify_orbits
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate, Regularity
 from engine.slices.axes import Coordinate, Direction, ParameterAxis
@@ -53,74 +51,50 @@ from engine.sweeps.measures import MEASURES
 from engine.sweeps.opened_results import open_result
 from engine.sweeps.plan import plan_sweep
 from engine.sweeps.spec import SweepSpec
-from engine.sweeps.sweep import Sweep, compute_sweep
+from engine.sweeps.sweep import compute_sweep
 from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.formulas.formula_writer import write_formula
 from engine.systems.known_potentials import CASES, POTENTIALS
 from engine.systems.outcomes import Centre, Outcome
 from engine.systems.potential import Potential
-from engine.systems.review.potential_review import PotentialReview, review_potential
+from engine.systems.review.potential_review import review_potential
 from engine.systems.system import System
-from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.entrances import sample_entrances, sample_entrances_by_exit
-from engine.trajectories.flux import EscapeFlux, compute_flux
-from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
-from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
-from engine.trajectories.sampled_orbits import SampledOrbits, sample_orbits
-from engine.trajectories.separation import Separation, compute_separation
+from engine.trajectories.flux import compute_flux
+from engine.trajectories.nearest_divergent_start import find_divergent_start
+from engine.trajectories.orbit_verdicts import judge_orbit
+from engine.trajectories.sampled_orbits import sample_orbits
+from engine.trajectories.separation import compute_separation
 from engine.trajectories.trajectory import Orbit, integrate_orbit
 
 __all__ = [
     "CASES",
     "MEASURES",
     "POTENTIALS",
-    "BasinEntropy",
-    "BirkhoffDigits",
     "Centre",
-    "ChaoticShare",
     "Coordinate",
-    "DecayLaws",
-    "DescriptorMap",
     "Direction",
-    "DivergentStart",
-    "EscapeFlux",
     "EscapeMap",
-    "EscapeStatistics",
     "Evidence",
     "Execution",
-    "ExitMatching",
     "Fate",
     "FormulaError",
-    "Islands",
-    "LawFit",
     "LyapunovOrbit",
     "MapSpec",
     "Measure",
     "Orbit",
-    "OrbitVerdict",
-    "OriginFateMap",
     "Outcome",
-    "Outcomes",
     "ParameterAxis",
     "Plane",
     "Potential",
-    "PotentialReview",
     "Regularity",
-    "RegularityMap",
     "Result",
-    "SampledOrbits",
-    "Separation",
     "Slice",
-    "StableManifolds",
-    "Sweep",
     "SweepSpec",
     "System",
     "TimeDirection",
     "Trust",
-    "TrustMap",
-    "UncertaintyExponent",
-    "WadaTest",
     "Window",
     "classify_orbits",
     "compute_basin_entropy",

@@ -10,10 +10,11 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.latest_request import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import BirkhoffDigits, Fate, Orbit
+from engine import Fate, Orbit
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.jobs.subscription import Subscription
+from engine.results import BirkhoffDigits
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from engine.trajectories.chaos_indicators import IndicatorVerdict, evaluate_indicators
 

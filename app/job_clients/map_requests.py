@@ -53,8 +53,8 @@ class MapRequests:
         Runs callbacks under the session's lock; it may drop all calls but the latest.
     follow_ups
         Analyses of each complete map.
-    is_overloaded
-        Whether the server is overloaded; then frames between the first and the last are skipped.
+    is_crowded
+        Whether the server is crowded; then frames between the first and the last are skipped.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class MapRequests:
         listener: MapListener,
         locked: Locked,
         follow_ups: Sequence[FollowUp] = (),
-        is_overloaded: Callable[[], bool] = lambda: False,
+        is_crowded: Callable[[], bool] = lambda: False,
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._subscription: Subscription | None = None
@@ -76,7 +76,7 @@ class MapRequests:
         self._delivered = -1
         # What was delivered last: a map and its columns.
         self._painted: tuple[MapSpec, dict[str, list[Any]]] | None = None
-        self._is_overloaded = is_overloaded
+        self._is_crowded = is_crowded
         self._continue = locked(self._on_compiled)
         self._show_members = locked(self._on_members)
         self._show_frame = locked(self._on_frame)
@@ -122,14 +122,14 @@ class MapRequests:
         self._subscription = self._jobs.request(job, on_result, on_error)
 
     def _deliver_frame(self, generation: int, frame: EscapeMap) -> None:
-        """Deliver a frame; under overload only the first and the last one, and none of an energy without an interior."""
+        """Deliver a frame, of a crowded server only the first and the last one; none of an energy without an interior."""
         try:
             # Slow, and needed by the ranges of the maps, whose smallest window depends on it.
             replace(frame.spec, window=None).find_window()
         except ValueError as error:
             self._deliver(self._show_error, generation, error)
             return
-        if self._delivered == generation and not frame.complete and self._is_overloaded():
+        if self._delivered == generation and not frame.complete and self._is_crowded():
             return
         columns = map_columns(frame) | layer_columns(frame, self._state.layers)
         if self._painted is not None and _has_same_starts(self._painted[0], frame.spec):

@@ -11,11 +11,12 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.latest_request import Locked
 from app.state.view import Start
 from app.state.view_state import ViewState
-from engine import BirkhoffDigits, Fate, Orbit, OrbitVerdict, judge_orbit
+from engine import Fate, Orbit, judge_orbit
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
 from engine.jobs.subscription import Subscription
 from engine.propagation.fates import describe_fate
+from engine.results import BirkhoffDigits, OrbitVerdict
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 

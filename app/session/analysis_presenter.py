@@ -19,9 +19,10 @@ from app.views.analysis.basin_measures import TOLD, BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
-from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, Sweep, SweepSpec, Window
+from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, SweepSpec, Window
 from engine.jobs.job import Job
 from engine.maps.warmup import is_ready_for_maps
+from engine.results import Sweep
 from engine.slices.section import SECTION
 from engine.slices.slice_text import default_range
 from engine.sweeps.map_jobs import measure_job, sweep_job

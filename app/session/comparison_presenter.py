@@ -11,9 +11,10 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.system_review import review_job
 from app.state.view import View
-from app.views.components.numbers import grouped, percent
+from app.views.components.numbers import percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
+from engine.foundations.wording import format_whole
 from engine.jobs.job import Job, Queue
 from engine.maps.warmup import is_ready_for_maps, prepare_for_maps
 from engine.sweeps.map_jobs import map_job, members_job
@@ -154,5 +155,5 @@ def _difference(one: EscapeMap, other: EscapeMap) -> str:
     if not counted.any():
         return "no start in the window has an orbit in both."
     differ = counted & (one.fate != other.fate)
-    count, share = int(np.count_nonzero(differ)), float(np.mean(differ[counted]))
-    return f"{grouped(count)} of {grouped(int(np.count_nonzero(counted)))} starts have different outcomes ({percent(share)})."
+    of_all = " of ".join(format_whole(int(np.count_nonzero(pixels))) for pixels in (differ, counted))
+    return f"{of_all} starts have different outcomes ({percent(float(np.mean(differ[counted])))})."

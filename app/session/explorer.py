@@ -33,14 +33,14 @@ from app.state.navigation import DIVE_FACTOR, window_moves, zoom
 from app.state.presets import Preset
 from app.state.view import Analysis, Start
 from app.views.analysis.statistics import StatisticsView
-from app.views.components.analysis_choice import AnalysisTabs
 from app.views.components.collapsible_section import Drawers, Fold, Stack
 from app.views.components.notice import Notice
-from app.views.components.progress import ProgressView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import MapActions, MapsView
 from app.views.maps.map_toolbar import MapToolbar
+from app.views.maps.progress import ProgressView
 from app.views.panels.accessible_table import AccessibleTable
+from app.views.panels.analysis_choice import AnalysisTabs
 from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents, key_legend
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
@@ -84,7 +84,7 @@ class Explorer:
         self.comparison = ComparisonPresenter(
             context, self.maps, lambda sentence: self.analyses.note(compared=sentence), self.links.refuse_comparison
         )
-        self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_overloaded)
+        self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_crowded)
         self._browser_systems = LatestRequest(jobs, self.engine.show_system, lambda sentence: None, self._locked)
         self.orbits = OrbitPresenter(context, self.maps.marks, self.maps.well, self._add_start, self._show_orbits)
         self.watch = WatchPresenter(context)

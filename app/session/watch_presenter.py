@@ -14,9 +14,10 @@ from app.state.help_texts import title_with_help
 from app.state.view import Analysis
 from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
-from engine import EscapeFlux, compute_flux
+from engine import compute_flux
 from engine.jobs.job import Job
 from engine.maps.warmup import is_ready_for_maps
+from engine.results import EscapeFlux
 
 
 class WatchPresenter:

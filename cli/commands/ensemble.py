@@ -29,12 +29,7 @@ from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, print_result
 from engine import (
-    DecayLaws,
-    EscapeFlux,
-    EscapeStatistics,
-    ExitMatching,
     Fate,
-    Outcomes,
     Potential,
     Slice,
     classify_orbits,
@@ -47,6 +42,7 @@ from engine import (
     sample_starts,
 )
 from engine.propagation.fates import name_fate
+from engine.results import DecayLaws, EscapeFlux, EscapeStatistics, ExitMatching, Outcomes
 from engine.slices.window import GivenWindow
 from plots.pictures.palette import Palette
 from plots.printed.ensemble_movie import MovieFormat, ensemble_movie_bytes

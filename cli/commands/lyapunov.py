@@ -19,7 +19,8 @@ from cli.option_marks import Of
 from cli.options import with_options
 from cli.output_files import reserve_output, split_ending, write_files
 from cli.printing import AsJson, Table, print_result
-from engine import EscapeFlux, LyapunovOrbit, Potential, compute_flux, find_lyapunov_orbits
+from engine import LyapunovOrbit, Potential, compute_flux, find_lyapunov_orbits
+from engine.results import EscapeFlux
 
 
 @with_options

@@ -24,7 +24,8 @@ from cli.option_marks import Of
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, print_result
-from engine import Fate, Orbit, OrbitVerdict, Potential, Slice, integrate_orbit, judge_orbit
+from engine import Fate, Orbit, Potential, Slice, integrate_orbit, judge_orbit
+from engine.results import OrbitVerdict
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from engine.trajectories.chaos_indicators import IndicatorVerdict, evaluate_indicators
 from plots.pictures.orbit_curves import compute_orbit_curves

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine import MapSpec, StableManifolds, find_stable_manifolds
+from engine import MapSpec, find_stable_manifolds
 from engine.jobs.job import Job
 from engine.periodic.stable_manifolds import MOST_IMAGES, ManifoldArc
+from engine.results import StableManifolds
 from engine.slices.section import SECTION
 from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
 from plots.pictures.palette import Entry, Mark, Palette

@@ -13,12 +13,14 @@ from bokeh.models.dom import HTML
 
 from app.state.help_texts import title_with_help
 from app.views.components.legends import patch
-from app.views.components.numbers import grouped, percent, percent_range
+from app.views.components.numbers import percent, percent_range
 from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
-from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
+from engine import EscapeMap, Fate, Window, compute_statistics
+from engine.foundations.wording import format_whole
 from engine.propagation.fates import UNRESOLVED
+from engine.results import EscapeStatistics
 from plots.pictures.palette import PAPER, Palette
 from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
 
@@ -143,7 +145,7 @@ class StatisticsView:
 
 def _facts(statistics: EscapeStatistics) -> dict[str, str]:
     return {
-        "interior starts": grouped(statistics.starts),
+        "interior starts": format_whole(statistics.starts),
         "direct escapes": percent(statistics.direct_share, 2),
         "mean escape time": _number(statistics.mean_escape_time),
         "median escape time": _number(statistics.median_escape_time),

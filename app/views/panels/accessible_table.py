@@ -9,10 +9,10 @@ from math import isfinite
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.numbers import grouped, percent
+from app.views.components.numbers import percent
 from app.views.components.texts import TextPane
 from engine import EscapeMap, Fate, compute_statistics
-from engine.foundations.wording import format_time
+from engine.foundations.wording import format_time, format_whole
 from engine.propagation.fates import UNRESOLVED
 
 
@@ -50,7 +50,7 @@ class AccessibleTable:
     def _view(self) -> list[tuple[str, str]]:
         state, reviewed = self._state, self._state.reviewed
         rows = [("system", reviewed.system.title), ("potential V(x, y)", reviewed.formula)]
-        rows += [("plane", state.plane.title), ("t_max", grouped(state.t_max))]
+        rows += [("plane", state.plane.title), ("t_max", format_whole(state.t_max))]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
         if state.window is not None:
             w = state.window

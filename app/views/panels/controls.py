@@ -14,10 +14,10 @@ from app.browser.inputs.number_box import NumberBox
 from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState
-from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
+from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
 from engine import CASES, Plane, Potential, Slice
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.palette import PALETTES

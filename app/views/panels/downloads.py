@@ -17,7 +17,8 @@ from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED
 from app.views.panels.figure_choices import ShownResults
 from app.views.panels.figure_form import FigureForm
-from engine import EscapeMap, Sweep
+from engine import EscapeMap
+from engine.results import Sweep
 from plots.layers.map_analyses import MapAnalyses
 from plots.texts.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 

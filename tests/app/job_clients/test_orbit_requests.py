@@ -13,8 +13,9 @@ from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
-from engine import Separation, System, integrate_orbit
+from engine import System, integrate_orbit
 from engine.jobs.manager import Jobs
+from engine.results import Separation
 from engine.trajectories.chaos_indicators import IndicatorVerdict, Verdict
 from tests.engine.jobs.inbox import wait_until_idle
 

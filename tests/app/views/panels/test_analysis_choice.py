@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from app.state.view import Analysis
 from app.state.view_state import ViewState
-from app.views.components.analysis_choice import ANALYSIS_LABELS, AnalysisTabs, LayerSwitches
 from app.views.components.widgets import SegmentedControl
+from app.views.panels.analysis_choice import ANALYSIS_LABELS, AnalysisTabs, LayerSwitches
 from plots.layers.table import LAYERS
 
 

@@ -6,7 +6,7 @@ from urllib.parse import parse_qsl, urlencode
 
 import pytest
 
-from app.state.link_summary import link_sentence, link_title
+from app.session.page import link_sentence, link_title
 from app.state.permalink import linked_view, read_link
 from app.state.view import View
 

@@ -12,11 +12,11 @@ import numpy as np
 import panel as pn
 
 from app.state.glossary import with_terms
-from app.views.components.numbers import grouped, percent
+from app.views.components.numbers import percent
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
-from engine.foundations.wording import format_number
+from engine.foundations.wording import format_number, format_whole
 from engine.propagation.fates import UNRESOLVED
 from engine.systems.outcomes import Exit
 from plots.layers.table import LAYERS
@@ -105,7 +105,7 @@ class ProgressView:
 def _stage(frame: EscapeMap) -> str:
     """Resolution, time reached and undecided share of a frame in progress."""
     resolution = "Full resolution" if frame.stride == 1 else f"1/{frame.stride} of the resolution"
-    time = f"t = {grouped(frame.horizon)} of {grouped(frame.spec.t_max)}"
+    time = f"t = {format_whole(frame.horizon)} of {format_whole(frame.spec.t_max)}"
     return f"{resolution}, {time}: {percent(frame.undecided)} undecided"
 
 
@@ -123,7 +123,7 @@ def _result(frame: EscapeMap) -> str:
     parts += [f"bounded {part[Fate.BOUNDED]}{_share_on_evidence(frame)}"]
     parts += [f"{UNRESOLVED} {part[Fate.FAILED]}"] if shares[Fate.FAILED] else []
     return (
-        f"Done, t = {grouped(frame.spec.t_max)}. Interior starts: {', '.join(parts)}. "
+        f"Done, t = {format_whole(frame.spec.t_max)}. Interior starts: {', '.join(parts)}. "
         f"Energy error ≤ {format_number(frame.worst_energy_error, 2)}.{_rounding(frame)}"
     )
 

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from app.views.components.progress import CONTINUE, STOP, ProgressView
+from app.views.maps.progress import CONTINUE, STOP, ProgressView
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
 from plots.layers.table import LAYERS
 
