@@ -26,4 +26,6 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     ends = [end for kind in kinds for end in kind.read(attributes[kind.attribute])]
     # The terms are those of the effective potential.
     x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
-    return Potential(name, potential.form, float(attributes.get("rotation", 0.0)), origin=(x, y), ends=ends)
+    names = json.loads(attributes.get("exit_names", "[]"))
+    rotation = float(attributes.get("rotation", 0.0))
+    return Potential(name, potential.form, rotation, origin=(x, y), ends=ends, exit_names=names)
