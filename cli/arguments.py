@@ -17,7 +17,7 @@ from cli.layer_options import LayerOptions, read_layers
 from cli.option_marks import Of
 from engine import MEASURES, POTENTIALS, Plane, Potential, Slice, System, review_potential
 from engine.foundations.validation import checked_count
-from engine.slices.energies import Energy
+from engine.slices.axes import Energy
 from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
 from engine.sweeps.spec import MOST_VALUES

@@ -23,7 +23,7 @@ from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, SweepSpec, Windo
 from engine.jobs.job import Job
 from engine.maps.warmup import is_ready_for_maps
 from engine.results import Sweep
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 from engine.slices.slice_text import default_range
 from engine.sweeps.map_jobs import measure_job, sweep_job
 from engine.sweeps.measures import CURVES
@@ -216,7 +216,7 @@ class AnalysisPresenter:
             self._stop_sweep()
             return
         state, energies = self._state, self._state.energies
-        plane = state.plane if state.plane.energy_axis is None and state.plane.parameter is None else SECTION.plane
+        plane = state.plane if state.plane.energy_axis is None and state.plane.parameter is None else SECTION
         name, energy, along = self.curves.against.value, None, None
         low, high = energies.low, energies.high
         if name != "h":

@@ -21,7 +21,7 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import IndicatorVerdict
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
 from plots.pictures.palette import Palette
@@ -128,11 +128,11 @@ class OrbitPresenter:
         if start is None:
             return
         x, y, px, py = state.start_state(start)
-        starts = ((x, px),) if y == 0.0 and SECTION.direction * py > 0.0 else ()
+        starts = ((x, px),) if y == 0.0 and SECTION.sign * py > 0.0 else ()
         energy = float(state.plane.energies(state.energy, *start))
         self._open_view(
             state.plane.system_at(state.system, *start),
-            {"plane": SECTION.plane, "energy": energy, "window": None, "starts": starts, "chosen": 0},
+            {"plane": SECTION, "energy": energy, "window": None, "starts": starts, "chosen": 0},
         )
 
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
@@ -155,7 +155,7 @@ class OrbitPresenter:
     def _mark(self) -> None:
         """Mark starts and sections on the maps."""
         self._marks.show_starts([one.start for one in self._shown])
-        on_section = self._state.plane == SECTION.plane
+        on_section = self._state.plane == SECTION
         drawings = [one.drawing for one in self._shown]
         self._marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in drawings])
 

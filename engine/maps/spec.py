@@ -12,8 +12,8 @@ import numpy as np
 
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
+from engine.slices.axes import Energy, common_energy, scaled_energy
 from engine.slices.default_window import map_window
-from engine.slices.energies import Energy, common_energy, scaled_energy
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice

@@ -15,8 +15,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
-from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, ParameterAxis
-from engine.slices.energies import Energy
+from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
 from engine.slices.slice_rules import check_coordinates, momentum_left
 from engine.slices.slice_starts import compute_required_energy, compute_states
 from engine.systems.potential import Potential

@@ -10,7 +10,7 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from engine import EscapeMap
 from engine.results import Sweep
-from engine.slices.energies import highest_energy
+from engine.slices.axes import highest_energy
 from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.layers.table import LAYER_OF, TITLES
 from plots.printed.figure_files import (

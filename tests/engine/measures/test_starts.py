@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_basin_entropy, compute_map, compute_wada_test
-from engine.measures.labels import exit_labels
+from engine.measures.starts import exit_labels, wilson_interval
 
 
 @pytest.fixture(scope="module")
@@ -52,3 +53,15 @@ def test_negative_codes_without_a_mask_are_no_basin(measure: Callable[..., Any])
     with pytest.raises(ValueError, match=rf"labels: {np.count_nonzero(fate < 0)} are negative, .*valid=\(labels >= 0\)"):
         measure(fate)
     assert measure(fate, fate >= 0).describe() == measure(np.where(fate < 0, 7, fate), fate >= 0).describe()
+
+
+@pytest.mark.parametrize(("count", "total"), [(0, 1), (0, 50), (1, 50), (25, 50), (50, 50), (12_345, 39_000)])
+def test_limits_are_those_of_scipy(count: int, total: int) -> None:
+    reference = binomtest(count, total).proportion_ci(method="wilson")
+    assert wilson_interval(count, total) == pytest.approx((reference.low, reference.high), abs=1e-12)
+
+
+def test_without_draws_any_share_is_possible() -> None:
+    low, high = wilson_interval([0, 3], [0, 6])
+    assert (low[0], high[0]) == (0.0, 1.0)
+    np.testing.assert_allclose(low[1] + high[1], 1.0)
