@@ -188,7 +188,7 @@ class Slice:
         return self.abscissa.unit(units), self.ordinate.unit(units)
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
-        """As `WellUnits.restore`, for a result whose `x` and `ordinate`, numbers or arrays, are positions on this slice."""
+        """Convert a result from units of the well; its `x` and `ordinate`, numbers or arrays, are positions on this slice."""
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
         for coordinate in (x, ordinate):
