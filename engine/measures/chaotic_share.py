@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.proportions import wilson_interval
 from engine.foundations.result import Result
+from engine.measures.starts import wilson_interval
 from engine.propagation.fates import Regularity
 
 _JUDGED = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
