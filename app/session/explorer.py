@@ -51,9 +51,9 @@ from app.views.panels.slice_panel import SlicePanel
 from engine import EscapeMap, Fate, Potential, Slice, System, Window
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
-from engine.maps.warmup import is_ready_for_maps, seconds_until_ready_for_maps
 from engine.propagation.fates import describe_fate
 from engine.slices.planes import checked_slice
+from engine.sweeps.warmup import is_ready_for_maps, seconds_until_ready_for_maps
 from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 
