@@ -15,6 +15,8 @@ from queue import LifoQueue
 
 from loky import ProcessPoolExecutor
 
+from engine.foundations.execution import lower_priority
+
 SECONDS = 5
 """Processor time of a call."""
 
@@ -151,6 +153,8 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> Resul
 
 def _begin(memory: int, server: int) -> None:
     """Prepare the process for its calls."""
+    # The pages of others come first, as before the computations of a page.
+    lower_priority()
     threading.Thread(target=_end_with, args=(server,), daemon=True).start()
     _limit_memory(memory)
 

@@ -25,11 +25,11 @@ from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.integrator.jit.decorator import kernel
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import straight_line, table_reader
-from engine.integrator.kernels import fixed_step, interior, periodic_shooting, propagate, section_passages, speed_integrals
+from engine.integrator.kernels import fixed_step, interior, orbit_lanes, periodic_shooting, propagate
 from engine.integrator.source.recurrence import Definition, GeneratedCode, generate_code
 from engine.integrator.source.series import REACH, Setting
 
-_KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, section_passages, speed_integrals, interior)
+_KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
 # Cached potentials; binding the coefficients of one more of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()

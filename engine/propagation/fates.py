@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from engine.foundations.codes import name_code
 from engine.foundations.result import RecordedResult
+from engine.foundations.wording import name_code
 from engine.integrator.kernels import events
 from engine.systems.outcomes import Exit, Outcome, write_outcomes
 

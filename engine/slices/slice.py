@@ -16,8 +16,7 @@ import numpy as np
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
 from engine.integrator.kernels import slice_starts
-from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, ParameterAxis
-from engine.slices.energies import Energy
+from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
 from engine.slices.slice_rules import check_coordinates, momentum_left
 from engine.slices.slice_starts import compute_required_energy, compute_states
 from engine.systems.potential import Potential
@@ -187,7 +186,7 @@ class Slice:
         return self.abscissa.unit(units), self.ordinate.unit(units)
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
-        """As `WellUnits.restore`, for a result whose `x` and `ordinate`, numbers or arrays, are positions on this slice."""
+        """Convert a result from units of the well; its `x` and `ordinate`, numbers or arrays, are positions on this slice."""
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
         for coordinate in (x, ordinate):

@@ -26,10 +26,10 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.state.view import PICTURES
-from app.views.components.curve_layers import CurveLayers
 from app.views.components.legends import picture_legend
 from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
 from app.views.maps.comparison import ComparedMap
+from app.views.maps.curve_layers import CurveLayers
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_ranges import MapRanges, TwoFingers
 from app.views.maps.map_toolbar import Drag
