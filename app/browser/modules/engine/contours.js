@@ -2,33 +2,15 @@
 /** Level lines of a function on a rectangle, by marching squares. */
 
 /** Samples along a side; between them the function is taken to be linear. */
-const SAMPLES = 101
+export const SAMPLES = 101
 
 /**
  * Values of a function on a grid over a window, from which the lines of any level follow.
  *
  * @typedef {object} Grid
- * @property {import("./slice.js").Window} window
+ * @property {import("./starts.js").Window} window
  * @property {Float64Array} values  row by row
  */
-
-/**
- * @param {import("./slice.js").Window} window
- * @param {(x: number, ordinate: number) => number} sample
- * @returns {Grid}
- */
-export function sampleGrid(window, sample) {
-  const values = new Float64Array(SAMPLES * SAMPLES)
-  const share = (/** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ k) =>
-    low + ((high - low) * k) / (SAMPLES - 1)
-  for (let row = 0; row < SAMPLES; row++) {
-    const ordinate = share(window.ordinateLow, window.ordinateHigh, row)
-    for (let column = 0; column < SAMPLES; column++) {
-      values[row * SAMPLES + column] = sample(share(window.xLow, window.xHigh, column), ordinate)
-    }
-  }
-  return {window, values}
-}
 
 /**
  * The pieces of the line on which the function has a level.
@@ -74,7 +56,7 @@ function joinCell(values, level, corner, join) {
 }
 
 /**
- * @param {import("./slice.js").Window} window
+ * @param {import("./starts.js").Window} window
  * @param {Float64Array} values
  * @param {number} level
  * @param {number} edge

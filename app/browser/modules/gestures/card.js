@@ -4,14 +4,11 @@
  * press, and move.
  */
 
-import {exitLines, LimitingCurves} from "./curves.js"
-import {Integrator} from "./integrator.js"
-import {OutsideTest} from "./interior.js"
-import {Exits} from "./exits.js"
-import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
-import {energyUnit, space, Starts} from "./slice.js"
-import {windowAt} from "./system.js"
-import {traceOrbit} from "./trace.js"
+import {exitLines, LimitingCurves} from "../engine/curves.js"
+import {Integrator} from "../engine/integrator.js"
+import {findPath} from "../engine/path.js"
+import {windowAt} from "../engine/starts.js"
+import {cover, frames, strokeLine, wellFrame} from "../painting/pictures.js"
 
 /** Longest time that is followed, in units of the well. */
 const LONGEST = 200
@@ -26,7 +23,7 @@ const [PADDING, TEXT_HEIGHT] = [6, 22]
 const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-surface,#fff);
   border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
 
-/** What is known of an orbit, in words. @type {(trace: import("./trace.js").Trace, unit: number, labels: string[]) => string} */
+/** What is known of an orbit, in words. @type {(path: Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">, unit: number, labels: string[]) => string} */
 export function describe({channel, time, crossings}, unit, labels) {
   const t = Number((time * unit).toPrecision(4))
   const count = crossings === 1 ? "1 crossing" : `${crossings} crossings`
@@ -37,7 +34,7 @@ export function describe({channel, time, crossings}, unit, labels) {
 /**
  * The path of an orbit in units of the page.
  *
- * @param {Pick<import("./trace.js").Trace, "x" | "y">} trace
+ * @param {Pick<import("../engine/path.js").Path, "x" | "y">} path
  * @param {{length: number}} units  of the well
  */
 export function pathOf({x, y}, {length}) {
@@ -48,7 +45,7 @@ export function pathOf({x, y}, {length}) {
 export class Card {
   /**
    * @param {HTMLElement} el
-   * @param {() => import("./frames.js").Scene | null} scene  what the pictures show
+   * @param {() => import("../workers/frames.js").Scene | null} scene  what the pictures show
    * @param {() => any} maps  the columns of the pictures
    * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
    */
@@ -87,8 +84,8 @@ export class Card {
   #clicked = null
 
   /**
-   * @param {import("./system.js").System} system
-   * @param {import("./integrator.js").Modules} modules
+   * @param {import("../engine/system.js").System} system
+   * @param {import("../engine/integrator.js").Modules} modules
    */
   setSystem(system, modules) {
     this.#integrator = new Integrator(system, modules)
@@ -146,7 +143,7 @@ export class Card {
   }
 
   /**
-   * @param {import("./pictures.js").Frame | undefined} picture
+   * @param {import("../painting/pictures.js").Frame | undefined} picture
    * @param {PointerEvent} event
    */
   #show(picture, event) {
@@ -157,14 +154,10 @@ export class Card {
       return
     }
     const {units} = scene.slice
-    const starts = new Starts(scene.slice, integrator, scene.energy / energyUnit(integrator.system.units))
-    const {found} = starts
-    const exists = starts.find(place[0] / units[0], place[1] / units[1])
-    if (!exists || isOutside(integrator, found)) {
-      this.#hide()
-      return
-    }
-    this.#draw(picture, event.clientX, found.h, traceOrbit(integrator, found, LONGEST))
+    const energy = scene.energy / integrator.system.units.energy
+    const path = findPath(integrator, scene.slice, energy, [place[0] / units[0], place[1] / units[1]], LONGEST)
+    if (path) this.#draw(picture, event.clientX, path)
+    else this.#hide()
   }
 
   #hide() {
@@ -174,7 +167,7 @@ export class Card {
   /**
    * The centre of the pixel under the pointer; the point itself between pictures.
    *
-   * @param {import("./pictures.js").Frame} picture
+   * @param {import("../painting/pictures.js").Frame} picture
    * @param {PointerEvent} event
    * @returns {[number, number] | null}
    */
@@ -195,18 +188,17 @@ export class Card {
   }
 
   /**
-   * @param {import("./pictures.js").Frame} over  the picture under the pointer
+   * @param {import("../painting/pictures.js").Frame} over  the picture under the pointer
    * @param {number} pointer  its place from the left of the screen
-   * @param {number} energy  in units of the well
-   * @param {import("./trace.js").Trace} trace
+   * @param {import("../engine/path.js").Path} path
    */
-  #draw(over, pointer, energy, trace) {
+  #draw(over, pointer, path) {
     const [integrator, context] = [this.#integrator, this.#canvas.getContext("2d")]
     if (!integrator || !context) return
     const {system} = integrator
     const box = placeFor(over, pointer)
-    const h = energy * energyUnit(system.units)
-    const window = windowAt(system.windows.x_y, h)
+    const h = path.energy * system.units.energy
+    const window = windowAt(integrator, "x_y", h)
     if (!window) return this.#hide()
     cover(this.#canvas, box)
     context.clearRect(0, 0, box.width, box.height)
@@ -217,13 +209,13 @@ export class Card {
       /** @type {string} */ colour,
       /** @type {number} */ width,
     ) => strokeLine(context, window, box, line, colour, width)
-    const limit = this.#limits.trace(integrator, {slice: space(system.units), window, energy: h})
+    const limit = this.#limits.trace(integrator, {slice: system.space, window, energy: h})
     for (const line of limit) draw(line, ink, 1.5)
     const {colours, labels} = this.#view()
     for (const {channel, xs, ys} of exitLines(integrator, h)) draw({xs, ys}, colours[channel - 1], 3)
-    const {xs, ys} = pathOf(trace, system.units)
-    draw({xs, ys}, trace.channel > 0 ? colours[trace.channel - 1] : ink, 1)
-    const text = describe(trace, system.units.time, labels)
+    const {xs, ys} = pathOf(path, system.units)
+    draw({xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1)
+    const text = describe(path, system.units.time, labels)
     context.fillStyle = ink
     context.beginPath()
     const scale = box.width / (window.xHigh - window.xLow)
@@ -240,13 +232,6 @@ export class Card {
   }
 }
 
-/** @type {(integrator: Integrator, start: import("./system.js").Start) => boolean} */
-const isOutside = (integrator, {x, y, h}) =>
-  integrator.temporarily(() => {
-    const test = new OutsideTest(integrator, new Exits(integrator, [h]), 1)
-    return test.find([x, y, 0, 0], [h])[0] > 0
-  })
-
 /** @type {(box: DOMRect, event: PointerEvent) => boolean} */
 const contains = (box, {clientX, clientY}) =>
   clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom
@@ -254,7 +239,7 @@ const contains = (box, {clientX, clientY}) =>
 /**
  * Where the card is drawn: over the well, or in the other half of the only map.
  *
- * @param {import("./pictures.js").Frame} over  the picture under the pointer
+ * @param {import("../painting/pictures.js").Frame} over  the picture under the pointer
  * @param {number} pointer  its place from the left of the screen
  */
 function placeFor(over, pointer) {

@@ -4,14 +4,14 @@
  * view with at least as many.
  */
 
-import {pixelColumns, sameEnergy, showsScene} from "./columns.js"
-import {exitLines, LimitingCurves} from "./curves.js"
-import {Integrator} from "./integrator.js"
-import {Local, LocalWhenPresent} from "./local.js"
-import {Outlines} from "./outlines.js"
-import {energyAxis, energyUnit, showsPositions, space} from "./slice.js"
-import {LEAST_SIDE} from "./frames.js"
-import {coversEnergy, windowAt} from "./system.js"
+import {exitLines, LimitingCurves} from "../engine/curves.js"
+import {Integrator} from "../engine/integrator.js"
+import {energyAxis, showsPositions, windowAt} from "../engine/starts.js"
+import {coversEnergy} from "../engine/system.js"
+import {pixelColumns, sameEnergy, showsScene} from "../painting/columns.js"
+import {Local, LocalWhenPresent} from "../painting/local.js"
+import {Outlines} from "../painting/outlines.js"
+import {LEAST_SIDE} from "../workers/frames.js"
 
 /**
  * The view as the server describes it.
@@ -19,12 +19,12 @@ import {coversEnergy, windowAt} from "./system.js"
  * @typedef {object} ServerView
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
- * @property {import("./system.js").Slice | null} slice  null for a slice that only the server can compute
+ * @property {import("../engine/system.js").Slice | null} slice  null for a slice that only the server can compute
  * @property {number} energy
  * @property {boolean} home  whether the window is the default one
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes
- * @property {import("./columns.js").Coding} coding
+ * @property {import("../painting/columns.js").Coding} coding
  * @property {number} resolution  pixels along a side of the server's map
  *
  * Models of Bokeh by their names; null for those that are not on the page.
@@ -38,7 +38,7 @@ import {coversEnergy, windowAt} from "./system.js"
  */
 const NEAR_EDGE = 0.02
 
-/** @type {(one: import("./slice.js").Window, other: import("./slice.js").Window) => boolean} */
+/** @type {(one: import("../engine/starts.js").Window, other: import("../engine/starts.js").Window) => boolean} */
 const isNear = (one, other) => {
   const near = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
     Math.abs(a - b) <= NEAR_EDGE * side
@@ -51,8 +51,8 @@ export class Preview {
   /**
    * @param {FindModel} find
    * @param {(picture: string, name: string) => any} findSource  finds a data source of a picture
-   * @param {import("./frames.js").Frames} frames
-   * @param {import("./overlay.js").Overlay} overlay
+   * @param {import("../workers/frames.js").Frames} frames
+   * @param {import("../painting/overlay.js").Overlay} overlay
    */
   constructor(find, findSource, frames, overlay) {
     this.#overlay = overlay
@@ -81,7 +81,7 @@ export class Preview {
   #status
   #curves = new LimitingCurves()
   #wellCurves = new LimitingCurves()
-  /** @type {import("./system.js").System | null} */
+  /** @type {import("../engine/system.js").System | null} */
   #system = null
   /** @type {Integrator | null} */
   #integrator = null
@@ -89,18 +89,18 @@ export class Preview {
   #view = null
   /** Energy of the slider or of the player, until the server has it. @type {number | null} */
   #energy = null
-  /** Default window at that energy; null for that of the ranges. @type {import("./slice.js").Window | null} */
+  /** Default window at that energy; null for that of the ranges. @type {import("../engine/starts.js").Window | null} */
   #window = null
   #held = false
   #waiting = false
-  /** The preview on the page. @type {import("./pixels.js").View | null} */
+  /** The preview on the page. @type {import("../engine/pixels.js").View | null} */
   #shown = null
 
   /**
    * Use a system, which is that of the view or will be.
    *
-   * @param {import("./system.js").System} system
-   * @param {import("./integrator.js").Modules} modules
+   * @param {import("../engine/system.js").System} system
+   * @param {import("../engine/integrator.js").Modules} modules
    */
   setSystem(system, modules) {
     this.#system = system
@@ -126,10 +126,10 @@ export class Preview {
   showEnergy(energy) {
     this.#held = true
     this.#energy = energy
-    const [view, system] = [this.#view, this.#system]
-    const isHome = view?.home && view.system === system?.key
+    const [view, integrator] = [this.#view, this.#integrator]
+    const isHome = view?.home && view.system === integrator?.system.key
     const returns = view && sameEnergy(energy, view.energy)
-    const home = isHome && system && !returns ? windowAt(system.windows[view.plane], energy) : null
+    const home = isHome && integrator && !returns ? windowAt(integrator, view.plane, energy) : null
     if (!home || !isNear(home, this.#present)) this.#window = home
     if (returns) for (const range of [this.#x, this.#y]) range.restore()
     this.#follow()
@@ -140,19 +140,17 @@ export class Preview {
     this.#held = false
   }
 
-  /** What is to be seen now; null if it cannot be computed here. @returns {import("./frames.js").Scene | null} */
+  /** What is to be seen now; null if it cannot be computed here. @returns {import("../workers/frames.js").Scene | null} */
   get scene() {
     const [view, system, window] = [this.#view, this.#system, this.#present]
     if (!view?.slice || !system || view.system !== system.key) return null
     if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
     const energy = this.#energy ?? view.energy
     const highest = [window.xHigh, window.ordinateHigh][energyAxis(view.slice)] ?? energy
-    return coversEnergy(system, highest / energyUnit(system.units))
-      ? {slice: view.slice, energy, window, most: view.resolution}
-      : null
+    return coversEnergy(system, highest / system.units.energy) ? {slice: view.slice, energy, window, most: view.resolution} : null
   }
 
-  /** The window that is shown, or is about to be. @returns {import("./slice.js").Window} */
+  /** The window that is shown, or is about to be. @returns {import("../engine/starts.js").Window} */
   get #present() {
     const [x, y] = this.#ranges()
     return this.#window ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
@@ -194,8 +192,8 @@ export class Preview {
   /**
    * Show the pixels of a preview: in Bokeh's pictures, or over them while the energy moves.
    *
-   * @param {import("./pixels.js").View} view
-   * @param {import("./pixels.js").Pixels} pixels
+   * @param {import("../engine/pixels.js").View} view
+   * @param {import("../engine/pixels.js").Pixels} pixels
    * @param {boolean} moving  whether the next preview is to follow in the next frame
    */
   show(view, pixels, moving) {
@@ -234,12 +232,12 @@ export class Preview {
    * The window of the well and its zero-velocity curve; null where the energy is an axis, and the well stays as it is.
    *
    * @param {Integrator} integrator
-   * @param {import("./pixels.js").View} view
+   * @param {import("../engine/pixels.js").View} view
    */
   #traceWell(integrator, {slice, energy}) {
     const {system} = integrator
-    const window = energyAxis(slice) < 0 ? windowAt(system.windows.x_y, energy) : null
-    return window && {window, limit: this.#wellCurves.trace(integrator, {slice: space(system.units), window, energy})}
+    const window = energyAxis(slice) < 0 ? windowAt(integrator, "x_y", energy) : null
+    return window && {window, limit: this.#wellCurves.trace(integrator, {slice: system.space, window, energy})}
   }
 
   /** Show what the server shows. */
@@ -257,7 +255,7 @@ const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.cs
 /**
  * The scene of a view.
  *
- * @param {import("./pixels.js").View} view
- * @returns {import("./frames.js").Scene}
+ * @param {import("../engine/pixels.js").View} view
+ * @returns {import("../workers/frames.js").Scene}
  */
 const pick = ({slice, energy, window, most}) => ({slice, energy, window, most})

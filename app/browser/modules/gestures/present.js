@@ -3,9 +3,9 @@
  * What the page shows now, for modules that are loaded later; `main.js` writes it.
  *
  * @typedef {object} Shown
- * @property {import("./system.js").System} system
- * @property {import("./integrator.js").Modules} modules
- * @property {() => import("./frames.js").Scene | null} scene  slice, energy and window in view; null if the browser cannot compute it
+ * @property {import("../engine/system.js").System} system
+ * @property {import("../engine/integrator.js").Modules} modules
+ * @property {() => import("../workers/frames.js").Scene | null} scene  slice, energy and window in view; null if the browser cannot compute it
  * @property {() => string[]} colours  of the outcomes, exits first
  * @property {() => string[]} labels  of the outcomes
  * @property {HTMLElement} host  for canvases over the pictures

@@ -60,6 +60,16 @@ export class Numbers {
   }
 
   /**
+   * The first of the arrays along the first axis.
+   *
+   * @param {number} count
+   */
+  first(count) {
+    const [, ...shape] = this.shape
+    return new Numbers(this.#memory, this.#kind, this.address, [count, ...shape])
+  }
+
+  /**
    * One of the arrays along the first axis.
    *
    * @param {number} index
@@ -91,6 +101,7 @@ export class Integrator {
       __indirect_function_table: table,
       sin: Math.sin,
       cos: Math.cos,
+      hypot: Math.hypot,
     }
     this.#memory = memory
     this.#heap = new Numbers(memory, "int64", heap, [1])
@@ -101,16 +112,17 @@ export class Integrator {
     this.address = Object.fromEntries(functions.map((name, k) => [name, k + 1]))
     this.#free = STACK
     this.table = this.array("float64", [system.table.length], system.table)
-    this.#point = [this.address.potential_value, ...this.table.passed]
-    this.polynomial = system.polynomial && this.#polynomial(system.polynomial)
+    /** The kernel that finds starts beyond an exit, and its first arguments. @type {[string, ...(number | Numbers<any>)[]]} */
+    this.interior = system.polynomial
+      ? ["find_outside_polynomial", ...this.#polynomial(system.polynomial)]
+      : ["find_outside", this.address.potential_slopes, this.table, system.innerRadius]
     /** The tables of the exits over saddles. */
-    this.exitTables = system.exits.map(exit => ("radius" in exit ? null : this.#exitTable(exit)))
+    this.exitTables = system.exits.map(exit => ("row" in exit ? null : this.#exitTable(exit)))
   }
 
   #memory
   #heap
   #exports
-  #point
 
   /** Where memory is free. */
   get #free() {
@@ -168,6 +180,18 @@ export class Integrator {
   }
 
   /**
+   * An array of integers.
+   *
+   * @param {ArrayLike<number>} numbers
+   */
+  integers(numbers) {
+    const array = this.array("int64", [numbers.length])
+    const {values} = array
+    for (let k = 0; k < numbers.length; k++) values[2 * k] = numbers[k]
+    return array
+  }
+
+  /**
    * Give back the memory of the arrays that are made meanwhile.
    *
    * @template T
@@ -199,18 +223,6 @@ export class Integrator {
     const result = this.#exports[name](...numbers)
     this.#free = free
     return result
-  }
-
-  /**
-   * V at a point.
-   *
-   * @param {number} x
-   * @param {number} y
-   * @returns {number}
-   */
-  value(x, y) {
-    const [address, table, entries] = this.#point
-    return this.#exports.potential_at(address, table, entries, x, y)
   }
 }
 

@@ -8,9 +8,6 @@
  * @property {number} number
  * @property {boolean} isOpen
  * @property {boolean} isCircle  within or beyond which orbits end
- * @property {boolean} returns  whether an orbit can pass it and return
- * @property {[number, number]} outward  of an exit over a saddle
- * @property {number} halfWidth
  */
 
 export class Exits {
@@ -30,7 +27,7 @@ export class Exits {
     this.curves = integrator.array("float64", [...shape, layout.exits.count])
     /** Of all energies, (exits, 3). */
     this.gates = integrator.array("float64", [exits.length, 3])
-    exits.forEach((exit, k) => ("radius" in exit ? this.#placeCircle(exit, k) : this.#interpolate(exit, k, energies)))
+    exits.forEach((exit, k) => ("row" in exit ? this.#placeCircle(exit, k) : this.#interpolate(exit, k, energies)))
   }
 
   #integrator
@@ -40,39 +37,23 @@ export class Exits {
    * @param {import("./system.js").Circle} circle
    * @param {number} k
    */
-  #placeCircle({side, x, y, radius}, k) {
-    const {originX, originY, halfWidth, shape, shapes} = this.#columns
-    for (let row = 0; row < this.curves.shape[0]; row++) {
-      const curve = this.curves.at(row).at(k).values
-      curve[originX] = x
-      curve[originY] = y
-      curve[halfWidth] = radius
-      curve[shape] = side < 0 ? shapes.disc : shapes.circle
-    }
-    this.gates.at(k).values.set([x, y, radius])
+  #placeCircle({row, gate}, k) {
+    for (let energy = 0; energy < this.curves.shape[0]; energy++) this.curves.at(energy).at(k).values.set(row)
+    this.gates.at(k).values.set(gate)
   }
 
   /**
-   * The gate is the one that is inside the exits at all energies.
-   *
-   * @param {Pick<import("./system.js").ExitTable, "shape" | "saddle">} table
+   * @param {import("./system.js").ExitTable} table
    * @param {number} k
    * @param {ArrayLike<number>} energies
    */
   #interpolate({shape, saddle}, k, energies) {
     const integrator = this.#integrator
-    const gates = this.gates.at(k)
-    gates.values[2] = Infinity
+    const table = integrator.exitTables[k] ?? []
     integrator.temporarily(() => {
-      const table = integrator.exitTables[k] ?? []
+      const places = integrator.array("float64", [energies.length], energies)
       const code = this.#columns.shapes[shape]
-      const gate = integrator.array("float64", [3])
-      for (let row = 0; row < energies.length; row++) {
-        const place = Math.sqrt(Math.max(energies[row] - saddle, 0))
-        gate.values.fill(0)
-        integrator.call("interpolate_exit", ...table, place, code, this.curves.at(row).at(k), gate)
-        if (row === 0 || gate.values[2] < gates.values[2]) gates.values.set(gate.values)
-      }
+      integrator.call("interpolate_exit", ...table, saddle, code, places, k, this.curves, this.gates)
     })
   }
 
@@ -83,16 +64,13 @@ export class Exits {
    * @returns {Exit[]}
    */
   list(row = 0) {
-    const {shape, shapes, outwardX, outwardY, halfWidth} = this.#columns
+    const {shape, shapes} = this.#columns
     return Array.from({length: this.count}, (_, k) => {
       const curve = this.curves.at(row).at(k).values
       return {
         number: k + 1,
         isOpen: curve[shape] !== shapes.closed,
         isCircle: curve[shape] >= shapes.disc,
-        returns: curve[shape] >= shapes.line,
-        outward: [curve[outwardX], curve[outwardY]],
-        halfWidth: curve[halfWidth],
       }
     })
   }

@@ -4,12 +4,10 @@
  * when it rests. Only the newest view is kept; the picture that is being computed while the view moves is finished first, so that
  * fast moves show pictures as well.
  *
- * @typedef {import("./pixels.js").View} View
- * @typedef {import("./pixels.js").Pixels} Pixels
+ * @typedef {import("../engine/pixels.js").View} View
+ * @typedef {import("../engine/pixels.js").Pixels} Pixels
  * @typedef {Omit<View, "columns" | "rows" | "horizon">} Scene  slice, energy and window to draw
  */
-
-import {mirroredAxes} from "./slice.js"
 
 /** Pixels along a side while the view moves, at least, and longest time in units of the well. */
 export const LEAST_SIDE = 76
@@ -43,7 +41,7 @@ export class Frames {
   #pool
   #workers
   #show
-  /** @type {import("./system.js").System | null} */
+  /** @type {import("../engine/system.js").System | null} */
   #system = null
   /** @type {Scene | null} */
   #scene = null
@@ -55,8 +53,8 @@ export class Frames {
   #mostPixels = RESTING[RESTING.length - 1].side
 
   /**
-   * @param {import("./system.js").System} system
-   * @param {import("./integrator.js").Modules} modules
+   * @param {import("../engine/system.js").System} system
+   * @param {import("../engine/integrator.js").Modules} modules
    */
   setSystem(system, modules) {
     this.stop()
@@ -144,7 +142,7 @@ export class Frames {
 /** The pixels of a view; of two mirror images only one is computed. */
 export class Picture {
   /**
-   * @param {import("./system.js").System} system
+   * @param {import("../engine/system.js").System} system
    * @param {View} view
    */
   constructor(system, view) {
@@ -169,7 +167,7 @@ export class Picture {
    * Deal the rows to compute out into parts.
    *
    * @param {number} count
-   * @returns {import("./pixels.js").Part[]}
+   * @returns {import("../engine/pixels.js").Part[]}
    */
   deal(count) {
     const {columns, rows} = this.#view
@@ -184,7 +182,7 @@ export class Picture {
   }
 
   /**
-   * @param {import("./pixels.js").Part} part
+   * @param {import("../engine/pixels.js").Part} part
    * @param {Pixels} computed
    */
   add(part, computed) {
@@ -219,4 +217,18 @@ export class Picture {
     }
     return this.pixels
   }
+}
+
+/**
+ * Which axes of a view change their direction under x → −x; null if the view is not its own mirror image.
+ *
+ * @param {import("../engine/system.js").System} system
+ * @param {Pick<import("../engine/system.js").Slice, "mirrored">} slice
+ * @param {import("../engine/starts.js").Window} window
+ * @returns {[boolean, boolean] | null}
+ */
+export function mirroredAxes(system, {mirrored}, {xLow, xHigh, ordinateLow, ordinateHigh}) {
+  if (!system.mirror || !mirrored || !(mirrored[0] || mirrored[1])) return null
+  const symmetric = (!mirrored[0] || xLow === -xHigh) && (!mirrored[1] || ordinateLow === -ordinateHigh)
+  return symmetric ? mirrored : null
 }

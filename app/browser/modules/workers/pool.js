@@ -3,9 +3,9 @@
  * Workers that compute parts of one picture at a time. Each has one part; the others wait here, and are dropped when another
  * picture is wanted.
  *
- * @typedef {import("./pixels.js").View} View
- * @typedef {import("./pixels.js").Part} Part
- * @typedef {import("./pixels.js").Pixels} Pixels
+ * @typedef {import("../engine/pixels.js").View} View
+ * @typedef {import("../engine/pixels.js").Part} Part
+ * @typedef {import("../engine/pixels.js").Pixels} Pixels
  *
  * @typedef {object} Picture
  * @property {View} view
@@ -35,8 +35,8 @@ export class Pool {
   /**
    * Give a system to all workers, which are started at the first one.
    *
-   * @param {import("./system.js").System} system
-   * @param {import("./integrator.js").Modules} modules
+   * @param {import("../engine/system.js").System} system
+   * @param {import("../engine/integrator.js").Modules} modules
    */
   setSystem(system, modules) {
     this.cancel()

@@ -7,24 +7,24 @@ from typing import Any
 
 import numpy as np
 
+from engine.exits.exit_rows import exit_gates
 from engine.exits.exit_tables import ExitTable, tabulate_exits
 from engine.exits.interior import find_inner_radius, tabulate_polynomial
 from engine.integrator.jit.kernel_module import HEAP_CELL
 from engine.integrator.jit.webassembly import FUNCTIONS, PAIR, webassembly_module
-from engine.integrator.kernels import events
+from engine.integrator.kernels import events, slice_starts
+from engine.integrator.kernels.random_starts import BEFORE_EXIT
 from engine.integrator.source.recurrence import ROWS, TOLERANCE, generate_code
-from engine.integrator.source.series import ORDER, ROTATION
-from engine.propagation.fates import Fate
+from engine.integrator.source.series import ORDER
+from engine.slices.axes import Coordinate
+from engine.slices.planes import SPACE
+from engine.slices.slice import Slice
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
+from engine.systems.well_units import WellUnits
 
 _EXIT_COLUMNS = {
     "count": events.CURVE_COLUMNS,
-    "originX": events.ORIGIN_X,
-    "originY": events.ORIGIN_Y,
-    "outwardX": events.OUTWARD_X,
-    "outwardY": events.OUTWARD_Y,
-    "halfWidth": events.HALF_WIDTH,
     "shape": events.SHAPE,
     "shapes": {
         "closed": events.CLOSED,
@@ -48,8 +48,8 @@ class PortableSystem:
         WebAssembly with the functions of its structure, see `engine.integrator.jit.webassembly`.
     table
         (m,) the coefficients in the form that the functions take.
-    rotation
-        Index of 2Ω in the table, which has the other sign backward in time; None in a frame that does not rotate.
+    backward
+        (m,) those of the system backward in time, whose orbits have the opposite velocities.
     exits
         The exits of each channel.
     """
@@ -57,13 +57,13 @@ class PortableSystem:
     potential: Potential
     module: bytes
     table: np.ndarray
-    rotation: int | None
+    backward: np.ndarray
     exits: tuple[ExitTable, ...]
 
     @property
     def nbytes(self) -> int:
         """Approximate size in bytes."""
-        return len(self.module) + self.table.nbytes + sum(exits.rows.nbytes for exits in self.exits) + 2048
+        return len(self.module) + 2 * self.table.nbytes + sum(exits.rows.nbytes for exits in self.exits) + 2048
 
     def to_dict(self) -> dict[str, object]:
         """All of it but the module as lists and numbers."""
@@ -76,17 +76,20 @@ class PortableSystem:
                 "lanes_together": PAIR,
                 "tolerance": TOLERANCE,
                 "heap": HEAP_CELL,
+                "beforeExit": BEFORE_EXIT,
                 "functions": list(FUNCTIONS),
-                "fates": {fate.name.lower(): int(fate) for fate in Fate},
+                "fates": {"bounded": events.BOUNDED, "not_computed": events.NOT_COMPUTED},
                 "exits": _EXIT_COLUMNS,
             },
             "table": self.table.tolist(),
-            "rotation": self.rotation,
+            "backward": self.backward.tolist() if self.potential.rotation else None,
             "polynomial": _polynomial_data(well.form),
             "innerRadius": find_inner_radius(well),
             "exits": [*self._tables(), *_circles(well)],
             "mirror": mirror,
-            "units": {"length": units.length, "time": units.time},
+            "units": {"length": units.length, "time": units.time, "energy": units.energy},
+            "space": SPACE.to_dict(units),
+            "surface": _energy_surface(units),
         }
 
     def _tables(self) -> list[dict[str, object]]:
@@ -98,9 +101,19 @@ class PortableSystem:
         ]
 
 
+def _energy_surface(units: WellUnits) -> dict[str, object]:
+    """All directions of the velocity at all places: a slice with a third axis, the angle."""
+    launched = Slice(*SPACE.axes, Coordinate.SPEED).to_dict(units)
+    turned = [float(column == slice_starts.ANGLE) for column in range(slice_starts.COORDINATES)]
+    return {**launched, "motion": [*launched["motion"], turned]}
+
+
 def _circles(well: Potential) -> list[dict[str, object]]:
-    """The other ends."""
-    return [{"side": end.side, "x": end.x, "y": end.y, "radius": end.radius} for end in well.ends]
+    """The other ends: their rows for the kernels, and their gates."""
+    return [
+        {"side": end.side, "radius": end.radius, "row": end.row.tolist(), "gate": exit_gates(end.row[None, None])[0].tolist()}
+        for end in well.ends
+    ]
 
 
 def _polynomial_data(form: Any) -> dict[str, object] | None:
@@ -118,6 +131,6 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     well = potential.in_well_units
     definition, setting = well.form.definition, well.well.setting
     code = generate_code(definition, **setting._asdict())
-    table, rotation = code.tabulate(definition, well.rotation), code.entries.index(ROTATION) if setting.rotates else None
+    table, backward = (code.tabulate(definition, rotation) for rotation in (well.rotation, -well.rotation))
     exits = tabulate_exits(well, highest / potential.units.energy)
-    return PortableSystem(potential, webassembly_module(code), table, rotation, exits)
+    return PortableSystem(potential, webassembly_module(code), table, backward, exits)

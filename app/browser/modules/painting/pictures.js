@@ -77,7 +77,7 @@ export function cover(canvas, box) {
  * Draw a line given in the coordinates of a window that fills a square or a rectangle.
  *
  * @param {CanvasRenderingContext2D} context
- * @param {import("./slice.js").Window} window
+ * @param {import("../engine/starts.js").Window} window
  * @param {DOMRect} box
  * @param {{xs: ArrayLike<number>, ys: ArrayLike<number>}} line
  * @param {string} colour

@@ -14,10 +14,10 @@ const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;backgro
  *
  * @typedef {object} Painting
  * @property {number} energy
- * @property {import("./slice.js").Window} window
+ * @property {import("../engine/starts.js").Window} window
  * @property {import("./columns.js").Columns} columns
  * @property {Lines} lines  of the maps
- * @property {{window: import("./slice.js").Window, lines: Lines} | null} well  null where the well stays as it is
+ * @property {{window: import("../engine/starts.js").Window, lines: Lines} | null} well  null where the well stays as it is
  *
  * Lines by the names of Bokeh's data sources.
  *
@@ -118,7 +118,7 @@ export class Overlay {
  *
  * @param {CanvasRenderingContext2D} context
  * @param {any} plot
- * @param {import("./slice.js").Window} window
+ * @param {import("../engine/starts.js").Window} window
  * @param {DOMRect} box
  * @param {Lines} lines
  */

@@ -1,15 +1,13 @@
 // @ts-check
 /** The player of an ensemble: controls, particles over the well and the section, counters, and the survival. */
 
-import {Outcomes} from "./outcomes.js"
-import {Ensemble} from "./ensemble.js"
-import {drawStarts} from "./ensemble_starts.js"
-import {Integrator} from "./integrator.js"
-import {cover, frames, onMoved, wellFrame} from "./pictures.js"
+import {Ensemble, Outcomes} from "../engine/ensemble.js"
+import {Integrator} from "../engine/integrator.js"
+import {drawStarts} from "../engine/random_starts.js"
+import {energyAxis, windowAt} from "../engine/starts.js"
+import {cover, frames, onMoved, wellFrame} from "../painting/pictures.js"
+import {drawSurvival} from "../painting/survival_chart.js"
 import {onPresent, present} from "./present.js"
-import {energyAxis, energyUnit} from "./slice.js"
-import {drawSurvival} from "./survival_chart.js"
-import {windowAt} from "./system.js"
 
 /** Longest time, in units of the well. */
 const LONGEST = 100
@@ -118,6 +116,8 @@ class Watch {
   #chart = make("canvas", {className: "survival"})
   #well = make("canvas")
   #section = make("canvas")
+  /** @type {Integrator | null} */
+  #integrator = null
   /** @type {Ensemble | null} */
   #ensemble = null
   /** @type {Outcomes | null} */
@@ -196,15 +196,15 @@ class Watch {
 
   /**
    * @param {import("./present.js").Shown} shown
-   * @param {import("./frames.js").Scene} scene
+   * @param {import("../workers/frames.js").Scene} scene
    */
   #make({system, modules}, scene) {
     const {where, count, seed, radius, point, box} = this.#model
-    const integrator = new Integrator(system, modules)
+    const integrator = (this.#integrator = new Integrator(system, modules))
     const isMissing = (where === "disc" && !point.length) || (where === "box" && !box.length)
     const request = {where: isMissing ? "view" : where, count, seed, point, box, radius: 10 ** radius}
     const states = drawStarts(request, scene, integrator)
-    const energy = scene.energy / energyUnit(system.units)
+    const energy = scene.energy / system.units.energy
     this.#ensemble = new Ensemble(integrator, energy, states)
     this.#outcomes = new Outcomes(system, modules, energy, states, LONGEST)
   }
@@ -291,8 +291,8 @@ class Watch {
    * @param {import("./present.js").Shown} shown
    */
   #paintWell(ensemble, {system, scene, colours}) {
-    const [frame, energy] = [wellFrame(), scene()?.energy]
-    const window = energy === undefined ? null : windowAt(system.windows.x_y, energy)
+    const [frame, energy, integrator] = [wellFrame(), scene()?.energy, this.#integrator]
+    const window = energy === undefined || !integrator ? null : windowAt(integrator, "x_y", energy)
     if (!frame || !window) return void (this.#well.style.display = "none")
     this.#paint(
       this.#well,
@@ -315,7 +315,8 @@ class Watch {
    */
   #paintSection(ensemble, {scene, colours}) {
     const [frame, view] = [frames()[0], scene()]
-    const isSection = view?.slice.axes.join() === "x,px" && !view.slice.fixed.y
+    // The second coordinate of the origin is y.
+    const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
     // Before the first passage the map stays as it is.
     if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
       return void (this.#section.style.display = "none")
@@ -330,7 +331,7 @@ class Watch {
    *
    * @param {HTMLCanvasElement} canvas
    * @param {DOMRect} box
-   * @param {import("./slice.js").Window} window
+   * @param {import("../engine/starts.js").Window} window
    * @param {string[]} colours
    * @param {Ensemble} ensemble
    * @param {Float64Array} xs

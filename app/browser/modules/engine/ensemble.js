@@ -1,27 +1,30 @@
 // @ts-check
 /**
  * Many orbits at the same time. Each keeps the series of its present step, so that its place at any time within the step costs two
- * polynomials; see `engine/integrator/kernels/ensemble.py`.
+ * polynomials; see `engine/integrator/kernels/ensemble.py`. And the exits at which they will end.
  */
 
 import {Exits} from "./exits.js"
-import {evaluateSeries} from "./series.js"
+import {Integrator} from "./integrator.js"
+import {findAllEnds} from "./orbits.js"
 
 /** Orbits are followed for this long beyond an exit that is no disc, in units of the well. */
 export const FOLLOWED_BEYOND = 1.5
+/** Orbits whose outcomes are found at a time. */
+const PORTION = 256
 
 export class Ensemble {
   /**
-   * @param {import("./integrator.js").Integrator} integrator  whose memory the ensemble keeps
+   * @param {Integrator} integrator  whose memory the ensemble keeps
    * @param {number} energy  in units of the well
-   * @param {Float64Array} states  x, y, px, py of each start, in units of the well
+   * @param {ArrayLike<number>} states  x, y, px, py of each start, in units of the well
    */
   constructor(integrator, energy, states) {
     const count = states.length / 4
     const {rows, order} = integrator.system.layout
     this.#integrator = integrator
     this.#exits = new Exits(integrator, [energy])
-    this.#starts = states
+    this.#starts = integrator.array("float64", [count, 4], states)
     /** In the order of the kernel. */
     this.#arrays = {
       ends: integrator.array("float64", [rows, count]),
@@ -78,16 +81,8 @@ export class Ensemble {
 
   /** Put all orbits back to their starts. */
   restart() {
-    const {ends, begin, leaving, escapeTime, last, section} = this.#arrays
     this.time = 0
-    for (const array of [ends, begin, leaving, this.#channels]) array.values.fill(0)
-    for (const array of [escapeTime, last]) array.values.fill(Infinity)
-    section.values.fill(NaN)
-    const [places, states] = [this.#places.values, ends.values]
-    for (let i = 0; i < this.count; i++) {
-      for (let row = 0; row < 4; row++) states[row * this.count + i] = this.#starts[4 * i + row]
-      for (let row = 0; row < 2; row++) places[row * this.count + i] = this.#starts[4 * i + row]
-    }
+    this.#integrator.call("begin_ensemble", this.#starts, ...Object.values(this.#arrays), this.#places, this.#channels)
   }
 
   /**
@@ -109,37 +104,59 @@ export class Ensemble {
 
   /** How many times as wide as at their starts the orbits are spread that are still inside. */
   growth() {
-    const {channel} = this
-    const inside = [...channel.keys()].filter(i => channel[i] === 0)
-    const [starts, x, y] = [this.#starts, this.x, this.y]
-    const before = width(inside, i => starts[4 * i]) ** 2 + width(inside, i => starts[4 * i + 1]) ** 2
-    const now = width(inside, i => x[i]) ** 2 + width(inside, i => y[i]) ** 2
-    return Math.sqrt(now / before)
+    return this.#integrator.call("measure_spread", this.#starts, this.#places, this.#channels)
   }
 
-  /** Momenta at the present time, which is after the first step; those of orbits that have left mean nothing. */
-  momenta() {
-    const {begin, jets} = this.#arrays
-    const times = Array.from(begin.values, each => this.time - each)
-    const [, , px, py] = evaluateSeries(this.#integrator, jets, [...times.keys()], times)
-    return {px, py}
+  /** The states of the orbits that are still inside, after the first step, with reversed momenta. */
+  reversed() {
+    return this.#integrator.temporarily(() => {
+      const states = this.#integrator.array("float64", [this.count, 4])
+      const arrays = Object.values(this.#arrays)
+      const count = this.#integrator.call("reverse_ensemble", this.time, ...arrays, this.#channels, states)
+      return Float64Array.from(states.first(count).values)
+    })
   }
 }
 
-/**
- * Standard deviation of a number of some orbits.
- *
- * @param {number[]} orbits
- * @param {(orbit: number) => number} value
- */
-function width(orbits, value) {
-  let [sum, squares] = [0, 0]
-  // Relative to the first one: those of a small disc differ in their last digits only.
-  const origin = orbits.length ? value(orbits[0]) : 0
-  for (const orbit of orbits) {
-    const difference = value(orbit) - origin
-    sum += difference
-    squares += difference * difference
+/** The exits at which the orbits of an ensemble will end, found in portions between the frames of the display. */
+export class Outcomes {
+  /**
+   * @param {import("./system.js").System} system
+   * @param {import("./integrator.js").Modules} modules
+   * @param {number} energy  in units of the well
+   * @param {Float64Array} states  x, y, px, py of each start
+   * @param {number} horizon  in units of the well
+   */
+  constructor(system, modules, energy, states, horizon) {
+    this.#integrator = new Integrator(system, modules)
+    this.#exits = new Exits(this.#integrator, [energy])
+    this.#states = states
+    this.#horizon = horizon
+    /** Number of the exit of each orbit; 0 where it is not known yet, and for those that stay until the horizon. */
+    this.channel = new Uint8Array(states.length / 4)
   }
-  return Math.sqrt(Math.max(squares / orbits.length - (sum / orbits.length) ** 2, 0))
+
+  #integrator
+  #exits
+  #states
+  #horizon
+  #known = 0
+
+  /** Whether all are known. */
+  get complete() {
+    return this.#known === this.channel.length
+  }
+
+  /** Find those of the next portion. */
+  continue() {
+    const first = this.#known
+    this.#known = Math.min(first + PORTION, this.channel.length)
+    const states = this.#states.subarray(4 * first, 4 * this.#known)
+    const {tolerance} = this.#integrator.system.layout
+    const {fate} = findAllEnds(this.#integrator, states, this.#exits, {horizon: this.#horizon, tolerance})
+    this.channel.set(
+      fate.map(code => Math.max(code, 0)),
+      first,
+    )
+  }
 }

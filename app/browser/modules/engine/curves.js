@@ -2,8 +2,8 @@
 /** The lines over the pictures at an energy of a preview: the limiting curve, and the exits, circles included. */
 
 import {Exits} from "./exits.js"
-import {sampleGrid, levelLines} from "./contours.js"
-import {energyAxis, energyUnit, Starts} from "./slice.js"
+import {levelLines, SAMPLES} from "./contours.js"
+import {describeSlice, energyAxis, placeWindow} from "./starts.js"
 
 /** Points along an exit over a saddle, and along a circle. */
 const [EXIT_POINTS, CIRCLE_POINTS] = [41, 121]
@@ -24,14 +24,27 @@ export class LimitingCurves {
     const {system} = integrator
     const key = JSON.stringify([system.key, slice, window])
     if (key !== this.#key || !this.#grid) {
-      const starts = new Starts(slice, integrator, 0)
-      const [unitX, unitOrdinate] = slice.units
-      this.#grid = sampleGrid(window, (x, ordinate) => starts.requiredEnergy(x / unitX, ordinate / unitOrdinate))
+      this.#grid = {window, values: requiredEnergies(integrator, slice, window)}
       this.#key = key
     }
-    return levelLines(this.#grid, energyAxis(slice) >= 0 ? 0 : energy / energyUnit(system.units))
+    return levelLines(this.#grid, energyAxis(slice) >= 0 ? 0 : energy / system.units.energy)
   }
 }
+
+/**
+ * The lowest energies at which starts exist on a lattice of a window, row by row.
+ *
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {import("./system.js").Slice} slice
+ * @param {import("./starts.js").Window} window
+ */
+const requiredEnergies = (integrator, slice, window) =>
+  integrator.temporarily(() => {
+    const required = integrator.array("float64", [SAMPLES, SAMPLES])
+    const described = describeSlice(integrator, slice, 0)
+    integrator.call("find_required_energies", ...described, placeWindow(integrator, window, slice.units), required)
+    return Float64Array.from(required.values)
+  })
 
 /**
  * The lines of the open exits in units of the page, with the places of their numbers; NaN for circles.
@@ -43,7 +56,7 @@ export class LimitingCurves {
 export function exitLines(integrator, energy) {
   const {units} = integrator.system
   return integrator.temporarily(() => {
-    const exits = new Exits(integrator, [energy / energyUnit(units)])
+    const exits = new Exits(integrator, [energy / units.energy])
     const open = exits.list().filter(({isOpen}) => isOpen)
     return open.map(exit => {
       const count = exit.isCircle ? CIRCLE_POINTS : EXIT_POINTS

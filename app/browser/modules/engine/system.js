@@ -7,12 +7,14 @@
  * @property {string} key  different for each system
  * @property {Layout} layout
  * @property {number[]} table  coefficients in the form that the functions of a structure take
- * @property {number | null} rotation  index of 2Ω in the table; null in a frame that does not rotate
+ * @property {number[] | null} backward  table of the system backward in time; null for the same one
  * @property {PolynomialTable | null} polynomial  V; null for an expression
  * @property {number} innerRadius  radius of the gap at the origin; 0 for a well there
  * @property {ExitData[]} exits  one for each outcome: the exits of channels, then circles
  * @property {number[] | null} mirror  image of each outcome's number under x → −x; null without this symmetry
- * @property {{length: number, time: number}} units
+ * @property {{length: number, time: number, energy: number}} units
+ * @property {Slice} space  the plane of the positions
+ * @property {Slice} surface  all directions of the velocity at all places, with the angle as a third axis
  * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
  *
  * V = Σ c x^i y^j as the interior test takes it.
@@ -26,25 +28,25 @@
  * @property {number} rows  of the state of an orbit between two steps
  * @property {number} lanes_together  lanes that a step computes at least
  * @property {number} tolerance  of the steps that the server takes
+ * @property {number} beforeExit  how long before they come to the exit orbits at the edge of tubes start
  * @property {number} heap  address of the address from which on memory is free
  * @property {string[]} functions  names of those of a structure, in the order of their addresses
- * @property {Record<"bounded" | "not_computed" | "failed" | "outside" | "forbidden", number>} fates
+ * @property {Record<"bounded" | "not_computed", number>} fates
  * @property {ExitColumns} exits
  *
- * Columns of an exit, their number, and the values of that for its shape.
+ * Number of columns of an exit, that of its shape, and the values there.
  *
- * @typedef {Record<"count" | "originX" | "originY" | "outwardX" | "outwardY" | "halfWidth" | "shape", number>
- *   & {shapes: Record<"closed" | "curve" | "line" | "disc" | "circle", number>}} ExitColumns
+ * @typedef {{count: number, shape: number, shapes: Record<"closed" | "curve" | "line" | "disc" | "circle", number>}} ExitColumns
  *
  * @typedef {object} WindowTable
  * @property {number[]} energies  rising, in units of the page
- * @property {[number, number, number, number][]} windows  lowest and highest abscissa, lowest and highest ordinate
+ * @property {number[][]} windows  lowest and highest abscissa, lowest and highest ordinate
  *
  * @typedef {ExitTable | Circle} ExitData
  *
- * A circle at which orbits end: within it, as at a body, or beyond it.
+ * A circle at which orbits end: within it, as at a body, or beyond it; its numbers in the form that kernels take.
  *
- * @typedef {{side: -1 | 1, x: number, y: number, radius: number}} Circle
+ * @typedef {{side: -1 | 1, radius: number, row: number[], gate: number[]}} Circle
  *
  * @typedef {object} ExitTable
  * @property {"curve" | "line"} shape  a line in a frame that rotates
@@ -57,35 +59,16 @@
 
 /**
  * Which starts a picture holds, in units of the well: they move along two axes, other coordinates are fixed, and the energy decides
- * a momentum, which has the given sign, or the speed v. h is that of the view if it is no axis.
- *
- * @typedef {"x" | "y" | "px" | "py" | "theta" | "beta" | "h"} Coordinate
+ * a momentum, which has the given sign, or the speed.
  *
  * @typedef {object} Slice
  * @property {[string, string]} axes  names
  * @property {[number, number]} units  the numbers by which those of the page are divided
- * @property {[Move, Move]} moves
- * @property {Partial<Record<Coordinate, number>>} fixed
- * @property {"px" | "py" | "v"} decided
+ * @property {number[][]} motion  coordinates at the origin, then how far they move where an axis rises by 1; the last one is the energy
+ * @property {number} decided  code of what the energy decides
  * @property {1 | -1} sign
  * @property {[boolean, boolean] | null} mirrored  whether each axis changes its direction under x → −x; null without this symmetry
- *
- * How far a start moves along each coordinate where an axis rises by 1.
- *
- * @typedef {Partial<Record<Coordinate, number>>} Move
- *
- * A start with its energy, and with an angle that decides its momenta.
- *
- * @typedef {{x: number, y: number, px: number, py: number, h: number, theta: number, beta?: any}} Start
  */
-
-/**
- * Whether the exits of a system are known at an energy in units of the well.
- *
- * @param {System} system
- * @param {number} energy
- */
-export const coversEnergy = (system, energy) => system.exits.every(exit => "radius" in exit || energy <= exit.highest)
 
 /**
  * The system whose orbits, with reversed velocities, are those of a system backward in time.
@@ -93,26 +76,12 @@ export const coversEnergy = (system, energy) => system.exits.every(exit => "radi
  * @param {System} system
  * @returns {System}
  */
-export const reversedInTime = system => ({
-  ...system,
-  table: system.table.map((value, entry) => (entry === system.rotation ? -value : value)),
-})
+export const reversedInTime = system => ({...system, table: system.backward ?? system.table})
 
 /**
- * The default window at an energy, linear between tabulated ones; null beyond the table.
+ * Whether the exits of a system are known at an energy in units of the well.
  *
- * @param {WindowTable | undefined} table
- * @param {number} energy  in units of the page
- * @returns {import("./slice.js").Window | null}
+ * @param {System} system
+ * @param {number} energy
  */
-export function windowAt(table, energy) {
-  const above = table ? table.energies.findIndex(each => each >= energy) : -1
-  if (!table || above < 0 || energy < table.energies[0]) return null
-  const below = Math.max(above - 1, 0)
-  const [low, high] = [table.energies[below], table.energies[above]]
-  const share = high > low ? (energy - low) / (high - low) : 0
-  const [xLow, xHigh, ordinateLow, ordinateHigh] = table.windows[below].map(
-    (edge, k) => edge + share * (table.windows[above][k] - edge),
-  )
-  return {xLow, xHigh, ordinateLow, ordinateHigh}
-}
+export const coversEnergy = (system, energy) => system.exits.every(exit => "row" in exit || energy <= exit.highest)

@@ -15,14 +15,14 @@
  * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
  */
 
-import {energyAxis} from "./slice.js"
+import {energyAxis} from "../engine/starts.js"
 
 /**
  * The columns of the pictures' data source for the pixels of a view, as the server makes them of a map.
  *
  * @param {Coding} coding
- * @param {import("./pixels.js").View} view
- * @param {import("./pixels.js").Pixels} pixels
+ * @param {import("../engine/pixels.js").View} view
+ * @param {import("../engine/pixels.js").Pixels} pixels
  * @param {Columns} like  columns from the server, for the types of their images
  * @param {Columns | null} compared  columns of the view with which this one is compared pixel by pixel; null for none
  * @returns {Columns}
@@ -63,7 +63,7 @@ export function pixelColumns(coding, view, pixels, like, compared) {
  * Codes of the pixels that have another outcome in another view, as `difference_column` of the server gives them.
  *
  * @param {Coding} coding
- * @param {import("./pixels.js").View} view
+ * @param {import("../engine/pixels.js").View} view
  * @param {Uint8Array} fate  codes of its pixels
  * @param {Columns} compared
  */
@@ -103,7 +103,7 @@ export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY *
  * Whether columns from the server show a scene, with at least as many pixels as a preview of it.
  *
  * @param {Columns} columns
- * @param {import("./frames.js").Scene} scene
+ * @param {import("../workers/frames.js").Scene} scene
  * @param {number} rows  of the preview
  */
 export function showsScene({x, y, dw, dh, energy, fate, complete}, {window, energy: wanted, slice}, rows) {

@@ -1,15 +1,15 @@
 // @ts-check
 /** A worker: computes the pixels of parts of views, one after the other. */
 
-import {Integrator} from "./integrator.js"
-import {computePixels} from "./pixels.js"
+import {Integrator} from "../engine/integrator.js"
+import {computePixels} from "../engine/pixels.js"
 
 /**
- * @typedef {{system: import("./system.js").System, modules: import("./integrator.js").Modules}} SystemMessage
- * @typedef {{view: import("./pixels.js").View, part: import("./pixels.js").Part}} PartMessage
+ * @typedef {{system: import("../engine/system.js").System, modules: import("../engine/integrator.js").Modules}} SystemMessage
+ * @typedef {{view: import("../engine/pixels.js").View, part: import("../engine/pixels.js").Part}} PartMessage
  */
 
-/** @type {(view: import("./pixels.js").View, part: import("./pixels.js").Part) => import("./pixels.js").Pixels} */
+/** @type {(view: import("../engine/pixels.js").View, part: import("../engine/pixels.js").Part) => import("../engine/pixels.js").Pixels} */
 let compute
 
 /** @param {MessageEvent<SystemMessage | PartMessage>} event */
