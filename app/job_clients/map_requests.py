@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
 
 from app.job_clients.error_messages import sentence
-from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.latest_request import Locked
 from app.state.view_state import ViewState
 from engine import EscapeMap, MapSpec
@@ -51,8 +50,6 @@ class MapRequests:
         Receives frames and errors, under the session's lock.
     locked
         Runs callbacks under the session's lock; it may drop all calls but the latest.
-    follow_ups
-        Analyses of each complete map.
     is_crowded
         Whether the server is crowded; then frames between the first and the last are skipped.
     """
@@ -63,12 +60,11 @@ class MapRequests:
         jobs: JobSubmitter,
         listener: MapListener,
         locked: Locked,
-        follow_ups: Sequence[FollowUp] = (),
         is_crowded: Callable[[], bool] = lambda: False,
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._subscription: Subscription | None = None
-        self._whole_map: EscapeMap | None = None
+        self._is_whole = False
         # Each request has its generation; results of earlier generations are dropped.
         self._generation = 0
         self._generation_lock = threading.RLock()
@@ -81,7 +77,6 @@ class MapRequests:
         self._show_members = locked(self._on_members)
         self._show_frame = locked(self._on_frame)
         self._show_error = locked(self._on_error)
-        self._follow_ups = FollowUpRequests(state, jobs, follow_ups, listener.map_failed, locked)
         state.param.watch(lambda *events: self.request_map(), ["system", "plane", "energy", "t_max", "resolution", "window"])
 
     def request_map(self) -> None:
@@ -151,16 +146,15 @@ class MapRequests:
                 callback(generation, *arguments)
 
     def cancel_map(self) -> None:
-        """Cancel the map and its follow-up analyses."""
-        self._whole_map = None
-        self._follow_ups.follow(None)
+        """Cancel the map."""
+        self._is_whole = False
         if self._subscription is not None:
             self._subscription.cancel()
             self._subscription = None
 
     def stop_map(self) -> None:
         """Cancel the map for the user and drop late frames; no effect on a complete map."""
-        if self._whole_map is not None:
+        if self._is_whole:
             return
         self.cancel_map()
         self._start_generation()
@@ -174,9 +168,7 @@ class MapRequests:
     def _on_frame(self, generation: int, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         if generation == self._generation:
             self._listener.map_arrived(frame, columns)
-            if frame.complete:
-                self._whole_map = frame
-                self._follow_ups.follow(frame)
+            self._is_whole = frame.complete
 
     def _on_error(self, generation: int, error: Exception) -> None:
         if generation == self._generation:

@@ -161,7 +161,7 @@ class EscapeMap(MapResult):
 
     @property
     def is_rounded(self) -> bool:
-        """Whether double precision does not support `NOTED_SHARE` of the pixels or more."""
+        """Whether double precision does not support 1 % of the pixels or more."""
         return self.rounded_share is not None and self.rounded_share >= NOTED_SHARE
 
     @property

@@ -70,7 +70,7 @@ class Potential(Result):
     system
         The `System` whose potential it is; None for one that was made otherwise.
     ends
-        What orbits end at besides exits, of any kind of `engine.systems.outcomes`; `centres` and `escape_radius` replace those of
+        What orbits end at besides exits, such as a `Centre`; `centres` and `escape_radius` replace those of
         their kinds.
     exit_names
         Names of the exits in channel order, such as ("L2", "L1"), which have no influence on any result; they are used where
@@ -165,12 +165,12 @@ class Potential(Result):
 
     @property
     def critical_points(self) -> np.ndarray:
-        """(n, 2) all points with ∇V = 0, see `Well.critical_points`."""
+        """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). ValueError if they form a curve."""
         return self.well.critical_points
 
     @property
     def saddles(self) -> np.ndarray:
-        """(n, 2) exit saddles in channel order, see `Well.saddles`."""
+        """(n, 2) the saddles that lead out of the well at the origin, in channel order; none with an escape radius."""
         return self.well.saddles
 
     @property
@@ -180,7 +180,10 @@ class Potential(Result):
 
     @property
     def escape_energy(self) -> float:
-        """The lowest energy at which orbits can escape, see `Well.escape_energy`."""
+        """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none.
+
+        It is −∞ with an escape radius, because orbits can then start outside the saddles at every energy.
+        """
         return self.well.escape_energy
 
     @property
