@@ -18,7 +18,10 @@ from loky import ProcessPoolExecutor
 from engine.foundations.execution import lower_priority
 
 SECONDS = 5
-"""Processor time of a call."""
+"""Processor time of a review."""
+
+COMPILATION_SECONDS = 60
+"""Processor time of the compilation of one kernel; those of the largest formulas take 10 s."""
 
 PROCESSES = 2
 """Number of processes: while one is busy with a formula of one address, another address waits for nothing."""

@@ -14,7 +14,7 @@ from bokeh.document import Document
 
 from app.runtime.capacity import Capacity, count_page, processor_times
 from app.runtime.fair_share import FairShare
-from app.runtime.limited_process import PROCESSES, LimitedProcesses
+from app.runtime.limited_process import COMPILATION_SECONDS, PROCESSES, LimitedProcess, LimitedProcesses
 from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.settings import Settings, read_settings
@@ -39,6 +39,8 @@ class ProcessState:
         Background jobs of all sessions.
     limited
         The processes for what visitors type.
+    compiler
+        The process that compiles.
     load
         Delay of the event loop.
     capacity
@@ -58,6 +60,7 @@ class ProcessState:
     sockets: Counter[str] = field(default_factory=Counter, init=False)
     jobs: Jobs = field(init=False)
     limited: LimitedProcesses = field(default_factory=LimitedProcesses, init=False)
+    compiler: LimitedProcess = field(default_factory=lambda: LimitedProcess(COMPILATION_SECONDS), init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
     capacity: Capacity = field(init=False)
     metrics: ServerMetrics = field(default_factory=ServerMetrics, init=False)

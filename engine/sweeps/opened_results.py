@@ -15,8 +15,8 @@ from engine.foundations.result import RecordedResult, Result
 from engine.foundations.stored_fields import plain_attributes, read_field
 from engine.foundations.validation import checks_types
 from engine.maps.pixels import PixelAnalysis
-from engine.maps.result import EscapeMap
-from engine.maps.stored_maps import read_map, read_spec
+from engine.maps.result import EscapeMap, read_map
+from engine.maps.spec import read_spec
 from engine.measures.basin_entropy import BasinEntropy
 from engine.measures.chaotic_share import ChaoticShare
 from engine.measures.decay_laws import DecayLaws
