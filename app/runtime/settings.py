@@ -81,8 +81,8 @@ class Settings:
     most_connections
         Maximum number of open connections besides WebSockets; further ones are closed.
     compiled_operations
-        Maximum number of compiled operations of the integrators of all potentials but those of the catalogue, about 4 kB
-        each; code is never unloaded.
+        Maximum number of compiled operations of the integrators of all potentials but those of the catalogue; code is never
+        unloaded.
     cache_bytes
         Size limit of the result cache, in bytes; a complete map of 224 × 224 pixels takes 1.4 MB.
     memory_ceiling

@@ -27,8 +27,8 @@ class Fate(IntEnum):
     """Code of the fate of an orbit. Codes k from 1 are not members: the orbit ended at ``potential.outcomes[k - 1]``."""
 
     BOUNDED = events.BOUNDED
-    FORBIDDEN = -1
-    OUTSIDE = -2
+    FORBIDDEN = events.FORBIDDEN
+    OUTSIDE = events.OUTSIDE
     NOT_COMPUTED = events.NOT_COMPUTED
     FAILED = events.FAILED
 

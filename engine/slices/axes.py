@@ -58,6 +58,11 @@ class Coordinate(Enum):
         momentum = {"px": units.momentum, "py": units.momentum, "v": units.momentum}
         return {"x": units.length, "y": units.length, **momentum, "h": units.energy}.get(self.value, 1.0)
 
+    @property
+    def components(self) -> dict[Coordinate, float]:
+        """How far starts move along each coordinate where the axis rises by 1."""
+        return {self: 1.0}
+
     def in_well_units(self, units: WellUnits) -> Coordinate:
         """The axis itself: its values have units, it has none."""
         return self
@@ -149,6 +154,11 @@ class _SystemAxis:
     """An axis along which the system differs, and starts stay as they are."""
 
     key: str
+
+    @property
+    def components(self) -> dict[Coordinate, float]:
+        """None: starts stay as they are."""
+        return {}
 
     @property
     def symbol(self) -> str:
