@@ -49,14 +49,6 @@ def test_every_name_is_in_the_reference() -> None:
     assert sorted(documented) == sorted([*engine.__all__, *results.__all__])
 
 
-@pytest.mark.parametrize("page", sorted((ROOT / "docs" / "api").glob("*.md")), ids=page_name)
-def test_the_index_lists_the_names_of_each_group(page: Path) -> None:
-    index = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
-    (group,) = re.findall(rf"^## \[.*\]\(api/{page.name}\)$(.*?)^```$", index, re.MULTILINE | re.DOTALL)
-    documented = DOCUMENTED.findall(page.read_text(encoding="utf-8"))
-    assert re.findall(r"^   (?:results\.)?(\w+)$", group, re.MULTILINE) == documented
-
-
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
 def test_links_pictures_formulas_and_names_of_a_page_are_sound(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
