@@ -1,4 +1,4 @@
-"""Pixels that the browser computes beside those of the server: random views of systems of the catalogue, down to 1e-9 of the plane.
+"""Pixels of the browser beside those of the server: random views of systems of the catalogue, down to 1e-6 of the plane.
 
 Needs Node.js. Run: uv run python -m benchmarks.agreement
 """
