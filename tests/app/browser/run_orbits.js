@@ -14,11 +14,16 @@ const system = isBackward ? reversedInTime(input.system) : input.system
 const integrator = new Integrator(system, modules)
 const {layout} = system
 
+function firstFreeByte() {
+  return integrator.temporarily(() => integrator.array("int8", [1]).passed[0])
+}
+
 function preview() {
   const exits = new Exits(integrator, [energy])
+  const before = firstFreeByte()
   const ends = propagate(integrator, Float64Array.from(states.flat()), exits, [], horizon, layout.tolerance)
   const {fate, time, crossings} = ends
-  return {fate: [...fate], time: [...time], crossings: [...crossings]}
+  return {fate: [...fate], time: [...time], crossings: [...crossings], lostBytes: [firstFreeByte() - before]}
 }
 
 function card() {
