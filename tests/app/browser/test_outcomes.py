@@ -12,6 +12,7 @@ import pytest
 
 from engine import (
     CASES,
+    POTENTIALS,
     Fate,
     MapSpec,
     Plane,
@@ -56,9 +57,7 @@ class Example:
     horizon: float = HORIZON
 
 
-_BODIES = [Centre(-0.5, 0.0, 1e-3), Centre(0.5, 0.0, 1e-3)]
-_TWO_BODIES = "-(1-m)/√((x+m)²+y²) - m/√((x+m-1)²+y²)"
-COPENHAGEN = parse_formula(_TWO_BODIES, parameters={"m": 0.5}).in_rotating_frame(1.0).with_outcomes(_BODIES, 10.0)
+COPENHAGEN = POTENTIALS["Copenhagen"]
 ROTATING_WELL = parse_formula("½(x² + y²) − x y²").in_rotating_frame(0.3).with_outcomes((), 3.0)
 EXAMPLES = {
     "two bodies in a rotating frame": Example(COPENHAGEN, -1.3, 3.0),
