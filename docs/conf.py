@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 project = "Escape Explorer"
 author = "The Escape Explorer developers"
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "docs/index"
 include_patterns = ["*.md", "docs/*.md", "docs/api/*.md", "benchmarks/README.md", "examples/tutorial.ipynb"]
 exclude_patterns = [".*", "README.md", "site"]
@@ -44,7 +44,6 @@ nb_execution_timeout = 300
 nb_output_stderr = "remove"
 
 default_role = "py:obj"
-autosummary_generate = False
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 python_maximum_signature_line_length = 100
 napoleon_attr_annotations = False

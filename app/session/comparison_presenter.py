@@ -45,6 +45,7 @@ class ComparisonPresenter:
         refuse: Callable[[str], None],
     ) -> None:
         self._state, self._maps, self._say, self._refuse = context.state, maps, say, refuse
+        self._open_view = context.open_view
         self._frame: EscapeMap | None = None
         self._other: EscapeMap | None = None
         self._reviewed: SystemReview | None = None
@@ -54,13 +55,32 @@ class ComparisonPresenter:
         self._review = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
         self._request = LatestRequest(context.jobs, self._take, self._fail, context.locked)
         self._state.param.watch(lambda event: self._follow(), "compared")
+        context.results.param.watch(lambda event: self._follow_map(context.results.whole_map), "frame")
         self._continue()
 
-    def follow(self, frame: EscapeMap) -> None:
-        """Compare this complete map."""
-        self._frame = frame
-        self._continue()
-        self._describe()
+    def compare(self, on: bool) -> None:
+        """Compare later views with the present one in the same window, or end the comparison."""
+        state = self._state
+        if not on:
+            state.compared = None
+            return
+        window = state.find_window() if is_ready_for_maps(state.potential) else state.window
+        state.param.update(compared=state.view, window=window)
+
+    def swap_views(self) -> None:
+        """Exchange the view of the controls and the one that it is compared with."""
+        state, other = self._state, self._state.compared
+        if other is None:
+            return
+        energy = {} if other.energy is None else {"energy": other.energy}
+        self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.view})
+
+    def _follow_map(self, frame: EscapeMap | None) -> None:
+        """Compare a complete map; while there is none, the last one."""
+        if frame is not None:
+            self._frame = frame
+            self._continue()
+            self._describe()
 
     def close(self) -> None:
         """Cancel the requests at the end of the session."""

@@ -102,10 +102,10 @@ def explorer_page(explorer: Explorer) -> ExplorerTemplate:
 def _picture_alone(explorer: Explorer) -> pn.viewable.Viewable:
     """The picture that is shown large, and the link to the whole page."""
     return _column(
-        explorer.progress.bar,
-        explorer.maps.grid.layout(),
+        explorer.maps.progress.bar,
+        explorer.maps.view.grid.layout(),
         explorer.links.open_link.pane,
-        *(view.layout() for view in (explorer.browser, explorer.engine, explorer.notice)),
+        *(view.layout() for view in (explorer.browser, explorer.preview.engine, explorer.notice)),
         css_class="picture-alone",
     )
 
@@ -116,13 +116,13 @@ def _stage(explorer: Explorer) -> pn.viewable.Viewable:
         explorer.analysis,
         explorer.drawers,
         explorer.browser,
-        explorer.engine,
+        explorer.preview.engine,
         explorer.notice,
     )
     return _column(
-        explorer.progress.bar,
-        explorer.toolbar.layout(*explorer.progress.layout()),
-        explorer.maps.grid.layout(),
+        explorer.maps.progress.bar,
+        explorer.maps.toolbar.layout(*explorer.maps.progress.layout()),
+        explorer.maps.view.grid.layout(),
         explorer.analyses.notes,
         *(view.layout() for view in views),
         css_class="stage",

@@ -23,6 +23,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from cli.arguments import OneEnergy
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import But, Of
 from cli.options import with_options
@@ -57,7 +58,7 @@ MOST_PATHS = 20_000
 def run(
     *,
     potential: Potential,
-    energy: Annotated[float, Of(sample_starts)],
+    energy: OneEnergy,
     count: Annotated[int, Of(sample_starts)] = 3000,
     seed: Annotated[int, Of(sample_starts)],
     plane: Annotated[Slice | None, But(defaults={"plane": None})],

@@ -18,7 +18,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from cli.arguments import choose_energy
+from cli.arguments import GivenEnergy
 from cli.execution import Place
 from cli.option_marks import Of
 from cli.options import with_options
@@ -43,7 +43,7 @@ def run(
     *,
     potential: Potential,
     plane: Slice,
-    energy: Annotated[float | None, Of(choose_energy)],
+    energy: GivenEnergy,
     start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
     state: Annotated[State | None, typer.Option(metavar="X Y PX PY")] = None,
     t_max: Annotated[float, Of(integrate_orbit)],

@@ -28,7 +28,7 @@ from engine import (
     Window,
 )
 from engine.exits.lyapunov_orbits import find_known_exits
-from engine.slices.energies import common_energy
+from engine.slices.axes import common_energy
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from plots.layers.layer import Stroke
 from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses

@@ -291,7 +291,7 @@ class MapsView:
             self.compared.draw(plot, self._mappers[name])
             self.marks.draw(plot, sections=False)
             return
-        # What the browser draws by itself, see modules/pictures.js.
+        # What the browser draws by itself, see modules/painting/pictures.js.
         plot.tags = ["map", MAPS.index(name)]
         image = plot.add_glyph(self.source, Image(image=picture.column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if picture.has_times:

@@ -17,7 +17,7 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, copy_button, flex_row, number_rows
 from engine import Coordinate, Orbit, Slice
 from engine.foundations.wording import format_whole
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import IndicatorVerdict
 from plots.pictures.orbit_curves import initial_state
 from plots.pictures.palette import Palette
@@ -93,7 +93,7 @@ class OrbitControls:
         decided = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
         self.open_plane.visible = bool(decided)
         if decided:
-            self.open_plane.label = f"Open {SECTION.plane.title} at this {' and '.join(axis.symbol for axis in decided)}"
+            self.open_plane.label = f"Open {SECTION.title} at this {' and '.join(axis.symbol for axis in decided)}"
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""

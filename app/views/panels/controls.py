@@ -212,7 +212,10 @@ class Controls:
         state = self.state
         on_h = state.plane.energy_axis is not None
         beyond = not state.energies.low <= state.energy <= state.energies.high
-        note = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else ""
+        notes = [f"h = {state.energy:.12g}, beyond the end of the slider"] if beyond else []
+        if state.potential.rotation:
+            notes.append(f"C = {state.potential.jacobi_constant(state.energy):.9g}, the Jacobi constant")
+        note = "; ".join(notes)
         self.energy.param.update(disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
         self.exact_energy.disabled = on_h
         for shown in (self.energy, self.exact_energy):

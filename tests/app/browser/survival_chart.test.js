@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {drawSurvival} from "../../../app/browser/modules/survival_chart.js"
+import {drawSurvival} from "../../../app/browser/modules/painting/survival_chart.js"
 
 /** The points of each line that is drawn for orbits of which half have left at t = 1, and the others stay. */
 function drawnLines({rate = 0, unit = 1} = {}) {

@@ -11,7 +11,7 @@ import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
 from engine.measures.basin_entropy import COUNTS_BOUNDED, compute_basin_entropy
-from engine.measures.labels import exit_labels
+from engine.measures.starts import exit_labels
 
 LN2 = math.log(2.0)
 DEVIATIONS = 5.5
