@@ -249,6 +249,13 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+def test_a_file_of_another_kind_than_the_wanted_one_is_refused(tmp_path: Path) -> None:
+    CASES["I"].save(tmp_path / "case.nc")
+    assert open_result(tmp_path / "case.nc", Potential) == CASES["I"]
+    with pytest.raises(ValueError, match=r"case\.nc: holds Potential; must hold EscapeMap$"):
+        open_result(tmp_path / "case.nc", EscapeMap)
+
+
 def test_sweep_in_a_store_comes_back(store: Path) -> None:
     xr.testing.assert_identical(open_result(store).dataset, compute_sweep(SWEEP, store).dataset)
 
