@@ -15,14 +15,14 @@ from app.views.analysis import statistics
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential, integrate_orbit, start_states
 from engine.integrator.portable_kernels import kernel_module
-from engine.maps.warmup import (
+from engine.slices.planes import SECTION
+from engine.sweeps.warmup import (
     call_after_maps,
     prepare_for_analyses,
     prepare_for_evidence,
     prepare_for_maps,
     reserve_catalogue,
 )
-from engine.slices.section import SECTION
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")
@@ -30,7 +30,7 @@ log = logging.getLogger(f"bokeh.{__name__}")
 
 def prepare_for_orbits(potential: Potential) -> None:
     """Compile the kernels of single orbits, or load them from the cache."""
-    start = start_states(potential, SECTION.plane, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))[0]
+    start = start_states(potential, SECTION, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))[0]
     call_after_maps(lambda: integrate_orbit(potential, start, 10.0 * potential.units.time))
 
 

@@ -13,8 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.exits.brake_orbits import chord_axes
 from engine.exits.exit_rows import exit_gates
-from engine.exits.lyapunov_orbits import exit_curve_over_chord, find_orbits_in_well_units
+from engine.exits.exit_shapes import curve_along, find_reach
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
 from engine.foundations.arrays import read_only
 from engine.integrator.kernels import events
 from engine.integrator.kernels.exit_curves import MIDDLE_COLUMN, exit_points, interpolate_exit
@@ -68,7 +70,7 @@ class ExitTable:
 
     def points_at(self, energy: float, positions: np.ndarray) -> np.ndarray:
         """(2, m) the points of the exit at an energy above the saddle, at s (m,) from −1 to 1."""
-        return _points(_interpolate(self.nodes, self.rows, float(np.sqrt(energy - self.saddle))), positions)
+        return _points(_interpolate(self.nodes, self.rows, energy - self.saddle), positions)
 
 
 def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...]:
@@ -103,11 +105,29 @@ def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
     """The exit curves at one energy, by channel; ValueError if one is not a graph over its chord."""
     curves = {}
     for orbit in find_orbits_in_well_units(potential, energy):
-        curve = exit_curve_over_chord(orbit)
+        curve = _exit_over_chord(orbit)
         if curve is None:
             raise ValueError(f"energy={energy}: exit {orbit.channel} is not a smooth graph over its chord")
         curves[orbit.channel] = curve
     return curves
+
+
+def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
+    """(columns,) the exit of an orbit in units of the well, in axes which depend smoothly on the energy: those of its chord.
+
+    None if the path is not a smooth graph over the chord. The line of a rotating system keeps its own axes, those of the saddle.
+    """
+    potential = orbit.potential
+    if potential.rotation:
+        return orbit.curve
+    path = orbit.half_path.T
+    if chord_axes(path).outward @ potential.well.outward_directions[orbit.channel - 1] < 0.0:
+        # Mirrored orbits have the well on the other side of their path.
+        path = path[:, ::-1]
+    curve = curve_along(chord_axes(path), potential.saddles[orbit.channel - 1], path)
+    if curve is not None:
+        curve[events.REACH] = find_reach(potential, orbit.energy, curve)
+    return curve
 
 
 def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -> ExitTable:
@@ -127,7 +147,7 @@ def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -
         except ValueError:
             continue
         rows = np.array([_row(curve) for curve in inside])
-        found = [_points(_interpolate(nodes, rows, sigma), _POSITIONS) for sigma in between.tolist()]
+        found = [_points(_interpolate(nodes, rows, sigma**2), _POSITIONS) for sigma in between.tolist()]
         if np.abs(np.array(found) - [_points(curve, _POSITIONS) for curve in expected]).max() < _SAFETY * LARGEST_ERROR:
             used = np.flatnonzero(np.abs(rows).max(axis=0) > _NEGLIGIBLE).max() + 1
             return ExitTable(saddle, saddle + share * (highest - saddle), nodes, rows[:, :used].copy())
@@ -149,11 +169,12 @@ def _row(curve: np.ndarray) -> np.ndarray:
     return np.concatenate([[gate, reach], curve[_CURVE_COLUMNS]])
 
 
-def _interpolate(nodes: np.ndarray, rows: np.ndarray, place: float) -> np.ndarray:
-    """(columns,) the exit at a place."""
-    curve = np.zeros(events.CURVE_COLUMNS)
-    interpolate_exit(nodes, rows, place, events.CURVE, curve, np.zeros(3))
-    return curve
+def _interpolate(nodes: np.ndarray, rows: np.ndarray, above: float) -> np.ndarray:
+    """(columns,) the exit at an energy above its saddle."""
+    curves, gates = np.zeros((1, 1, events.CURVE_COLUMNS)), np.zeros((1, 3))
+    interpolate_exit(nodes, rows, 0.0, events.CURVE, np.array([above]), 0, curves, gates)
+    found: np.ndarray = curves[0, 0]
+    return found
 
 
 def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:

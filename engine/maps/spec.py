@@ -12,17 +12,22 @@ import numpy as np
 
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
+from engine.slices.axes import Energy, common_energy, scaled_energy
 from engine.slices.default_window import map_window
-from engine.slices.energies import Energy, common_energy, scaled_energy
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
-from engine.slices.slice_text import write_slice
+from engine.slices.slice_text import read_slice, write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
+from engine.systems.formulas.stored_potential import read_potential
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
+from engine.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
@@ -56,7 +61,9 @@ class MapSpec:
         the default window, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows the
         default window is moved by half a pixel where its middle line would be one of symmetry, on which orbits stay for ever.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless; where the unit 1/ω of time of the well is above 1, in this unit.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless; where the unit 1/ω of time of the well is above 1, in this unit. By
+        default 1e5; in rotating frames 1000/Ω, and with centres or an escape radius 1000: there bounded orbits are followed to
+        the end.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
@@ -86,7 +93,7 @@ class MapSpec:
     energy: Energy
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: GivenWindow | None = None
-    t_max: float = 1e5
+    t_max: float = None  # type: ignore[assignment]
     use_evidence: bool = True
     backward: bool = False
 
@@ -100,7 +107,7 @@ class MapSpec:
             energy: Energy | Sequence[float] | np.ndarray,
             resolution: Sequence[int] = DEFAULT_RESOLUTION,
             window: GivenWindow | None = None,
-            t_max: float = 1e5,
+            t_max: float | None = None,
             use_evidence: bool = True,
             backward: bool = False,
         ) -> None: ...
@@ -238,3 +245,31 @@ def _checked_resolution(resolution: Any) -> tuple[int, int]:
     if len(sides) != 2 or not all(1 <= side <= LARGEST_SIDE for side in sides):
         raise ValueError(f"resolution={short_repr(resolution)}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
     return sides
+
+
+def read_spec(dataset: xr.Dataset) -> MapSpec:
+    """The request of a map, from the attributes of its dataset; the energy of one map of a sweep is its coordinate h."""
+    found = dataset.attrs
+    if found.get("along"):
+        raise ValueError(
+            f"dataset: is of a sweep along {found['axis']}, whose fates have the numbers of the sweep; must be a map of "
+            "compute_map, or one of a sweep over energies"
+        )
+    try:
+        chosen = json.loads(found["system"])
+        system = System(**chosen) if chosen else System("I")
+        plane = read_slice(str(found["axes"]), str(found["fix"]), system)
+        energy = found["energy"] if "energy" in found else float(dataset["h"].values)
+        window = None if found["default_window"] else tuple(float(edge) for edge in found["window"])
+        columns, rows = map(int, found["resolution"])
+    except KeyError as error:
+        raise ValueError(f"dataset: has no attribute {error}; must be one of a map, written by this version") from None
+    return MapSpec(
+        read_potential(found), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
+        float(found["t_max"]), use_evidence=bool(found["use_evidence"]), backward=bool(found["backward"]),
+    )  # fmt: skip
+
+
+def _plain(energy: Any) -> Any:
+    """An energy, or a pair of them, as a request has it."""
+    return tuple(map(float, energy)) if np.ndim(energy) else float(energy)

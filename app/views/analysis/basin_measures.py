@@ -13,7 +13,8 @@ from app.state.glossary import with_terms
 from app.views.analysis.measure_charts import PairsChart, SurvivalChart
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button, number_rows
-from engine import MEASURES, DecayLaws, Measure, Result, UncertaintyExponent, Window
+from engine import MEASURES, Measure, Result, Window
+from engine.results import DecayLaws, UncertaintyExponent
 
 TOLD: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
 """The measures that the page tells in words, in their order."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from app.views.components.numbers import grouped
-from plots.layers.legend import ColourScale, ColourTable, Legend
+from engine.foundations.wording import format_whole
+from plots.layers.picture import ColourScale, ColourTable, Legend
 from plots.pictures.palette import Entry, Mark, short_label
 
 # Colours of a scale that the browser interpolates.
@@ -62,7 +62,7 @@ def _scale(scale: ColourScale) -> str:
 
 
 def _number(value: float) -> str:
-    return grouped(value) if value == round(value) else f"{value:g}"
+    return format_whole(value) if value == round(value) else f"{value:g}"
 
 
 def _table(table: ColourTable) -> str:

@@ -8,7 +8,7 @@ from bokeh.models import ColumnDataSource, Line, Range1d
 
 from app.views.components.plots import HISTORY_ASPECT, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
-from engine import Separation
+from engine.results import Separation
 from plots.pictures.palette import PAPER, Palette
 
 TITLE = "Distance of two orbits"

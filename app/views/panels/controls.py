@@ -14,10 +14,10 @@ from app.browser.inputs.number_box import NumberBox
 from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState
-from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
+from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
 from engine import CASES, Plane, Potential, Slice
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.palette import PALETTES
@@ -212,7 +212,10 @@ class Controls:
         state = self.state
         on_h = state.plane.energy_axis is not None
         beyond = not state.energies.low <= state.energy <= state.energies.high
-        note = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else ""
+        notes = [f"h = {state.energy:.12g}, beyond the end of the slider"] if beyond else []
+        if state.potential.rotation:
+            notes.append(f"C = {state.potential.jacobi_constant(state.energy):.9g}, the Jacobi constant")
+        note = "; ".join(notes)
         self.energy.param.update(disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
         self.exact_energy.disabled = on_h
         for shown in (self.energy, self.exact_energy):

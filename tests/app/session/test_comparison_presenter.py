@@ -33,13 +33,12 @@ class Session:
         self.changed = threading.Condition()
         self.said, self.refused = [""], [""]
         self.state, self.maps = ViewState(system=System("I"), energy=0.2, t_max=100.0), make_maps()
-        self.presenter = ComparisonPresenter(
-            context_of(self.state, jobs, self.changed), self.maps, self.said.append, self.refused.append
-        )
+        self.context = context_of(self.state, jobs, self.changed)
+        self.presenter = ComparisonPresenter(self.context, self.maps, self.said.append, self.refused.append)
 
     def show(self, frame: EscapeMap) -> None:
         self.maps.show(frame, map_columns(frame))
-        self.presenter.follow(frame)
+        self.context.results.frame = frame
 
     def wait_for(self, text: str) -> None:
         with self.changed:
@@ -98,7 +97,7 @@ def test_a_view_of_a_refused_system_ends_the_comparison(session: Session) -> Non
 
 
 def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits(frame: EscapeMap) -> None:
-    def limit(call: Callable[[], Any]) -> Any:
+    def limit(call: Callable[[], Any], cancel: threading.Event) -> Any:
         # The review passes.
         if call.func is find_members:  # type: ignore[attr-defined]
             raise ValueError("it takes too long.")

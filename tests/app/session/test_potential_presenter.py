@@ -8,12 +8,12 @@ from html import escape
 
 import pytest
 
+from app.session.history import History
 from app.session.potential_presenter import PotentialPresenter
-from app.state.history import History
 from app.state.view_state import ViewState
 from engine import CASES, System
 from engine.jobs.manager import Jobs
-from engine.maps.warmup import prepare_for_maps
+from engine.sweeps.warmup import prepare_for_maps
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from tests.app.browser_messages import send

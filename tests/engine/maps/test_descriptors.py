@@ -165,3 +165,10 @@ def test_starts_without_an_orbit_have_no_descriptor() -> None:
     found = compute_lagrangian_descriptor(frame, duration=2.0)
     assert {Fate.FORBIDDEN, Fate.OUTSIDE} <= set(frame.fate.ravel().tolist())
     np.testing.assert_array_equal(np.isfinite(found.descriptor), frame.interior)
+
+
+def test_a_map_without_starts_has_no_descriptor() -> None:
+    beyond_the_wall = MapSpec(CASES["III"], Plane.X_PX, 0.3, (4, 4), window=(3.0, 3.1, 5.0, 5.1), t_max=100.0)
+    found = compute_lagrangian_descriptor(compute_map(beyond_the_wall))
+    assert found.complete
+    assert found.describe() == "No start has a Lagrangian descriptor."

@@ -29,7 +29,6 @@ from engine import (
     Regularity,
     Result,
     Slice,
-    Sweep,
     SweepSpec,
     System,
     classify_orbits,
@@ -55,6 +54,7 @@ from engine import (
     sample_orbits,
     sample_starts,
 )
+from engine.results import Sweep
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from tests.results import result_of
 
@@ -245,6 +245,13 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("sweeps") / "maps.zarr"
     compute_sweep(SWEEP, path)
     return path
+
+
+def test_a_file_of_another_kind_than_the_wanted_one_is_refused(tmp_path: Path) -> None:
+    CASES["I"].save(tmp_path / "case.nc")
+    assert open_result(tmp_path / "case.nc", Potential) == CASES["I"]
+    with pytest.raises(ValueError, match=r"case\.nc: holds Potential; must hold EscapeMap$"):
+        open_result(tmp_path / "case.nc", EscapeMap)
 
 
 def test_sweep_in_a_store_comes_back(store: Path) -> None:

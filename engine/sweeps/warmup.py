@@ -1,0 +1,230 @@
+"""Compile kernels ahead of time, or load them from the kernel cache.
+
+Numba compiles one function at a time, whatever the number of threads, so the order matters: kernels of the first frame of a map,
+then those that look for evidence, which a complete map needs, then all others. Compilation in the background waits while kernels
+of maps are compiled.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from types import ModuleType
+
+import numpy as np
+
+from engine.evidence.birkhoff_averages import count_agreeing_digits
+from engine.evidence.invariant_curves import LEAST_POINTS, find_invariant_curve
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits
+from engine.foundations.execution import DEFAULT_EXECUTION
+from engine.integrator.bound_kernels import is_generated
+from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
+from engine.integrator.source.recurrence import code_digest
+from engine.maps.compute import compute_map
+from engine.maps.descriptors import compute_lagrangian_descriptor
+from engine.maps.regularity import compute_regularity
+from engine.maps.result import EscapeMap
+from engine.maps.spec import MapSpec
+from engine.periodic.stable_manifolds import find_stable_manifolds
+from engine.propagation.section_points import find_section_points
+from engine.slices.planes import SECTION
+from engine.systems.compiled import kernels_of
+from engine.systems.known_potentials import POTENTIALS
+from engine.systems.potential import Potential
+
+# Integration time, in units of the well, of the calls that trigger compilation.
+_T_MAX = 10.0
+
+# Compiles in the calling thread, since the threads of pools have low priority.
+_EXECUTION = DEFAULT_EXECUTION.in_this_thread()
+
+# Kernels of the first frame of a map and of the Lyapunov orbits it needs, with the seconds that it takes to compile them on one
+# core of an AMD EPYC (Zen 4): those of each potential per operation, those of all potentials together. "propagate" includes the
+# kernel that finds starts outside.
+_SECONDS_PER_OPERATION = {"step": 3.0e-4, "jets": 2.5e-4, "potential_value": 2.5e-3}
+_SECONDS = {"shoot": 0.8, "propagate": 3.2}
+# Estimate while the number of operations is not known: that of a potential of eight terms.
+_SECONDS_OF_NEW_POWERS = 4.0
+_MAP_KERNELS = (*_SECONDS_PER_OPERATION, *_SECONDS)
+
+
+class _Compilations:
+    """The compilations of kernels for maps that are under way.
+
+    Attributes
+    ----------
+    slowness
+        Measured over expected time of the last compilation; at least 1, because kernels from the cache take no time.
+    """
+
+    def __init__(self) -> None:
+        self.slowness = 1.0
+        self._ends: dict[Potential, float] = {}
+        self._changed = threading.Condition()
+
+    def run(self, potential: Potential, calls: tuple[Callable[[], object], ...]) -> None:
+        """Make the calls that compile the kernels for maps; background compilation waits meanwhile."""
+        # The estimates need the number of operations.
+        kernels_of(potential.in_well_units)
+        try:
+            for call in calls:
+                expected, begin = _expected_seconds(potential), time.monotonic()
+                with self._changed:
+                    self._ends[potential] = begin + self.slowness * expected
+                call()
+                compiled = expected - _expected_seconds(potential)
+                if compiled > 0.0:
+                    self.slowness = max(1.0, (time.monotonic() - begin) / compiled)
+        finally:
+            with self._changed:
+                self._ends.pop(potential, None)
+                self._changed.notify_all()
+
+    def seconds_left(self, potential: Potential) -> float:
+        """Estimate from the kernels that are left and from the time since the compilation began."""
+        left, end = self.slowness * _expected_seconds(potential), self._ends.get(potential)
+        return left if end is None else min(left, max(end - time.monotonic(), 0.0))
+
+    def wait(self) -> None:
+        """Wait until no compilation for maps is under way."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._ends)
+
+
+_for_maps = _Compilations()
+
+
+def _expected_seconds(potential: Potential) -> float:
+    """Time to compile the kernels of maps that are not compiled yet."""
+    kernels = _known_kernels(potential)
+    if kernels is None:
+        return _SECONDS_OF_NEW_POWERS
+    left = {name: getattr(kernels, name) for name in _MAP_KERNELS if not getattr(kernels, name).signatures}
+    return sum(
+        _SECONDS[name] if name in _SECONDS else _SECONDS_PER_OPERATION[name] * float(kernel.function.operations)
+        for name, kernel in left.items()
+    )
+
+
+def _known_kernels(potential: Potential) -> ModuleType | None:
+    """The kernels of a potential; None if they are not generated yet, or cannot be compiled any more."""
+    well = potential.in_well_units
+    if not is_generated(well.form.definition, well.well.setting):
+        return None
+    try:
+        return kernels_of(well)
+    except CompiledCodeLimitError:
+        return None
+
+
+def is_ready_for_maps(potential: Potential) -> bool:
+    """Whether the kernels of maps are compiled; potentials with the same powers of x and y and as many channels share kernels."""
+    kernels = _known_kernels(potential)
+    return kernels is not None and all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
+
+
+def seconds_until_ready_for_maps(potential: Potential) -> float:
+    """Estimated time until the kernels of maps are compiled.
+
+    Parameters
+    ----------
+    potential
+        Any `Potential` with an exit.
+
+    Returns
+    -------
+    Seconds, from the number of operations of the kernels that are left, once it is known, and the speed of earlier
+    compilations in this process; 0 when they are compiled, or take longer than expected. Kernels that the cache contains take a
+    fraction of a second instead.
+    """
+    return _for_maps.seconds_left(potential)
+
+
+def prepare_for_maps(potential: Potential) -> None:
+    """Compile the kernels for the first frame of a map, or load them from the cache.
+
+    Parameters
+    ----------
+    potential
+        Any `Potential` with an exit. Compilation takes some seconds.
+    """
+    if is_ready_for_maps(potential):
+        return
+    energy = _open_energy(potential)
+    _for_maps.run(potential, (lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy)))
+
+
+def prepare_for_evidence(potential: Potential) -> None:
+    """Compile the kernels that look for evidence that orbits are bounded, or load them from the cache.
+
+    Parameters
+    ----------
+    potential
+        Any `Potential` with an exit.
+    """
+    if not potential.tori_are_evidence:
+        return
+    well, start = potential.in_well_units, _start(potential) / potential.units.state
+    call_after_maps(
+        lambda: count_agreeing_digits(well, start, _T_MAX, execution=_EXECUTION),
+        lambda: find_section_points(well, start, 1, _T_MAX, execution=_EXECUTION),
+        lambda: find_invariant_curve(np.zeros((LEAST_POINTS, 2))),
+    )
+
+
+def prepare_for_analyses(potential: Potential) -> None:
+    """Compile the kernels of regularity, descriptors and stable manifolds, or load them from the cache.
+
+    Parameters
+    ----------
+    potential
+        Any `Potential` with an exit.
+    """
+    prepare_for_evidence(potential)
+    call_after_maps(
+        lambda: compute_lagrangian_descriptor(_compute_small_map(potential, _open_energy(potential)), execution=_EXECUTION)
+    )
+    if potential.channels and not potential.gaps:
+        # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
+        call_after_maps(
+            lambda: compute_regularity(_compute_small_map(potential, potential.well.energy_at(0.5)), execution=_EXECUTION)
+        )
+    if potential.channels and not potential.rotation:
+        call_after_maps(lambda: find_stable_manifolds(potential, potential.well.energy_at(1.01), images=1, execution=_EXECUTION))
+
+
+def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> None:
+    """Exempt the kernels of the catalogue from the limit on compiled code.
+
+    Parameters
+    ----------
+    operations
+        The account of compiled code; by default that of this process.
+    """
+    wells = [potential.in_well_units for potential in POTENTIALS.values()]
+    operations.reserve(code_digest(well.form.definition, well.well.setting) for well in wells)
+
+
+def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
+    spec = MapSpec(potential, SECTION, energy, (2, 2), t_max=_T_MAX * potential.units.time)
+    return compute_map(spec, execution=_EXECUTION)
+
+
+def _open_energy(potential: Potential) -> float:
+    """An energy at which orbits can escape."""
+    return potential.well.energy_at(1.01) if potential.escape_radius is None else potential.well.bottom + potential.units.energy
+
+
+def _start(potential: Potential) -> np.ndarray:
+    """(1, 4) a state of low energy in the middle of a well, or, without a well, one at the typical radius."""
+    if potential.well.is_minimum and potential.escape_radius is None:
+        return SECTION.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
+    return SECTION.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
+
+
+def call_after_maps(*calls: Callable[[], object]) -> None:
+    """Make calls that compile kernels one after the other, each while no kernels for maps are compiled."""
+    for call in calls:
+        _for_maps.wait()
+        call()

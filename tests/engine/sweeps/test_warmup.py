@@ -1,0 +1,61 @@
+"""Compilation ahead of time."""
+
+from __future__ import annotations
+
+import threading
+
+from engine import Potential
+from engine.integrator.bound_kernels import load_kernels
+from engine.integrator.jit.compiled_operations import compiled_operations
+from engine.sweeps.warmup import (
+    _Compilations,
+    is_ready_for_maps,
+    prepare_for_analyses,
+    prepare_for_evidence,
+    prepare_for_maps,
+    seconds_until_ready_for_maps,
+)
+
+# Hénon-Heiles with the orientation of the original paper, and with another term: structures that no other test compiles.
+POTENTIAL = Potential("rotated", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3)))
+OTHER = Potential("other", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (1, 2, 1e-3), (3, 1, 1e-3)))
+
+
+def test_kernels_are_compiled_in_the_order_of_need() -> None:
+    kernels = load_kernels(OTHER.terms, OTHER.channels)
+    compiled = []
+    for prepare in (prepare_for_maps, prepare_for_evidence, prepare_for_analyses):
+        prepare(OTHER)
+        compiled.append({name for name in ("step", "jets", "fixed_step", "tangent") if getattr(kernels, name).signatures})
+    assert compiled == [{"step", "jets"}, {"step", "jets", "fixed_step"}, {"step", "jets", "fixed_step", "tangent"}]
+
+
+def test_background_compilation_lets_maps_go_first() -> None:
+    compilations, order = _Compilations(), []
+
+    def background() -> None:
+        compilations.wait()
+        order.append("background")
+
+    thread = threading.Thread(target=background)
+
+    def compile_for_maps() -> None:
+        thread.start()
+        order.append("maps")
+
+    compilations.run(POTENTIAL, (compile_for_maps,))
+    thread.join(10)
+    assert order == ["maps", "background"]
+
+
+def test_the_question_whether_a_potential_is_ready_generates_no_code() -> None:
+    potential = Potential("asked", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (4, 3, 1e-3)))
+    assert not is_ready_for_maps(potential)
+    assert seconds_until_ready_for_maps(potential) > 0.0
+    assert compiled_operations.used == 0
+
+
+def test_a_potential_beyond_the_limit_of_compiled_code_is_not_ready() -> None:
+    compiled_operations.most = 0
+    same_powers = Potential("refused", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, 0.7)))
+    assert not is_ready_for_maps(same_powers)
