@@ -152,7 +152,6 @@ class MapPresenter:
 
     def map_requested(self, *, compiling: bool = False) -> None:
         """A map is requested."""
-        self._results.frame = None
         if compiling:
             # The pictures of the former system stay for some seconds.
             self.view.grid.mark_stale(True)
