@@ -38,7 +38,7 @@ _SMALLEST_STEP = 2.0**-10
 _MOST_STEPS = 400
 # Largest number of integrator steps in a part of an orbit; an orbit with more steps passes close to a centre.
 _MOST_STEPS_PER_PART = 400
-# The larger this number, the closer the edge is to the largest values of an orbit.
+# Sharpness of the smooth maximum that defines the edge of an orbit, see `_edge`.
 _SHARPNESS = 50.0
 # Largest distance between the ends of neighbouring parts of an orbit, in units of the well.
 _LARGEST_GAP = 1e-10

@@ -1,4 +1,4 @@
-"""Sums with fewer products: x u + x v as x (u + v)."""
+"""Sums rewritten with fewer products: x u + x v as x (u + v)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Terms = tuple[tuple[Expression, float], ...]
 
 
 def factor_out(terms: Terms) -> Terms:
-    """Σ c m with the factors that most products have in common taken out of them; the constants of new sums are 0."""
+    """Rewrite Σ c m with the most common factors of its products factored out; the constants of new sums are 0."""
     while (factor := _most_common_factor(terms)) is not None:
         inverse = power(factor, -1.0)
         rests = [(c, multiply(part, inverse)) if factor in _factors(part) else None for part, c in terms]
@@ -22,14 +22,14 @@ def factor_out(terms: Terms) -> Terms:
 
 
 def _most_common_factor(terms: Terms) -> Expression | None:
-    """The factor of the most products, at least two; among equals the first, so that a program never depends on hashes."""
+    """Return the factor that most products share, at least two of them; of several the first, so that programs do not vary."""
     counts = Counter(factor for part, _ in terms for factor in _factors(part))
     factor, count = max(counts.items(), key=lambda item: item[1], default=(None, 0))
     return factor if count > 1 else None
 
 
 def _factors(part: Expression) -> tuple[Expression, ...]:
-    """The factors of a product of at least two, in its order; of a positive integer power of b it is b."""
+    """Return the factors of a product of at least two, in order; a positive integer power of b has the factor b."""
     if not isinstance(part, Product):
         return ()
     found = tuple(base if n > 0.0 and n == int(n) else power(base, n) for base, n in part.factors)
