@@ -16,13 +16,13 @@ from app.session.context import SessionContext
 from app.session.history import History
 from app.state.navigation import DIVE_FACTOR, zoom
 from app.state.view import Analysis, Start
-from app.views.maps.map_plots import MapActions, MapsView
+from app.views.maps.map_plots import MapActions, MapsView, prepare_curves
 from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.progress import ProgressView
 from engine import EscapeMap, Fate, Window
 from engine.propagation.fates import describe_fate
 from engine.sweeps.warmup import seconds_until_ready_for_maps
-from plots.pictures.palette import MOST_ORBITS
+from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 
 class MapPresenter:
@@ -60,10 +60,11 @@ class MapPresenter:
             alone=alone,
         )
         self.toolbar = MapToolbar(state, locked(self.view.set_drag))
-        self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded)
+        self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded, prepare_curves)
         self.progress = ProgressView(
             locked(self.requests.stop_map), locked(self.requests.request_map), lambda name: state.switch_layer(name, on=True)
         )
+        state.follow(self._set_palette, "palette")
         state.follow(self.view.lock_times, "lock_times")
         state.follow(self.view.grid.enlarge, "focus")
         state.follow(self.view.marks.show_box, "box")
@@ -73,6 +74,10 @@ class MapPresenter:
     def close(self) -> None:
         """Cancel the requests at the end of the session."""
         self.requests.close()
+
+    def _set_palette(self, name: str) -> None:
+        with pn.io.hold():
+            self.view.set_palette(PALETTES[name])
 
     def begin_touch(self) -> None:
         """The page is used by touch."""
