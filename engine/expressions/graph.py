@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from engine.expressions.common_factors import factor_out
-from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_terms
 
 # Number of cached graphs, of some kB each.
 _GRAPHS = 256
@@ -61,6 +61,10 @@ def make_graph(expressions: tuple[Expression, ...]) -> tuple[Graph, tuple[float,
     return Graph(tuple(builder.nodes), results), tuple(builder.numbers)
 
 
+def _is_polynomial(base: Expression, exponent: float) -> bool:
+    return exponent > 0.0 and exponent == int(exponent) and as_terms(base) is not None
+
+
 class _Builder:
     def __init__(self) -> None:
         self.nodes: list[Node] = []
@@ -79,8 +83,10 @@ class _Builder:
         match expression:
             case Coordinate(axis):
                 return self._append(Node("xy"[axis]))
-            case Sum(constant, terms) if constant and len(terms) > 1:
+            case Sum(constant, terms) if constant and (len(terms) > 1 or (terms and terms[0][1] == 1.0)):
                 # Sums that differ only in their constants share a node.
+                if len(terms) == 1:
+                    return self._append(Node("shift", (self.add(terms[0][0]),), self._numbers_at([constant])))
                 return self._append(Node("shift", (self.add(Sum(0.0, terms)),), self._numbers_at([constant])))
             case Sum(constant, terms):
                 terms = factor_out(terms)
@@ -88,7 +94,9 @@ class _Builder:
                 values = [*(c for _, c in terms), *([constant] if constant or not terms else [])]
                 return self._append(Node("sum", operands, self._numbers_at(values)))
             case Product(factors):
-                first_place, *others = (self._raised(self.add(base), n) for base, n in factors)
+                # Polynomials last: the force of a centre along x is that along y times another coordinate.
+                ordered = sorted(factors, key=lambda factor: _is_polynomial(*factor))
+                first_place, *others = (self._raised(self.add(base), n) for base, n in ordered)
                 for other in others:
                     first_place = self._node(Node("product", (first_place, other)))
                 return first_place
