@@ -14,15 +14,11 @@ _POWER_OF_TWO = 0.5
 
 
 def factor_out(terms: Terms) -> Terms:
-<<<<<<< HEAD
-    """Rewrite Σ c m with the most common factors of its products factored out; the constants of new sums are 0."""
-=======
-    """Σ c m with the factors that most products have in common taken out of them; the constants of new sums are 0.
+    """Rewrite Σ c m with the most common factors of its products factored out; the constants of new sums are 0.
 
-    Sums among factors have the first coefficient 1 where that is exact, so that u (2x + 1) + v (x + ½) has a common factor.
+    Sums among the factors get the first coefficient 1 if that is exact, so that u (2x + 1) + v (x + ½) has a common factor.
     """
     terms = _terms_of(linear_combination(_with_unit_sums(part, c) for part, c in terms))
->>>>>>> main
     while (factor := _most_common_factor(terms)) is not None:
         inverse = power(factor, -1.0)
         rests = [(c, multiply(part, inverse)) if _contains(part, factor) else None for part, c in terms]
@@ -37,7 +33,7 @@ def _terms_of(total: Expression) -> Terms:
 
 
 def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
-    """(d, e) with d e = c m, where the sums among the factors of e have the first coefficient 1 if it was a power of two."""
+    """Return (d, e) with d e = c m, where the sums among the factors of e have the first coefficient 1 if it was a power of two."""
     factors = []
     for base, n in part.factors if isinstance(part, Product) else ():
         scale = base.terms[0][1] if isinstance(base, Sum) and n == int(n) else 1.0
@@ -49,14 +45,10 @@ def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
 
 
 def _most_common_factor(terms: Terms) -> Expression | None:
-<<<<<<< HEAD
-    """Return the factor that most products share, at least two of them; of several the first, so that programs do not vary."""
-=======
-    """The factor of the most products, at least two, with all others that these have in common.
+    """Return the product of all factors shared by those products that share the most common one, at least two of them.
 
-    Among equals it is the first, so that a program never depends on hashes.
+    Of several most common factors the first is taken, so that a program never depends on hashes.
     """
->>>>>>> main
     counts = Counter(factor for part, _ in terms for factor in _factors(part))
     factor, count = max(counts.items(), key=lambda item: item[1], default=(None, 0))
     if factor is None or count == 1:
@@ -66,7 +58,7 @@ def _most_common_factor(terms: Terms) -> Expression | None:
 
 
 def _contains(part: Expression, factor: Expression) -> bool:
-    """Whether all factors of one product are among those of another one."""
+    """Return whether a product has all factors of another one."""
     return all(each in _factors(part) for each in _factors(factor) or (factor,))
 
 
