@@ -33,7 +33,7 @@ def _terms_of(total: Expression) -> Terms:
 
 
 def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
-    """Return (d, e) with d e = c m, where the sums among the factors of e have the first coefficient 1 if it was a power of two."""
+    """Return (d, e) with d e = c m; the sums among the factors of e have the first coefficient 1 if it was a power of two."""
     factors = []
     for base, n in part.factors if isinstance(part, Product) else ():
         scale = base.terms[0][1] if isinstance(base, Sum) and n == int(n) else 1.0
