@@ -85,6 +85,11 @@ class AnalysisPresenter:
             self._update(NO_ANALYSES)
         self.note(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
+        self._mark_computing()
+
+    def end_computing(self) -> None:
+        """Nothing is computed any more."""
+        self._maps.mark_computing(frozenset())
 
     def set_palette(self, palette: Palette) -> None:
         """Change the colours."""
@@ -138,6 +143,15 @@ class AnalysisPresenter:
         for name in event.old - event.new:
             self._remove(name)
         self._explain_refusals()
+        self._mark_computing()
+
+    def _mark_computing(self) -> None:
+        """Say in the pictures which layers have no complete result yet."""
+        spec = self._spec
+        if spec is not None:
+            allowed = {layer.name for layer in self._layers_on() if not layer.refusal(spec)}
+            done = {name for name, (_, result, _) in self._found.items() if getattr(result, "complete", True)}
+            self._maps.mark_computing(frozenset(allowed - done))
 
     def _remove(self, name: str) -> None:
         """Remove the result of a layer."""
@@ -164,6 +178,7 @@ class AnalysisPresenter:
     def _show_result(self, layer: Layer, frame: EscapeMap, result: Any) -> None:
         self._found[layer.name] = frame, result, layer.job(frame.spec, self._state.settings)
         self._show_selected(layer)
+        self._mark_computing()
 
     def _select(self) -> None:
         """Select parts of the results by the settings, and remove those that are no results of these."""
@@ -172,6 +187,7 @@ class AnalysisPresenter:
                 self._show_selected(LAYERS[name])
             else:
                 self._remove(name)
+        self._mark_computing()
 
     def _show_selected(self, layer: Layer) -> None:
         """Show the part of the result of a layer that the settings select."""

@@ -193,7 +193,7 @@ class Explorer:
 
     def _set_palette(self, name: str) -> None:
         with pn.io.hold():
-            for view in (self.maps, self.orbits, self.statistics, self.analyses):
+            for view in (self.maps, self.orbits, self.statistics, self.analyses, self.progress):
                 view.set_palette(PALETTES[name])
 
     def _add_middle(self) -> None:
@@ -436,11 +436,13 @@ class Explorer:
         """The map is cancelled."""
         self._count_down(False)
         self.progress.stop()
+        self.analyses.end_computing()
 
     def map_failed(self, sentence: str) -> None:
         """Show why there is no map; the last pictures stay, greyed out."""
         self._count_down(False)
         self.progress.fail()
+        self.analyses.end_computing()
         self.maps.grid.mark_stale(True)
         self.notice.warn(sentence)
 

@@ -103,7 +103,7 @@ PRESETS: tuple[Preset, ...] = (
         key="shares", title="Unequal shares", group=_PAPER, picture="basins",
         view=View(System("I"), Plane.X_PX, 0.30, starts=((0.26, 0.39), (0.04, -0.44), (-0.61, 0.0))),
         caption="At this energy less than 0.1 % of the orbits stay, and three quarters escape without a crossing. The "
-        "potential is symmetric, yet 55 % escape through channel 1 and 45 % through channel 2, because every orbit "
+        "potential is symmetric, yet 55 % escape through exit 1 and 45 % through exit 2, because every orbit "
         "starts upward.",
     ),
     Preset(

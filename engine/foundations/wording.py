@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 def format_count(count: int, singular: str, plural: str = "") -> str:
     """A count and its noun, such as "1 box" or "3 boxes"; without `plural`, the noun takes an "s"."""
@@ -21,7 +23,7 @@ def format_time(t: float, digits: int = 6) -> str:
 
 
 def format_number(value: float, digits: int = 4) -> str:
-    """A number to `digits` significant digits, with typographic minus and infinity signs."""
+    """A number to `digits` significant digits, with typographic minus and infinity signs, such as "1.9 × 10⁻¹²"."""
     return _typeset(f"{value:.{digits}g}")
 
 
@@ -31,5 +33,9 @@ def format_decimals(value: float, decimals: int) -> str:
 
 
 def _typeset(text: str) -> str:
-    short = text.replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
-    return short.replace("-", "−").replace("inf", "∞")
+    mantissa, _, exponent = text.partition("e")
+    number = mantissa.replace("-", "−").replace("inf", "∞")
+    if not exponent:
+        return number
+    power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+    return power if number == "1" else f"{number} × {power}"

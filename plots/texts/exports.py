@@ -185,7 +185,7 @@ def file_stem(spec: MapSpec, case: str) -> str:
 
 
 def curve_columns(curves: Sweep) -> dict[str, np.ndarray]:
-    """The numbers of a sweep by name, shares by the labels of their outcomes: ``share_bounded``, ``share_channel_1``."""
+    """The numbers of a sweep by name, shares by the labels of their outcomes: ``share_bounded``, ``share_exit_1``."""
     labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in curves.outcomes)]
     codes = re.compile(r"(share(?:_low|_high)?)_(\d+)")
     return {codes.sub(lambda found: f"{found[1]}_{labels[int(found[2])]}", name): c for name, c in curves.columns().items()}

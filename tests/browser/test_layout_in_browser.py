@@ -135,7 +135,7 @@ def test_titles_legends_and_names_cover_no_picture(page: str, count: int, reques
 def test_the_maps_do_not_move_when_an_orbit_is_clicked(wide: ExplorerPage) -> None:
     before = boxes(wide)
     wide.click("basins", 0.1, 0.05)
-    expect(wide.text("Escaped through channel 1")).to_be_attached()
+    expect(wide.text("Escaped through exit 1")).to_be_attached()
     wide.wait_for_data("paths", "data.xs.length == 1")
     assert boxes(wide) == before
     wide.return_home()
@@ -205,7 +205,7 @@ def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, wid
 
 def test_a_tap_on_a_phone_integrates_an_orbit(phone: ExplorerPage) -> None:
     phone.page.touchscreen.tap(*phone.point("basins", 0.1, 0.05))
-    expect(phone.text("Escaped through channel 1")).to_be_attached()
+    expect(phone.text("Escaped through exit 1")).to_be_attached()
     phone.return_home()
 
 

@@ -161,7 +161,7 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
     """Parts of the legend, of the table of shares and of the verdict, by the selector of their place."""
     texts: dict[str, list[str]] = {}
     if shown.frame is not None:
-        channels = [f"channel {k + 1}" for k in range(state.potential.channels)]
+        channels = [f"exit {k + 1}" for k in range(state.potential.channels)]
         layers = {"bounded and chaotic": "judge" in state.layers, "tones: from": "origins" in state.layers}
         times = state.lock_times or fitted_scale(shown.frame)
         texts[LEGEND] = [f"≤ {times.low:g}", *channels, *(name for name, is_on in layers.items() if is_on)]

@@ -13,7 +13,7 @@ from app.browser.module_files import WATCH_ADDRESS
 from app.state.watched_starts import COUNTS, EXPLANATIONS, LARGEST_RADIUS, SMALLEST_RADIUS
 
 _STYLE = """
-:host { display: block; font-size: 0.8125rem; color: var(--ui-ink) }
+:host { display: block; color: var(--ui-ink) }
 .row { display: flex; flex-wrap: wrap; gap: 6px; align-items: center; margin: 6px 0 }
 [hidden] { display: none !important }
 button, select { font: inherit; color: inherit; background: var(--ui-surface); border: 1px solid var(--ui-edge);

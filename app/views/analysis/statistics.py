@@ -162,7 +162,7 @@ def _draw_probabilities() -> hv.Bars:
 
 
 def _frame() -> dict[str, Any]:
-    fonts = {"labels": "12px", "ticks": "11px"}
+    fonts = {"labels": "12px", "ticks": "12px"}
     return {
         "responsive": True,
         "aspect": 1.1,

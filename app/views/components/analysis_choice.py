@@ -110,5 +110,5 @@ class AnalysisTabs:
 
     def __init__(self, state: ViewState) -> None:
         options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
-        tabs = SegmentedControl(label="Analysis", options=options, margin=(5, 4), css_classes=["segmented", "narrow", "tight"])
+        tabs = SegmentedControl(label="Analysis", options=options, margin=(0, 10), css_classes=["segmented", "narrow", "tight"])
         self.tabs = bind(tabs, state, "analysis")

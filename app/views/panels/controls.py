@@ -224,9 +224,9 @@ def _outcomes(potential: Potential) -> str:
     """What orbits end at, and from which energy on."""
     frame = f"rotates at Ω = {potential.rotation:.6g}; " if potential.rotation else ""
     if not potential.ends:
-        return f"{frame}{potential.channels} exit channels above h = {potential.escape_energy:.6g}"
+        return f"{frame}{potential.channels} exits above h = {potential.escape_energy:.6g}"
     labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
-    opened = f"; channels open above h = {potential.escape_energy:.6g}" if potential.channels else ""
+    opened = f"; exits open above h = {potential.escape_energy:.6g}" if potential.channels else ""
     return f"{frame}{labels}{opened}"
 
 

@@ -35,7 +35,7 @@ def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whol
     assert labels == ["1", "2", "3", "bounded"]
     html = legend("basins")
     assert f"title='{PAPER.outcomes[Fate.FORBIDDEN].label}'" in html
-    assert "title='channel 2'" in html
+    assert "title='exit 2'" in html
 
 
 def test_crossings_have_their_classes_and_what_is_drawn_over_them() -> None:
