@@ -40,6 +40,7 @@ from app.views.components.progress import ProgressView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import MapActions, MapsView
 from app.views.maps.map_toolbar import MapToolbar
+from app.views.orbits.path_picture import path_picture
 from app.views.panels.accessible_table import AccessibleTable
 from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents, key_legend
 from app.views.panels.controls import ControlActions, Controls
@@ -71,6 +72,8 @@ class Explorer:
         self._countdown: Any = None
         # The start of the last click; None if it was chosen before.
         self._just_added: Start | None = None
+        # The same until its orbit has been told of.
+        self._tapped: Start | None = None
         callbacks = SessionCallbacks(document)
         # Panel runs widget callbacks without the session's lock, which changes of bare Bokeh models need.
         self._locked, self._latest = callbacks.every, callbacks.latest
@@ -274,7 +277,7 @@ class Explorer:
         with self._document.models.freeze():
             added = state.add_start((x, ordinate))
             state.analysis = Analysis.ORBIT
-        self._just_added = (x, ordinate) if state.starts != before else None
+        self._just_added = self._tapped = (x, ordinate) if state.starts != before else None
         if not added:
             self.notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
 
@@ -450,6 +453,15 @@ class Explorer:
         """Offer the orbits to download and to screen readers."""
         self.downloads.show_orbits(orbits)
         self.accessible_table.show_orbits(orbits)
+        if self._by_touch:
+            self._tell_tapped(orbits)
+
+    def _tell_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
+        """Show the verdict and the path of an orbit that has been tapped: on a phone both are out of view."""
+        for one, colour in zip(orbits, PALETTES[self.state.palette].orbits, strict=False):
+            if one.start == self._tapped and one.drawing is not None:
+                self._tapped = None
+                self.notice.show(one.headline(), path_picture(one.drawing, colour))
 
 
 def _parameters() -> dict[str, str]:

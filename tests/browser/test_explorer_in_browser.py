@@ -52,7 +52,7 @@ def test_the_first_map_is_that_of_the_engine(shared: ExplorerPage, first_map: Es
 def test_the_controls_choose_the_map(explorer: ExplorerPage) -> None:
     explorer.pick("III")
     explorer.wait_for_view("case=III&")
-    expect(explorer.text("4 exit channels")).to_be_visible()
+    expect(explorer.text("4 exits above")).to_be_visible()
     explorer.pick(Plane.X_Y.title)
     explorer.wait_for_view("plane=x_y")
     labels = explorer.page.evaluate(_AXIS_NAMES, list(MAPS))

@@ -203,9 +203,9 @@ def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, wid
     assert x_high - x_low == pytest.approx(high - low)
 
 
-def test_a_tap_on_a_phone_integrates_an_orbit(phone: ExplorerPage) -> None:
+def test_a_tap_on_a_phone_shows_where_and_when_the_orbit_ends_and_its_path(phone: ExplorerPage) -> None:
     phone.page.touchscreen.tap(*phone.point("basins", 0.1, 0.05))
-    expect(phone.text("Escaped through exit 1")).to_be_attached()
+    expect(phone.page.locator(".notice", has_text="Escaped through exit 1 at t").locator("polyline")).to_be_attached()
     phone.return_home()
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import panel as pn
+from bokeh.models import LogAxis, LogTicker
 from bokeh.models.dom import HTML
 
 from app.state.help_texts import title_with_help
@@ -18,6 +19,7 @@ from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
+from engine.foundations.wording import format_number
 from engine.propagation.fates import UNRESOLVED
 from plots.pictures.palette import PAPER, Palette
 from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
@@ -106,6 +108,7 @@ class StatisticsView:
         shown = np.zeros(len(_NUMBERS))
         shown[: len(probabilities)] = probabilities
         self._probabilities.handles["source"].data = {CROSSINGS: _NUMBERS, PROBABILITY: shown}
+        self._probabilities.handles["y_range"].end = 1.05 * float(shown.max()) or 1.0
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Name, colour and code of each fate in the table."""
@@ -151,7 +154,7 @@ def _facts(statistics: EscapeStatistics) -> dict[str, str]:
 
 
 def _draw_times() -> hv.Histogram:
-    style = {"color": _BAR, "line_color": None, "logx": True, "xlabel": "escape time", "ylabel": "starts"}
+    style = {"color": _BAR, "line_color": None, "logx": True, "xlabel": "escape time (logarithmic)", "ylabel": "starts"}
     return hv.Histogram((np.array([1.0, 10.0]), np.zeros(1))).opts(**style, **_frame())
 
 
@@ -180,6 +183,8 @@ def _simplify(plot: Any, _element: Any) -> None:
     plot.state.sizing_mode = "scale_width"
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
     plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
+    for axis in plot.state.select(LogAxis):
+        axis.ticker = LogTicker(desired_num_ticks=3)
 
 
 def _plot(element: hv.Element, name: str, title: str) -> Any:
@@ -195,7 +200,7 @@ def _describe(plot: Any, text: str) -> None:
 
 
 def _number(value: float) -> str:
-    return f"{value:.4g}" if np.isfinite(value) else "nothing escaped"
+    return format_number(value) if np.isfinite(value) else "nothing escaped"
 
 
 def prepare() -> None:

@@ -32,6 +32,8 @@ HOVER_FORMATS = {name: callback_code(HOVER_TEXTS, f"{name}(value)") for name in 
 
 _HOVER_VALUE = re.compile(r"([@$]\w+)\{(\w+)\}")
 
+_MOMENTUM = re.compile(r"^p([xy])$")
+
 _HISTORY_ASPECT = 2.2
 _HISTORY_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 25}
 
@@ -90,10 +92,11 @@ def annotate_picture(
         Below the frame; the legend is HTML.
     """
     enlarge = f"Enlarge, or show all: {title}"
+    abscissa, ordinate = (_MOMENTUM.sub(r"p<sub>\1</sub>", name) for name in names)
     html = (
         f"{title_with_help(title, plot.name, under_way)}"
         f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
-        f"<i class='axis-name abscissa'>{names[0]} →</i><i class='axis-name ordinate'>{names[1]} ↑</i>"
+        f"<i class='axis-name abscissa'>{abscissa} →</i><i class='axis-name ordinate'>{ordinate} ↑</i>"
         f"<div class='foot' data-picture='{plot.name}'>{legend}"
         f"{''.join(f'<span>{note}</span>' for note in notes)}</div>"
     )
@@ -136,6 +139,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
         axis.update(major_tick_line_color=None, major_tick_out=2, minor_tick_line_color=None, minor_tick_out=0)
     plot.background_fill_alpha = plot.border_fill_alpha = 0.0
     plot.css_classes = [name]
+    plot.html_attributes = {"role": "group", "aria-label": title}
     plot.elements = [HTML(html=title_with_help(title, name))]
     return plot
 

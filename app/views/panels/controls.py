@@ -19,6 +19,7 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
 from engine import CASES, Plane, Potential, Slice
+from engine.foundations.wording import format_number
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.palette import PALETTES
 
@@ -89,6 +90,7 @@ class Controls:
         # Panel chooses the first option in place of none when it makes a widget.
         self.plane.value = self._plane()
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4))
+        self.slice = TextPane("", name="slice", sizing_mode="stretch_width", margin=(0, 10, 8, 10), css_classes=["quiet"])
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.energy = EnergySlider(
             self._take_energy, state.energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
@@ -115,7 +117,7 @@ class Controls:
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """Parts of a column: system, plane, energy, quality and layers."""
-        system = [self.case, self.other, self.facts, self.plane, self.axes]
+        system = [self.case, self.other, self.facts, self.plane, self.axes, self.slice]
         energy = [self.energy, self.ticks, self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
@@ -175,7 +177,9 @@ class Controls:
     def _follow_plane(self) -> None:
         set_value(self.plane, self._plane())
         title = f"{self.state.plane.title} …"
-        self.axes.label = title if self.plane.value is None and len(title) <= _LONGEST_TITLE else AXES
+        is_other = self.plane.value is None
+        self.axes.label = title if is_other and len(title) <= _LONGEST_TITLE else AXES
+        self.slice.param.update(object=escape_text(self.state.plane.title), visible=is_other and self.axes.label == AXES)
 
     def _plane(self) -> Slice | None:
         """The slice in view if it is one of those to choose from; None for others."""
@@ -211,8 +215,9 @@ class Controls:
     def _follow_energy(self) -> None:
         state = self.state
         on_h = state.plane.energy_axis is not None
-        beyond = not state.energies.low <= state.energy <= state.energies.high
-        note = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else ""
+        is_below, is_above = state.energy < state.energies.low, state.energy > state.energies.high
+        place = "below" if is_below else "above" if is_above else ""
+        note = f"h = {format_number(state.energy, 12)}, {place} the slider" if place else ""
         self.energy.param.update(disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
         self.exact_energy.disabled = on_h
         for shown in (self.energy, self.exact_energy):
@@ -234,8 +239,7 @@ def _ticks(escape: float, energies: EnergyRange) -> str:
     """HTML of ticks below the slider, at the marked energies and with a label at the escape energy."""
     shares = [(energy - energies.low) / (energies.high - energies.low) for energy in (escape, *energies.marked)]
     ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in shares if 0.0 <= share <= 1.0)
-    label = (
-        f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {escape:.4g}</span>" if 0 <= shares[0] <= 1 else ""
-    )
+    text = f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {format_number(escape)}</span>"
+    label = text if 0.0 <= shares[0] <= 1.0 else ""
     style = f"position:relative;height:22px;margin:0 {_THUMB};font-size:12px;color:var(--ui-quiet)"
     return f"<div style='{style}'>{ticks}{label}</div>"

@@ -62,7 +62,7 @@ def test_layers_have_legends_of_their_own() -> None:
 
 def test_each_exit_has_a_tone_for_each_origin() -> None:
     ends = ("1", "2", "3", "bounded")
-    tones = re.findall("title='from (.*?) to (.*?)'><span class='patch' style='--colour:(.*?)'", legend("origins"))
+    tones = re.findall("title='from (.*?) to (.*?)' style='--colour:(.*?)'", legend("origins"))
     numbers = {end: number for number, end in enumerate(ends, 1)} | {"bounded": 0}
     assert tones == [(origin, end, passage_colour(PAPER, numbers[origin], numbers[end])) for end in ends for origin in ends]
     assert "tones: from 1, 2, 3, bounded" in legend("origins")
