@@ -107,7 +107,7 @@ def test_two_by_two_pictures_fill_the_height_beside_the_orbits(
     assert len({place[0] for place in places}) == len({place[1] for place in places}) == 2
     assert max(place[3] for place in places) <= height
     assert min(min(figures(explorer)[name][4:]) for name in PICTURES) >= least
-    hint = explorer.text("Click a map to see the orbit").bounding_box()
+    hint = explorer.text("Click a map: the orbit").bounding_box()
     assert hint is not None
     assert hint["x"] >= max(place[2] for place in places)
     assert hint["y"] < places[2][1]
@@ -172,7 +172,7 @@ def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:
     top = figures(phone)["basins"][1]
     phone.page.evaluate("window.scrollTo(0, 200)")
     assert figures(phone)["basins"][1] == top
-    hint = phone.text("Click a map to see the orbit").bounding_box()
+    hint = phone.text("Click a map: the orbit").bounding_box()
     assert hint is not None
     above = phone.page.evaluate("([x, y]) => document.elementFromPoint(x, y).className", [hint["x"] + 5, hint["y"] + 5])
     assert "controls" not in above

@@ -11,7 +11,6 @@ from html import escape
 import numpy as np
 import panel as pn
 
-from app.state.glossary import with_terms
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent
 from app.views.components.texts import TextPane
@@ -127,8 +126,8 @@ def _shares(frame: EscapeMap, palette: Palette) -> str:
     others += [(Entry(UNRESOLVED, palette.entry(Fate.FAILED, outcomes).colour), Fate.FAILED)] if shares[Fate.FAILED] else []
     found = [(entry, shares[fate]) for entry, fate in (*ends, *others)]
     parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in found)
-    rest = f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
-    words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;<b>{percent(share)}</b>") for entry, share in found)
+    rest = "" if frame.complete else f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
+    words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{percent(share)}") for entry, share in found)
     return f"<div class='shares' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
 
 
@@ -147,7 +146,7 @@ def _result(frame: EscapeMap) -> str:
     )
     return (
         f"✓ t = {grouped(frame.spec.t_max)} <button type='button' class='term' popovertarget='map-details'>details</button>"
-        f"{_rounding(frame)}<div id='map-details' class='help-text' popover>{with_terms(details)}</div>"
+        f"{_rounding(frame)}<div id='map-details' class='help-text' popover>{details}</div>"
     )
 
 

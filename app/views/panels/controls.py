@@ -90,7 +90,6 @@ class Controls:
         # Panel chooses the first option in place of none when it makes a widget.
         self.plane.value = self._plane()
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4))
-        self.slice = TextPane("", name="slice", sizing_mode="stretch_width", margin=(0, 10, 8, 10), css_classes=["quiet"])
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.energy = EnergySlider(
             self._take_energy, state.energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
@@ -112,12 +111,11 @@ class Controls:
         state.param.watch(lambda *events: layers.rebuild(), ["layers", "compared"])
         self._folds = [Fold("Quality and colours", self._build_quality), layers]
         self._follow_system()
-        self._follow_plane()
         self._connect()
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """Parts of a column: system, plane, energy, quality and layers."""
-        system = [self.case, self.other, self.facts, self.plane, self.axes, self.slice]
+        system = [self.case, self.other, self.facts, self.plane, self.axes]
         energy = [self.energy, self.ticks, self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
@@ -179,7 +177,7 @@ class Controls:
         title = f"{self.state.plane.title} …"
         is_other = self.plane.value is None
         self.axes.label = title if is_other and len(title) <= _LONGEST_TITLE else AXES
-        self.slice.param.update(object=escape_text(self.state.plane.title), visible=is_other and self.axes.label == AXES)
+        self._describe(escape_text(self.state.plane.title) if is_other and self.axes.label == AXES else "")
 
     def _plane(self) -> Slice | None:
         """The slice in view if it is one of those to choose from; None for others."""
@@ -205,12 +203,18 @@ class Controls:
         self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
         self.ticks.object = _ticks(state.potential.escape_energy, energies)
         self.exact_energy.step = 10.0**-energies.decimals
+        self._follow_plane()
+        self._follow_energy()
+
+    def _describe(self, plane: str) -> None:
+        """Write the formula, the outcomes, and the slice (HTML) if it has no button."""
+        reviewed = self.state.reviewed
         formula, _, _ = reviewed.formula.partition(";")
+        facts = "<br>".join([_outcomes(reviewed.potential), *([f"Slice {plane}"] if plane else [])])
         self.facts.object = (
             f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
-            f"V = {escape_text(formula)}<br><span class='quiet'>{_outcomes(state.potential)}</span></div>"
+            f"V = {escape_text(formula)}<br><span class='quiet'>{facts}</span></div>"
         )
-        self._follow_energy()
 
     def _follow_energy(self) -> None:
         state = self.state
