@@ -35,6 +35,7 @@ from app.server.url_patterns import install_handlers
 from app.server.warmup import start_warmup
 from app.state.system_review import review_catalogue_entry
 from engine import CASES
+from engine.integrator.jit.disk_cache import compile_in
 
 # Before any process is forked. While this file runs, `sys.argv` has the arguments of the application only.
 if asks_for_several_processes(sys.orig_argv):
@@ -61,6 +62,7 @@ def on_server_loaded(server_context: Any) -> None:
     gc.callbacks.append(watch.on_collection)
     PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * load_monitor.TICK_SECONDS).start()
     threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
+    compile_in(state.compiler)
     start_warmup(state)
     # Import the page and review the cases of the paper before the first request, which would wait for both.
     import_module("app.session.page")

@@ -29,7 +29,7 @@ from typing import NamedTuple
 from urllib.parse import urlsplit
 
 from benchmarks.attacks import ATTACKS, do_nothing
-from benchmarks.load import CACHE_SENTENCE, Server, resident_megabytes, served, summary
+from benchmarks.load import CACHE_SENTENCE, LONG_WAIT_SECONDS, Server, resident_megabytes, served, shared_by, summary
 from benchmarks.simulated_sessions import ACTIONS, ALL_ACTIONS, Record, SimulatedSession, visitor_headers
 from tests.browser.served_app import free_port
 from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, nginx, proxied
@@ -42,7 +42,7 @@ LONGEST_REVIEW_SECONDS = 20.0
 """Longest permitted time until the page says what it thinks of a formula."""
 
 LONGEST_TURN_MILLISECONDS = 100.0
-"""Longest permitted processor time of a turn of the event loop, apart from those that make a page."""
+"""Longest permitted processor time of a turn of the event loop."""
 
 MOST_LINES = 3.0
 """Most lines in the log for each formula."""
@@ -228,7 +228,7 @@ def count_delayed_messages(servers: Sequence[Server]) -> int:
 
 
 COLUMNS = (
-    "attack", "waits", "minimum", "median", "95 %", "99 %", "maximum", "delayed messages", "liveness",
+    "attack", "waits", "minimum", "median", "95 %", "99 %", "maximum", "over 2 s, 3 s", "refused", "delayed messages", "liveness",
     "memory before", "peak", "after", "limited process", "actions", "log lines for each", "longest turn", "longest review",
 )  # fmt: skip
 
@@ -236,7 +236,11 @@ COLUMNS = (
 def row(name: str, effect: Effect, delayed_messages: int) -> str:
     """A row of the table with `COLUMNS`."""
     megabytes = " | ".join(f"{size:.0f}" for size in (*effect.megabytes, effect.limited_megabytes))
-    visitor = f"{summary(waits(effect.record))} | {delayed_messages} | {max(effect.liveness):.2f} | {megabytes}"
+    seconds = waits(effect.record)
+    late = ", ".join(str(sum(wait > limit for wait in seconds)) for limit in (LONG_WAIT_SECONDS, LONGEST_WAIT_SECONDS))
+    visitor = (
+        f"{summary(seconds)} | {late} | {effect.record.refused} | {delayed_messages} | {max(effect.liveness):.2f} | {megabytes}"
+    )
     lines, (turn, cause) = effect.lines / max(effect.actions, 1), effect.turn
     review = f"{max(effect.attackers.reviews):.2f}" if effect.attackers.reviews else "–"
     return f"| {name} | {visitor} | {effect.actions} | {lines:.1f} | {turn:.0f} ms: {cause} | {review} |"
@@ -271,7 +275,8 @@ def _find_problems_of_formulas(effect: Effect) -> Iterator[str]:
 def running(processes: int, *, proxy: bool) -> Iterator[tuple[list[Server], list[Place]]]:
     """Run servers; with a proxy two of them behind nginx."""
     with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
-        servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(2 if proxy else processes)]
+        count = 2 if proxy else processes
+        servers = [end.enter_context(served(Path(folder) / f"log {n}", **shared_by(count))) for n in range(count)]
         places = [Place(server.address) for server in servers]
         if proxy:
             places = end.enter_context(behind_proxy(servers, Path(folder)))

@@ -1,6 +1,10 @@
 """Load test: simulated sessions drag the energy slider for minutes; waiting times, processor time, memory and remaining sessions.
 
 Run: uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 300
+     uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 150 --busy-cores 1
+     uv run python -m benchmarks.load --sessions 6 --seconds 30
+
+Visitors whom a full server refuses try again as their page does. Waits count while a visitor is in.
 """
 
 from __future__ import annotations
@@ -23,10 +27,14 @@ from pathlib import Path
 
 import psutil
 
+from app.runtime.settings import variable_name
 from benchmarks.simulated_sessions import Record, SimulatedSession
 from engine.foundations.cache_files import CACHE_VARIABLE
 
-LONGEST_WAIT_SECONDS = 2.0
+LONG_WAIT_SECONDS = 2.0
+"""Waits for the first frame of a map that take longer are counted."""
+
+LONGEST_WAIT_SECONDS = 3.0
 """Longest permitted time to the first frame of a map."""
 
 REST_SECONDS = 60.0
@@ -47,8 +55,7 @@ _ROOT = Path(__file__).parents[1]
 # Refused pages are counted by the visitors.
 _ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^\s*Traceback|Task exception was never retrieved")
 _LATE = "event loop "
-# Turns that make a page are left out.
-_TURN = re.compile(_LATE + r"\d+ ms late, (\d+) ms of its own, with (\d+) ms of garbage collection; cause: (?!main: )(.*)")
+_TURN = re.compile(_LATE + r"\d+ ms late, (\d+) ms of its own, with (\d+) ms of garbage collection; cause: (.*)")
 
 
 @dataclass
@@ -84,7 +91,7 @@ class Server:
     def longest_turn(self, first_line: int) -> tuple[float, str]:
         """Longest processor time of a late turn of the event loop in the log from a line on, in milliseconds, and its cause.
 
-        Those that make a page are left out, and the time of garbage collections, which grows with the number of pages.
+        The time of garbage collections is left out, which grows with the number of pages.
         """
         found = _TURN.findall("\n".join(self.log_lines()[first_line:]))
         return max(((float(own) - float(collected), cause) for own, collected, cause in found), default=(0.0, ""))
@@ -139,6 +146,11 @@ def busy_cores(count: int) -> Iterator[None]:
             program.wait(30)
 
 
+def shared_by(processes: int) -> dict[str, str]:
+    """The environment of one of several server processes on this machine."""
+    return {variable_name("processes"): str(processes)}
+
+
 @contextmanager
 def served(log: Path, **environment: str) -> Iterator[Server]:
     """Run the app on a free port, with more environment variables; its kernels are compiled when this begins."""
@@ -188,7 +200,9 @@ class Outcome:
     Attributes
     ----------
     open_sessions
-        Sessions on the server while all simulated ones were open.
+        Sessions on the server before the first action.
+    refused
+        Visitors who were refused then, and those of them who were never admitted.
     remaining_sessions
         Sessions on the server after all were closed.
     busy_cores
@@ -198,6 +212,7 @@ class Outcome:
     """
 
     open_sessions: int
+    refused: tuple[int, int]
     remaining_sessions: int
     busy_cores: float
     page_megabytes: float
@@ -214,7 +229,9 @@ async def load(servers: Sequence[Server], record: Record, sessions: int, seconds
         await session.open()
     page_megabytes = (count_megabytes(servers) - megabytes) / max(sessions - WARM_SESSIONS, 1)
     open_sessions, used, begin = count_sessions(servers), count_cpu_seconds(servers), time.perf_counter()
-    await asyncio.gather(*(session.run(begin + seconds) for session in simulated))
+    refused = [session for session in simulated if not session.is_open]
+    await asyncio.gather(*(session.run_when_admitted(begin + seconds) for session in simulated))
+    still_refused = sum(not session.is_open for session in refused)
     busy_cores = (count_cpu_seconds(servers) - used) / (time.perf_counter() - begin)
     await asyncio.gather(*(session.close() for session in simulated))
     deadline = time.perf_counter() + REST_SECONDS
@@ -222,7 +239,7 @@ async def load(servers: Sequence[Server], record: Record, sessions: int, seconds
         await asyncio.sleep(1.0)
     for task in monitors:
         task.cancel()
-    return Outcome(open_sessions, remaining, busy_cores, page_megabytes)
+    return Outcome(open_sessions, (len(refused), still_refused), remaining, busy_cores, page_megabytes)
 
 
 def count_sessions(servers: Sequence[Server]) -> int:
@@ -278,14 +295,28 @@ def report(servers: Sequence[Server], record: Record, outcome: Outcome) -> None:
     for server in servers:
         tenth = max(len(server.megabytes) // 10, 1)
         sizes = ", ".join(f"{size:.0f}" for size in server.megabytes[::tenth])
-        print(f"Resident memory of a process, MB: {sizes}; maximum {max(server.megabytes):.0f}.")
-    print(f"Pages refused by a full server: {record.refused}.")
+        print(f"Resident memory of a process, MB: {sizes}; maximum {max(server.megabytes):.0f}, end {server.megabytes[-1]:.0f}.")
+        turn, cause = server.longest_turn(0)
+        print(
+            f"Longest turn of the event loop: {turn:.0f} ms of processor time, {cause}; {server.count_lines(0)} other log lines."
+        )
+    waits = all_waits(record)
+    late = ", ".join(
+        f"{sum(wait > limit for wait in waits)} over {limit:g} s" for limit in (LONG_WAIT_SECONDS, LONGEST_WAIT_SECONDS)
+    )
+    print(f"Waits: {len(waits)}, {late}, the longest {max(waits, default=0.0):.2f} s.")
+    print("Visitors refused by a full server: {}, {} of them until the end.".format(*outcome.refused))
     print(f"Sessions: {outcome.open_sessions} at once, {outcome.remaining_sessions} after all were closed.")
+
+
+def all_waits(record: Record) -> list[float]:
+    """All waits for maps, those in vain included."""
+    return [*(wait for times in record.waits.values() for wait in times), *record.replaced]
 
 
 def find_problems(servers: Sequence[Server], record: Record, remaining: int, ceiling: float) -> Iterator[str]:
     """Violations of the limits."""
-    waits = [*(wait for times in record.waits.values() for wait in times), *record.replaced]
+    waits = all_waits(record)
     late = [wait for wait in waits if wait > LONGEST_WAIT_SECONDS]
     if not waits:
         yield "no map was requested"
@@ -312,7 +343,9 @@ def main() -> int:
     options = parser.parse_args()
     record = Record()
     with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
-        servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(options.processes)]
+        servers = [
+            end.enter_context(served(Path(folder) / f"log {n}", **shared_by(options.processes))) for n in range(options.processes)
+        ]
         end.enter_context(busy_cores(options.busy_cores))
         setup = f"{options.sessions} sessions on {options.processes} processes beside {options.busy_cores} busy cores"
         print(f"\n{setup} for {options.seconds:g} s, seed {options.seed}. {CACHE_SENTENCE}\n", flush=True)

@@ -17,6 +17,7 @@ from urllib.parse import parse_qsl, urljoin
 
 from tornado.httpclient import AsyncHTTPClient, HTTPClientError
 
+from app.server.admission import RETRY_SECONDS
 from engine import Plane
 from tests.page_channel import NO_OPTIONS, Channel, Options
 
@@ -196,6 +197,13 @@ class SimulatedSession:
         while self._awaited is not None and time.perf_counter() < deadline:
             await asyncio.sleep(0.05)
         self._check_timeout()
+
+    async def run_when_admitted(self, end: float) -> None:
+        """Act until `end`, and before it ask a full server for the page as a refused page does."""
+        while not self.is_open and time.perf_counter() + RETRY_SECONDS < end:
+            await asyncio.sleep(RETRY_SECONDS)
+            await self.open()
+        await self.run(end)
 
     async def close(self) -> None:
         """Close the page."""

@@ -17,7 +17,7 @@ from cli.layer_options import LayerOptions, read_layers
 from cli.option_marks import Of
 from engine import MEASURES, POTENTIALS, Plane, Potential, Slice, System, review_potential
 from engine.foundations.validation import checked_count
-from engine.slices.energies import Energy
+from engine.slices.axes import Energy
 from engine.slices.slice_text import AXIS_NAMES, read_slice
 from engine.slices.window import GivenWindow
 from engine.sweeps.spec import MOST_VALUES
@@ -120,9 +120,43 @@ def find_plane(
     return None if plane is None else read_slice(plane, ",".join(fix or ()), system)
 
 
+type GivenEnergy = float | None
+"""Type of the parameter of commands for an energy, or the Jacobi constant, that can be left out."""
+
+type OneEnergy = float
+"""Type of the parameter of commands for an energy, or the Jacobi constant."""
+
+
+def find_energy(system: System, energy: float | None = None, jacobi: float | None = None) -> GivenEnergy:
+    """Return the energy that is given itself or by the Jacobi constant; ValueError for both.
+
+    Parameters
+    ----------
+    system
+        The system.
+    energy
+        h, dimensionless.
+    jacobi
+        Jacobi constant C instead of h, in a rotating frame: C = −2h about its axis, the barycentre, without μ(1 − μ).
+    """
+    if jacobi is None:
+        return energy
+    if energy is not None:
+        raise ValueError(f"jacobi={jacobi}: give either --energy H or --jacobi C")
+    found: float = system.potential.jacobi_energy(jacobi)
+    return found
+
+
+def need_energy(energy: GivenEnergy) -> OneEnergy:
+    """Return the energy; ValueError if none is given."""
+    if energy is None:
+        raise ValueError("energy: give --energy H, or --jacobi C in a rotating frame")
+    return energy
+
+
 def choose_energy(
     plane: Slice,
-    energy: float | None = None,
+    energy: GivenEnergy = None,
     energies: Annotated[tuple[float, float] | None, typer.Option(metavar="LOW HIGH")] = None,
 ) -> Energy:
     """Return the energy of a map, or the range of an axis h; ValueError if the option for the slice is missing.
@@ -132,7 +166,7 @@ def choose_energy(
     plane
         The slice.
     energy
-        h, dimensionless.
+        Of `find_energy`.
     energies
         Range of h, for slices with an axis h.
     """
@@ -197,6 +231,8 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Slice: find_plane,
     Slice | None: find_plane,
     Energy: choose_energy,
+    GivenEnergy: find_energy,
+    OneEnergy: need_energy,
     Palette: find_palette,
     LayerOptions: read_layers,
 }

@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+import re
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.util.docutils import SphinxDirective
 
 from app.state.glossary import GLOSSARY
+from engine import results
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 project = "Escape Explorer"
 author = "The Escape Explorer developers"
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "docs/index"
 include_patterns = ["*.md", "docs/*.md", "docs/api/*.md", "benchmarks/README.md", "examples/tutorial.ipynb"]
 exclude_patterns = [".*", "README.md", "site"]
@@ -42,7 +44,6 @@ nb_execution_timeout = 300
 nb_output_stderr = "remove"
 
 default_role = "py:obj"
-autosummary_generate = False
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 python_maximum_signature_line_length = 100
 napoleon_attr_annotations = False
@@ -88,6 +89,8 @@ def _set_docstring(app: Sphinx, what: str, name: str, obj: object, options: obje
     elif what == "property":
         # Napoleon takes the words before a colon for a type.
         lines[:] = [*inspect.cleandoc(obj.__doc__ or "").splitlines(), ""]
+    # Docstrings name the classes of results without their module.
+    lines[:] = [re.sub(rf"(?<!`)`({'|'.join(results.__all__)})\b", r"`~escape_explorer.results.\1", line) for line in lines]
 
 
 def _docstring(name: str, module: str) -> str:

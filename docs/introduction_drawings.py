@@ -21,8 +21,7 @@ from engine import (
     integrate_orbit,
     start_states,
 )
-from engine.slices.planes import SPACE
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION, SPACE
 from plots.layers.manifolds import manifold_strokes, select_image
 from plots.pictures.orbit_curves import compute_orbit_curves, find_well_window
 from plots.pictures.palette import PAPER
@@ -74,14 +73,14 @@ def blob() -> Figure:
 def tubes() -> Figure:
     """The sections of the tubes around the Lyapunov orbits, and the basins that they bound."""
     figure, panels = new_panels(3, 9.0)
-    window = MapSpec(CASE, SECTION.plane, ENERGY).find_window()
+    window = MapSpec(CASE, SECTION, ENERGY).find_window()
     manifolds = find_stable_manifolds(CASE, ENERGY, images=2)
     for axes, image in zip(panels, (1, 2), strict=False):
-        draw_limits(axes, CASE, SECTION.plane, ENERGY, window)
+        draw_limits(axes, CASE, SECTION, ENERGY, window)
         draw_strokes(axes, manifold_strokes(select_image(manifolds, image)), window, PAPER)
         show_window(axes, window, "x", "px")
         name_panel(axes, f"Image {image} of the tubes")
-    draw_picture(panels[2], compute_map(MapSpec(CASE, SECTION.plane, ENERGY, (SIDE, SIDE), t_max=1e4)), "basins", PAPER)
+    draw_picture(panels[2], compute_map(MapSpec(CASE, SECTION, ENERGY, (SIDE, SIDE), t_max=1e4)), "basins", PAPER)
     return figure
 
 

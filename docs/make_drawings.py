@@ -46,7 +46,7 @@ from engine import (
     sample_starts,
     start_states,
 )
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, Entry, rgba
 from plots.printed.curve_figures import draw_statistics_figure
@@ -98,13 +98,13 @@ def sali() -> Figure:
     """The sections of a regular and a chaotic orbit, and their SALI."""
     figure, (left, right) = new_panels(2, 11.0)
     case, energy = CASES["III"], 0.26
-    window = MapSpec(case, SECTION.plane, energy).find_window()
-    starts = start_states(case, SECTION.plane, energy, np.array([0.4, 0.58]), np.array([0.2, 0.0]))
+    window = MapSpec(case, SECTION, energy).find_window()
+    starts = start_states(case, SECTION, energy, np.array([0.4, 0.58]), np.array([0.2, 0.0]))
     for start, colour in zip(starts, PAPER.orbits, strict=False):
         orbit = integrate_orbit(case, start, 2e4)
         mark_section(left, orbit, window, colour)
         draw_sali(right, compute_orbit_curves(case, orbit), colour)
-    draw_limits(left, case, SECTION.plane, energy, window)
+    draw_limits(left, case, SECTION, energy, window)
     show_window(left, window, "x", "px")
     name_panel(left, "Two orbits where they cross y = 0 upward")
     return figure
@@ -179,7 +179,7 @@ def slices() -> Figure:
 
 def statistics() -> Figure:
     """Escape times, and probabilities of an escape by crossings."""
-    frame = compute_map(MapSpec(CASES["II"], SECTION.plane, 0.2, (SIDE, SIDE), t_max=1e4))
+    frame = compute_map(MapSpec(CASES["II"], SECTION, 0.2, (SIDE, SIDE), t_max=1e4))
     return draw_statistics_figure(compute_statistics(frame), replace(STYLE, titles=True))
 
 
@@ -214,13 +214,13 @@ def evidence() -> Figure:
     window = frame.spec.find_window()
     draw_pixels(left, rgba(list(_EVIDENCE_COLOURS.values()))[frame.evidence][::-1], window, window)
     name_panel(left, "Why an orbit is called bounded")
-    starts = start_states(case, SECTION.plane, energy, np.array([0.3, 0.6]), np.zeros(2))
+    starts = start_states(case, SECTION, energy, np.array([0.3, 0.6]), np.zeros(2))
     for start, colour in zip(starts, PAPER.orbits, strict=False):
         orbit = integrate_orbit(case, start, 1e4)
         mark_section(right, orbit, window, colour)
     name_panel(right, "Two orbits on the section y = 0")
     for axes in (left, right):
-        draw_limits(axes, case, SECTION.plane, energy, window)
+        draw_limits(axes, case, SECTION, energy, window)
         show_window(axes, window, "x", "px")
     names = {code: code.name.lower().replace("_", "-") for code in _EVIDENCE_COLOURS if (frame.evidence == code).any()}
     add_figure_legend(figure, legend_handles(Entry(name, _EVIDENCE_COLOURS[code]) for code, name in names.items() if code))

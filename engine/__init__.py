@@ -1,7 +1,8 @@
 """Escapes in open Hamiltonian systems with two degrees of freedom and any smooth potential with a well.
 
 These are the public names of the library. All results show themselves in notebooks and have `plot`, `to_pandas`, `to_xarray` and
-`to_holoviews`, see `Result`. Names of other modules are for the programs of this repository, and may change with any version.
+`to_holoviews`, see `Result`; the classes of results that are not named here are in `results`. Names of other modules are for the
+programs of this repository, and may change with any version.
 
 - systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `write_formula`, `review_potential`
 - starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `start_states`, `sample_starts`
@@ -15,147 +16,72 @@ These are the public names of the library. All results show themselves in notebo
 - sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
 """
 
-from typing import TYPE_CHECKING
+import types
+import typing
 
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
-from engine.foundations.execution import Execution
-from engine.foundations.former_names import FORMER_NAMES as FORMER_NAMES
-from engine.foundations.former_names import find_former_name as find_former_name
-from engine.foundations.result import Result
-from engine.maps.compute import compute_map
-from engine.maps.descriptors import DescriptorMap, TimeDirection, compute_lagrangian_descriptor
-from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
-from engine.maps.regularity import RegularityMap, compute_regularity
-from engine.maps.result import EscapeMap
-from engine.maps.spec import MapSpec
-from engine.maps.trust import Trust, TrustMap, compute_trust
-from engine.maps.uncertain_pairs import compute_uncertainty_exponent
-from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
-from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
-from engine.measures.decay_law_fits import fit_decay_laws
-from engine.measures.decay_laws import DecayLaws, LawFit
-from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.exit_matching import ExitMatching, compute_exit_matching
-from engine.measures.islands import Islands, compute_islands
-from engine.measures.measure import Measure
-from engine.measures.power_law_fit import UncertaintyExponent
-from engine.measures.wada import WadaTest, compute_wada_test
-from engine.periodic.stable_manifolds import StableManifolds, find_stable_manifolds
-from engine.propagation.classification import Outcomes, classify_orbits
-from engine.propagation.evidence import Evidence
-from engine.propagation.fates import Fate, Regularity
-from engine.slices.axes import Coordinate, Direction, ParameterAxis
-from engine.slices.planes import Plane, start_states
-from engine.slices.sampling import sample_starts
-from engine.slices.slice import Slice
-from engine.slices.window import Window
-from engine.sweeps.measures import MEASURES
-from engine.sweeps.opened_results import open_result
-from engine.sweeps.plan import plan_sweep
-from engine.sweeps.spec import SweepSpec
-from engine.sweeps.sweep import Sweep, compute_sweep
-from engine.systems.formulas.formula_parser import parse_formula
-from engine.systems.formulas.formula_tokens import FormulaError
-from engine.systems.formulas.formula_writer import write_formula
-from engine.systems.known_potentials import CASES, POTENTIALS
-from engine.systems.outcomes import Centre, Outcome
-from engine.systems.potential import Potential
-from engine.systems.review.potential_review import PotentialReview, review_potential
-from engine.systems.system import System
-from engine.trajectories.birkhoff_digits import BirkhoffDigits
-from engine.trajectories.entrances import sample_entrances, sample_entrances_by_exit
-from engine.trajectories.flux import EscapeFlux, compute_flux
-from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
-from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
-from engine.trajectories.sampled_orbits import SampledOrbits, sample_orbits
-from engine.trajectories.separation import Separation, compute_separation
-from engine.trajectories.trajectory import Orbit, integrate_orbit
+from engine.exits.lyapunov_orbits import LyapunovOrbit as LyapunovOrbit
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits as find_lyapunov_orbits
+from engine.foundations.execution import Execution as Execution
+from engine.foundations.result import Result as Result
+from engine.maps.compute import compute_map as compute_map
+from engine.maps.descriptors import TimeDirection as TimeDirection
+from engine.maps.descriptors import compute_lagrangian_descriptor as compute_lagrangian_descriptor
+from engine.maps.origin_fates import compute_origin_fates as compute_origin_fates
+from engine.maps.regularity import compute_regularity as compute_regularity
+from engine.maps.result import EscapeMap as EscapeMap
+from engine.maps.spec import MapSpec as MapSpec
+from engine.maps.trust import Trust as Trust
+from engine.maps.trust import compute_trust as compute_trust
+from engine.maps.uncertain_pairs import compute_uncertainty_exponent as compute_uncertainty_exponent
+from engine.measures.basin_entropy import compute_basin_entropy as compute_basin_entropy
+from engine.measures.chaotic_share import compute_chaotic_share as compute_chaotic_share
+from engine.measures.decay_law_fits import fit_decay_laws as fit_decay_laws
+from engine.measures.escape_statistics import compute_statistics as compute_statistics
+from engine.measures.exit_matching import compute_exit_matching as compute_exit_matching
+from engine.measures.islands import compute_islands as compute_islands
+from engine.measures.measure import Measure as Measure
+from engine.measures.wada import compute_wada_test as compute_wada_test
+from engine.periodic.stable_manifolds import find_stable_manifolds as find_stable_manifolds
+from engine.propagation.classification import classify_orbits as classify_orbits
+from engine.propagation.evidence import Evidence as Evidence
+from engine.propagation.fates import Fate as Fate
+from engine.propagation.fates import Regularity as Regularity
+from engine.slices.axes import Coordinate as Coordinate
+from engine.slices.axes import Direction as Direction
+from engine.slices.axes import ParameterAxis as ParameterAxis
+from engine.slices.planes import Plane as Plane
+from engine.slices.planes import start_states as start_states
+from engine.slices.sampling import sample_starts as sample_starts
+from engine.slices.slice import Slice as Slice
+from engine.slices.window import Window as Window
+from engine.sweeps.measures import MEASURES as MEASURES
+from engine.sweeps.opened_results import open_result as open_result
+from engine.sweeps.plan import plan_sweep as plan_sweep
+from engine.sweeps.spec import SweepSpec as SweepSpec
+from engine.sweeps.sweep import compute_sweep as compute_sweep
+from engine.systems.formulas.formula_parser import parse_formula as parse_formula
+from engine.systems.formulas.formula_tokens import FormulaError as FormulaError
+from engine.systems.formulas.formula_writer import write_formula as write_formula
+from engine.systems.known_potentials import CASES as CASES
+from engine.systems.known_potentials import POTENTIALS as POTENTIALS
+from engine.systems.outcomes import Centre as Centre
+from engine.systems.outcomes import Outcome as Outcome
+from engine.systems.potential import Potential as Potential
+from engine.systems.review.potential_review import review_potential as review_potential
+from engine.systems.system import System as System
+from engine.trajectories.entrances import sample_entrances as sample_entrances
+from engine.trajectories.entrances import sample_entrances_by_exit as sample_entrances_by_exit
+from engine.trajectories.flux import compute_flux as compute_flux
+from engine.trajectories.nearest_divergent_start import find_divergent_start as find_divergent_start
+from engine.trajectories.orbit_verdicts import judge_orbit as judge_orbit
+from engine.trajectories.sampled_orbits import sample_orbits as sample_orbits
+from engine.trajectories.separation import compute_separation as compute_separation
+from engine.trajectories.trajectory import Orbit as Orbit
+from engine.trajectories.trajectory import integrate_orbit as integrate_orbit
 
-__all__ = [
-    "CASES",
-    "MEASURES",
-    "POTENTIALS",
-    "BasinEntropy",
-    "BirkhoffDigits",
-    "Centre",
-    "ChaoticShare",
-    "Coordinate",
-    "DecayLaws",
-    "DescriptorMap",
-    "Direction",
-    "DivergentStart",
-    "EscapeFlux",
-    "EscapeMap",
-    "EscapeStatistics",
-    "Evidence",
-    "Execution",
-    "ExitMatching",
-    "Fate",
-    "FormulaError",
-    "Islands",
-    "LawFit",
-    "LyapunovOrbit",
-    "MapSpec",
-    "Measure",
-    "Orbit",
-    "OrbitVerdict",
-    "OriginFateMap",
-    "Outcome",
-    "Outcomes",
-    "ParameterAxis",
-    "Plane",
-    "Potential",
-    "PotentialReview",
-    "Regularity",
-    "RegularityMap",
-    "Result",
-    "SampledOrbits",
-    "Separation",
-    "Slice",
-    "StableManifolds",
-    "Sweep",
-    "SweepSpec",
-    "System",
-    "TimeDirection",
-    "Trust",
-    "TrustMap",
-    "UncertaintyExponent",
-    "WadaTest",
-    "Window",
-    "classify_orbits",
-    "compute_basin_entropy",
-    "compute_chaotic_share",
-    "compute_exit_matching",
-    "compute_flux",
-    "compute_islands",
-    "compute_lagrangian_descriptor",
-    "compute_map",
-    "compute_origin_fates",
-    "compute_regularity",
-    "compute_separation",
-    "compute_statistics",
-    "compute_sweep",
-    "compute_trust",
-    "compute_uncertainty_exponent",
-    "compute_wada_test",
-    "find_divergent_start",
-    "find_lyapunov_orbits",
-    "find_stable_manifolds",
-    "fit_decay_laws",
-    "integrate_orbit",
-    "judge_orbit",
-    "open_result",
-    "parse_formula",
-    "plan_sweep",
-    "review_potential",
-    "sample_entrances",
-    "sample_entrances_by_exit",
-    "sample_orbits",
-    "sample_starts",
-    "start_states",
-    "write_formula",
-]
+if not typing.TYPE_CHECKING:
+    __all__ = sorted(name for name, value in vars().items() if name[0] != "_" and not isinstance(value, types.ModuleType))
+    from engine.foundations.former_names import find_former_name
 
-if not TYPE_CHECKING:
     # Type checkers would take any name for one of the module.
     __getattr__ = find_former_name

@@ -1,8 +1,9 @@
 """Escapes in open Hamiltonian systems with two degrees of freedom.
 
 The public names of the library are here: `compute_map`, `integrate_orbit`, `CASES`, ... and, where the page is installed (extra
-`page`), `Explorer`, the page in a notebook. `dir(escape_explorer)` lists them. The modules `escape_explorer.engine`, `plots`,
-`app` and `cli` may change with any version.
+`page`), `Explorer`, the page in a notebook. `dir(escape_explorer)` lists them. `escape_explorer.results` has the classes of the
+results that functions return, for annotations. The modules `escape_explorer.engine`, `plots`, `app` and `cli` may change with any
+version.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ def __getattr__(name: str) -> Any:
     if name == "Explorer":
         import_module("engine.foundations.extras").require_package("panel", "page")
         return import_module("app.session.notebook").Explorer
+    if name == "results":
+        return import_module("escape_explorer.results")
     engine = import_module("engine")
     if name == "__all__":
         # With `import *` all of these are imported.
         return [*engine.__all__, *(["Explorer"] if find_spec("panel") else [])]
-    if name in engine.FORMER_NAMES:
-        return engine.find_former_name(name, stacklevel=3)
     if name not in engine.__all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return import_module("engine.foundations.former_names").find_former_name(name, stacklevel=3)
     return getattr(engine, name)
 
 

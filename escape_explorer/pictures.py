@@ -1,4 +1,4 @@
-"""The entry point `escape_explorer.pictures`, which `engine.foundations.pictures` loads."""
+"""The entry point `escape_explorer.pictures`, which `engine.foundations.extras` loads."""
 
 from plots.printed.results import plot_result, to_holoviews, to_html
 

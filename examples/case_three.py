@@ -131,7 +131,7 @@ print(f"published fit: at most {100.0 * np.abs(published - escaped).max():.1f} p
 #
 # Basin entropy measures it by one number: the mean entropy of the fates in boxes of 5 × 5 starts. S_b is 0 if every box has a
 # single fate, and ln 5 if four channels and bounded motion are equally likely everywhere. S_bb is the mean over boxes with
-# several fates; S_bb > ln 2 means that the boundary is not smooth at this scale (`docs/basin-entropy.md`). The same sweep
+# several fates; S_bb > ln 2 means that the boundary is not smooth at this scale (`docs/measures.md`). The same sweep
 # measures it.
 
 # %%
@@ -187,4 +187,4 @@ plt.close(figure)
 # - `find_stable_manifolds`: the curves that bound the basins; `compute_wada_test`: whether the boundaries are Wada.
 # - `fit_decay_laws`: exponential or algebraic decay; `judge_orbit`: several chaos indicators of one orbit.
 # - `open_result`: results from files.
-# - `compute_sweep` with a store: maps at hundreds of energies, resumable (`docs/long-runs.md`).
+# - `compute_sweep` with a store: maps at hundreds of energies, resumable (`docs/sweeps.md`).

@@ -13,11 +13,8 @@ from engine import (
     Execution,
     MapSpec,
     Plane,
-    RegularityMap,
     Slice,
-    Sweep,
     SweepSpec,
-    UncertaintyExponent,
     Window,
     compute_map,
     compute_regularity,
@@ -25,6 +22,7 @@ from engine import (
     compute_uncertainty_exponent,
 )
 from engine.foundations.execution import DEFAULT_EXECUTION
+from engine.results import RegularityMap, Sweep, UncertaintyExponent
 from engine.sweeps.points import compute_point
 from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from engine import Execution, Plane, Potential, Slice
-from engine.propagation.portable_system import PortableSystem, make_portable_system
 from engine.slices.default_window import default_window
+from engine.slices.portable_system import PortableSystem, make_portable_system
 
 # Energies at which default windows are tabulated: below the escape energy, where they change slowly, and above it.
 _ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13
@@ -40,7 +40,7 @@ class BrowserSystem:
         return self.portable.nbytes + 4096
 
     def to_dict(self) -> dict[str, Any]:
-        """The system as `System` in modules/system.js describes it, with its module and its windows."""
+        """The system as `System` in modules/engine/system.js describes it, with its module and its windows."""
         return {**self.portable.to_dict(), "key": self.key, "module": self.portable.module, "windows": self.windows}
 
 

@@ -26,7 +26,7 @@ class EngineComponent(JSComponent):
     _esm = Path(__file__).with_suffix(".js")
 
 
-class BrowserEngine:
+class BrowserEngine(param.Parameterized):
     """Sends the engine in the browser the system and the view of the page.
 
     Parameters
@@ -35,12 +35,14 @@ class BrowserEngine:
         Called with the energy at which the animation of the energy ends.
     """
 
+    playing = param.Boolean(default=False, doc="whether the energy is being played")
+
     def __init__(self, on_energy: Callable[[float], None]) -> None:
+        super().__init__()
         self._on_energy = on_energy
         self._numbers = count()
         self._component = EngineComponent(address=ADDRESS, width=0, height=0, margin=0, styles={"position": "absolute"})
         self._component.on_msg(lambda event: self._receive(event.data))
-        self.playing = False
 
     def layout(self) -> EngineComponent:
         """An invisible component that must be on the page."""

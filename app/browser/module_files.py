@@ -21,7 +21,7 @@ MODULES = Path(__file__).parent / "modules"
 def _digest() -> str:
     """A hash of all modules and of what the kernels are made of."""
     digest = hashlib.sha256(module_digest().encode())
-    for path in sorted(MODULES.glob("*.js")):
+    for path in sorted(MODULES.rglob("*.js")):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -32,7 +32,7 @@ ADDRESS = f"{_FOLDER}/main.js"
 """Address of the first module, relative to the page."""
 
 
-WATCH_ADDRESS = f"{_FOLDER}/watch.js"
+WATCH_ADDRESS = f"{_FOLDER}/gestures/watch.js"
 """Address of the player of many orbits, which the page loads when it is asked for."""
 
 
@@ -64,7 +64,7 @@ class KernelsHandler(RequestHandler):
 
 
 ROUTES: tuple[tuple[str, type[RequestHandler], dict[str, Any]], ...] = (
-    (rf"/{_FOLDER}/([a-z_]+\.js)", ModuleHandler, {"path": str(MODULES)}),
+    (rf"/{_FOLDER}/((?:[a-z]+/)?[a-z_]+\.js)", ModuleHandler, {"path": str(MODULES)}),
     (f"/{KERNELS_ADDRESS}", KernelsHandler, {}),
 )
 """Paths, handlers and arguments."""

@@ -12,7 +12,7 @@ from plots.pictures.image_columns import pixel_coding
 
 
 def describe_view(state: ViewState) -> dict[str, Any]:
-    """The view as `ServerView` in modules/preview.js describes it."""
+    """The view as `ServerView` in modules/gestures/preview.js describes it."""
     outcomes = state.potential.outcomes_at(state.energy)
     return {
         "system": system_key(state.potential),

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.view import Start
 from app.state.view_state import ViewState
-from engine import DivergentStart, find_divergent_start
+from engine import find_divergent_start
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
 from engine.propagation.fates import describe_fate
+from engine.results import DivergentStart
 
 
 class DivergentStartRequests:

@@ -11,7 +11,6 @@ log = logging.getLogger(__name__)
 _ENERGY = re.compile(r"\benergy=(-?[\d.]+(?:e[+-]?\d+)?): ")
 
 ZOOM_ENDS = "Double precision ends here: pixels cannot be closer together."
-WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
 
 
 def sentence(error: Exception) -> str:

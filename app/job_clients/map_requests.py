@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
 
 from app.job_clients.error_messages import sentence
-from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.latest_request import Locked
 from app.state.view_state import ViewState
 from engine import EscapeMap, MapSpec
@@ -51,10 +50,8 @@ class MapRequests:
         Receives frames and errors, under the session's lock.
     locked
         Runs callbacks under the session's lock; it may drop all calls but the latest.
-    follow_ups
-        Analyses of each complete map.
-    is_overloaded
-        Whether the server is overloaded; then frames between the first and the last are skipped.
+    is_crowded
+        Whether the server is crowded; then frames between the first and the last are skipped.
     """
 
     def __init__(
@@ -63,12 +60,11 @@ class MapRequests:
         jobs: JobSubmitter,
         listener: MapListener,
         locked: Locked,
-        follow_ups: Sequence[FollowUp] = (),
-        is_overloaded: Callable[[], bool] = lambda: False,
+        is_crowded: Callable[[], bool] = lambda: False,
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._subscription: Subscription | None = None
-        self._whole_map: EscapeMap | None = None
+        self._is_whole = False
         # Each request has its generation; results of earlier generations are dropped.
         self._generation = 0
         self._generation_lock = threading.RLock()
@@ -76,12 +72,11 @@ class MapRequests:
         self._delivered = -1
         # What was delivered last: a map and its columns.
         self._painted: tuple[MapSpec, dict[str, list[Any]]] | None = None
-        self._is_overloaded = is_overloaded
+        self._is_crowded = is_crowded
         self._continue = locked(self._on_compiled)
         self._show_members = locked(self._on_members)
         self._show_frame = locked(self._on_frame)
         self._show_error = locked(self._on_error)
-        self._follow_ups = FollowUpRequests(state, jobs, follow_ups, listener.map_failed, locked)
         state.param.watch(lambda *events: self.request_map(), ["system", "plane", "energy", "t_max", "resolution", "window"])
 
     def request_map(self) -> None:
@@ -122,14 +117,14 @@ class MapRequests:
         self._subscription = self._jobs.request(job, on_result, on_error)
 
     def _deliver_frame(self, generation: int, frame: EscapeMap) -> None:
-        """Deliver a frame; under overload only the first and the last one, and none of an energy without an interior."""
+        """Deliver a frame, of a crowded server only the first and the last one; none of an energy without an interior."""
         try:
             # Slow, and needed by the ranges of the maps, whose smallest window depends on it.
             replace(frame.spec, window=None).find_window()
         except ValueError as error:
             self._deliver(self._show_error, generation, error)
             return
-        if self._delivered == generation and not frame.complete and self._is_overloaded():
+        if self._delivered == generation and not frame.complete and self._is_crowded():
             return
         columns = map_columns(frame) | layer_columns(frame, self._state.layers)
         if self._painted is not None and _has_same_starts(self._painted[0], frame.spec):
@@ -151,16 +146,15 @@ class MapRequests:
                 callback(generation, *arguments)
 
     def cancel_map(self) -> None:
-        """Cancel the map and its follow-up analyses."""
-        self._whole_map = None
-        self._follow_ups.follow(None)
+        """Cancel the map."""
+        self._is_whole = False
         if self._subscription is not None:
             self._subscription.cancel()
             self._subscription = None
 
     def stop_map(self) -> None:
         """Cancel the map for the user and drop late frames; no effect on a complete map."""
-        if self._whole_map is not None:
+        if self._is_whole:
             return
         self.cancel_map()
         self._start_generation()
@@ -174,9 +168,7 @@ class MapRequests:
     def _on_frame(self, generation: int, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         if generation == self._generation:
             self._listener.map_arrived(frame, columns)
-            if frame.complete:
-                self._whole_map = frame
-                self._follow_ups.follow(frame)
+            self._is_whole = frame.complete
 
     def _on_error(self, generation: int, error: Exception) -> None:
         if generation == self._generation:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.latest_request import Locked
+from app.job_clients.requested_results import RequestedResults
 from app.state.view import Start
 from app.state.view_state import ViewState
-from engine import BirkhoffDigits, Fate, Orbit, OrbitVerdict, judge_orbit
+from engine import Fate, Orbit, judge_orbit
 from engine.jobs.client import JobSubmitter
-from engine.jobs.job import Job
-from engine.jobs.subscription import Subscription
+from engine.jobs.job import Job, Queue
 from engine.propagation.fates import describe_fate
+from engine.results import BirkhoffDigits, OrbitVerdict
+from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 
@@ -51,66 +52,57 @@ class ChosenOrbit:
 
 
 class OrbitRequests:
-    """Orbits of one session; `show(orbits)` is called after changes, under the session's lock.
+    """Orbits of one session, and the Birkhoff digits of the bounded ones, which need more than the history of an orbit.
 
-    `latest` wraps a function so that of the calls that wait only the latest runs: results that arrive together are shown once.
+    Parameters
+    ----------
+    state
+        View state, whose starts are followed.
+    jobs
+        Computes orbits and digits.
+    show
+        Called with the orbits after changes, under the session's lock.
+    notify
+        Called with the reason why digits could not be computed.
+    latest
+        As for `RequestedResults`.
     """
 
     def __init__(
-        self, state: ViewState, jobs: JobSubmitter, show: Callable[[tuple[ChosenOrbit, ...]], None], latest: Locked
+        self,
+        state: ViewState,
+        jobs: JobSubmitter,
+        show: Callable[[tuple[ChosenOrbit, ...]], None],
+        notify: Callable[[str], None],
+        latest: Locked,
     ) -> None:
-        self._state, self._jobs, self._show = state, jobs, show
-        self._subscriptions: dict[Job[Orbit], Subscription | None] = {}
-        self._results: dict[Job[Orbit], OrbitCurves | str] = {}
+        self._state, self._show, self._notify = state, show, notify
+        self._orbits = RequestedResults(jobs, _draw, lambda arrived: self._update(), latest)
+        self._digits = RequestedResults(jobs, _with_sentence, self._take_digits, latest)
         self._shown: tuple[ChosenOrbit, ...] = ()
-        # Results that are not shown yet; threads append to it.
-        self._arrived: deque[tuple[Job[Orbit], OrbitCurves | str]] = deque()
-        self._show_arrived = latest(self._take_arrived)
         state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
 
     def follow(self) -> None:
         """Request the orbits of new starts and cancel those of removed ones."""
-        wanted = [job for job in map(self._state.orbit_job, self._state.starts) if job is not None]
-        for job in [job for job in self._subscriptions if job not in wanted]:
-            _cancel(self._subscriptions.pop(job))
-        self._results = {job: result for job, result in self._results.items() if job in wanted}
-        for job in wanted:
-            if job not in self._results and job not in self._subscriptions:
-                self._request(job)
-        self._notify()
+        self._orbits.follow([job for job in map(self._state.orbit_job, self._state.starts) if job is not None])
+        self._update()
 
     def close(self) -> None:
         """Cancel all requests."""
-        for subscription in self._subscriptions.values():
-            _cancel(subscription)
-        self._subscriptions.clear()
-        self._results.clear()
+        for results in (self._orbits, self._digits):
+            results.follow(())
 
-    def _request(self, job: Job[Orbit]) -> None:
-        # A cached orbit is delivered before `request` returns.
-        self._subscriptions[job] = None
-        subscription = self._jobs.request(
-            job,
-            lambda orbit: self._deliver(job, compute_orbit_curves(job.arguments[0], orbit)),
-            lambda error: self._deliver(job, sentence(error)),
-        )
-        if job in self._subscriptions:
-            self._subscriptions[job] = subscription
+    def _take_digits(self, arrived: Mapping[Job[Any], BirkhoffDigits | str]) -> None:
+        for result in arrived.values():
+            if isinstance(result, str):
+                self._notify(result)
+        self._update()
 
-    def _deliver(self, job: Job[Orbit], result: OrbitCurves | str) -> None:
-        self._arrived.append((job, result))
-        self._show_arrived()
-
-    def _take_arrived(self) -> None:
-        while self._arrived:
-            job, result = self._arrived.popleft()
-            if job in self._subscriptions:
-                del self._subscriptions[job]
-                self._results[job] = result
-        self._notify()
-
-    def _notify(self) -> None:
-        orbits = tuple(self._orbit_of(start) for start in self._state.starts)
+    def _update(self) -> None:
+        """Show the orbits as far as they are known."""
+        bounded = [job for job, found in self._orbits.found.items() if _is_bounded(found)]
+        self._digits.follow([_digits_job(job) for job in bounded])
+        orbits = tuple(map(self._orbit_of, self._state.starts))
         # Drawing unchanged orbits again would delay a map that is requested at the same time.
         if orbits != self._shown:
             self._shown = orbits
@@ -118,10 +110,27 @@ class OrbitRequests:
 
     def _orbit_of(self, start: Start) -> ChosenOrbit:
         job = self._state.orbit_job(start)
-        result: Any = describe_fate(Fate.FORBIDDEN) if job is None else self._results.get(job)
-        return ChosenOrbit(start, problem=result) if isinstance(result, str) else ChosenOrbit(start, result)
+        if job is None:
+            return ChosenOrbit(start, problem=describe_fate(Fate.FORBIDDEN))
+        found = self._orbits.found.get(job)
+        if isinstance(found, str):
+            return ChosenOrbit(start, problem=found)
+        digits = self._digits.found.get(_digits_job(job))
+        return ChosenOrbit(start, found, digits=None if isinstance(digits, str) else digits)
 
 
-def _cancel(subscription: Subscription | None) -> None:
-    if subscription is not None:
-        subscription.cancel()
+def _is_bounded(found: OrbitCurves | str) -> bool:
+    return not isinstance(found, str) and found.orbit.fate == Fate.BOUNDED
+
+
+def _digits_job(job: Job[Orbit]) -> Job[BirkhoffDigits]:
+    return Job(compute_birkhoff_digits, job.arguments, queue=Queue.LONG_CALL)
+
+
+def _with_sentence(job: Job[Any], result: Any) -> Any:
+    """A result, or a sentence in place of an error."""
+    return sentence(result) if isinstance(result, Exception) else result
+
+
+def _draw(job: Job[Orbit], result: Orbit | Exception) -> OrbitCurves | str:
+    return sentence(result) if isinstance(result, Exception) else compute_orbit_curves(job.arguments[0], result)

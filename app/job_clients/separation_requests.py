@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import Orbit, Separation, compute_separation
+from engine import Orbit, compute_separation
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
+from engine.results import Separation
 from plots.pictures.orbit_curves import initial_state
 
 Pair = tuple[int, int]

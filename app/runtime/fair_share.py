@@ -33,12 +33,19 @@ class FairShare:
     def __init__(self, clock: Callable[[], float] = time.monotonic, busy_clock: Callable[[], float] = time.thread_time) -> None:
         self._clock, self._busy_clock = clock, busy_clock
         self._left, self._last = BURST_SECONDS, clock()
+        self._acted = self._last
 
     def take(self, seconds: float) -> None:
         """Count processor time of the event loop."""
         now = self._clock()
         left = min(self._left + SHARE * (now - self._last), BURST_SECONDS) - seconds
         self._left, self._last = max(left, -BURST_SECONDS), now
+        if seconds:
+            self._acted = now
+
+    def idle_seconds(self) -> float:
+        """Time since the page last took time of the event loop, or since it was opened."""
+        return self._clock() - self._acted
 
     def wait_seconds(self) -> float:
         """Time until the next message may be handled; 0 within the share."""

@@ -6,6 +6,7 @@ import psutil
 
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import variable_name
+from app.runtime.visitors import is_near
 from engine.integrator.jit.compiled_operations import compiled_operations
 
 
@@ -34,8 +35,7 @@ def not_ready_reason(state: ProcessState) -> str | None:
 def refusal_reason(state: ProcessState, network: str) -> str | None:
     """Return a sentence that says why no session can be created; None when one can.
 
-    Weaker than readiness: sessions are created while the integrators are compiled, and wait on the page; and the only visitor of
-    an overloaded server may reload the page, whatever delays it.
+    Weaker than readiness: sessions are created while the integrators are compiled, and wait on the page.
 
     Parameters
     ----------
@@ -49,10 +49,15 @@ def refusal_reason(state: ProcessState, network: str) -> str | None:
     return _full_reason(state, network)
 
 
-def _full_reason(state: ProcessState, network: str | None = None) -> str | None:
+def _full_reason(state: ProcessState, network: str = "") -> str | None:
     limit = state.settings.most_sessions
     if sum(1 for _ in state.sessions()) >= limit:
         return f"All {limit} places are taken."
-    if state.overload.is_overloaded() and state.sockets.keys() - {network}:
+    if not (_is_alone(state, network) or state.capacity.has_room(state.pages(), network)):
         return "The server is busy with the pages that are open."
     return None
+
+
+def _is_alone(state: ProcessState, network: str) -> bool:
+    """Whether a visitor disturbs nobody: on this machine, or with one page at most, which is perhaps being reloaded."""
+    return (network != "" and is_near(network)) or state.sockets.total() <= min(state.sockets[network], 1)

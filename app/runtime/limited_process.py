@@ -15,8 +15,13 @@ from queue import LifoQueue
 
 from loky import ProcessPoolExecutor
 
+from engine.foundations.execution import lower_priority
+
 SECONDS = 5
-"""Processor time of a call."""
+"""Processor time of a review."""
+
+COMPILATION_SECONDS = 60
+"""Processor time of the compilation of one kernel; those of the largest formulas take 10 s."""
 
 PROCESSES = 2
 """Number of processes: while one is busy with a formula of one address, another address waits for nothing."""
@@ -151,6 +156,8 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> Resul
 
 def _begin(memory: int, server: int) -> None:
     """Prepare the process for its calls."""
+    # The pages of others come first, as before the computations of a page.
+    lower_priority()
     threading.Thread(target=_end_with, args=(server,), daemon=True).start()
     _limit_memory(memory)
 

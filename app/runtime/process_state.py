@@ -4,25 +4,23 @@ from __future__ import annotations
 
 import os
 import threading
-from collections import Counter
-from collections.abc import Callable, Iterable
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from bokeh.document import Document
 
+from app.runtime.capacity import Capacity, count_page, processor_times
 from app.runtime.fair_share import FairShare
-from app.runtime.limited_process import PROCESSES, LimitedProcesses
+from app.runtime.limited_process import COMPILATION_SECONDS, PROCESSES, LimitedProcess, LimitedProcesses
 from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
-from app.runtime.overload import OverloadMonitor
 from app.runtime.settings import Settings, read_settings
+from app.runtime.visitors import visitor_of
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.jobs.manager import Jobs
-
-# Waiting calls per thread above which the process is overloaded; the map of one session queues two.
-_MOST_WAITING = 4
 
 
 @dataclass(eq=False)
@@ -41,10 +39,12 @@ class ProcessState:
         Background jobs of all sessions.
     limited
         The processes for what visitors type.
+    compiler
+        The process that compiles.
     load
         Delay of the event loop.
-    overload
-        Whether the delays of first frames have been long for seconds.
+    capacity
+        How many pages the processors have room for.
     metrics
         Prometheus metrics.
     kernels_ready
@@ -60,16 +60,17 @@ class ProcessState:
     sockets: Counter[str] = field(default_factory=Counter, init=False)
     jobs: Jobs = field(init=False)
     limited: LimitedProcesses = field(default_factory=LimitedProcesses, init=False)
+    compiler: LimitedProcess = field(default_factory=lambda: LimitedProcess(COMPILATION_SECONDS), init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
-    overload: OverloadMonitor = field(init=False)
+    capacity: Capacity = field(init=False)
     metrics: ServerMetrics = field(default_factory=ServerMetrics, init=False)
     kernels_ready: threading.Event = field(default_factory=threading.Event, init=False)
     kernels_failed: threading.Event = field(default_factory=threading.Event, init=False)
     stopping: threading.Event = field(default_factory=threading.Event, init=False)
+    _is_crowded: bool = field(default=False, init=False)
     _shares: WeakKeyDictionary[Document, FairShare] = field(default_factory=WeakKeyDictionary, init=False)
 
     def __post_init__(self) -> None:
-        self.overload = OverloadMonitor(self.settings.longest_delay)
         compiled_operations.most = self.settings.compiled_operations
         self.jobs = Jobs(
             cache_bytes=self.settings.cache_bytes,
@@ -78,22 +79,32 @@ class ProcessState:
             limited=self.limited,
             limited_calls=PROCESSES,
         )
+        self.capacity = Capacity(
+            self.settings.cores_per_page, self.settings.processes, lambda: processor_times(self.jobs.stats().computed)
+        )
 
     def fair_share(self, document: Document) -> FairShare:
         """The share of a document's page, whatever the number of its connections."""
         return self._shares.setdefault(document, FairShare())
 
-    def adapt_to_load(self) -> None:
-        """Adapt to the measured delays; call after each tick of `load` on the event loop."""
-        self.overload.add(self.load.delay + self.jobs.take_first_frame_wait())
-        self.jobs.pause_background(self.load.is_high())
-        # Before pages are refused.
-        self.jobs.spare_first_frames(self.overload.delay > self.settings.longest_delay)
+    def pages(self) -> Mapping[str, float]:
+        """Number of pages by visitor, as `Capacity` counts them."""
+        pages: dict[str, float] = defaultdict(float)
+        for session in self.sessions():
+            share = self.fair_share(session.document)
+            pages[visitor_of(session.document)] += count_page(share, connected=session.connection_count > 0)
+        return pages
 
-    def is_overloaded(self) -> bool:
-        """Whether the event loop is delayed or many calls wait for a thread."""
-        stats = self.jobs.stats()
-        return self.load.is_high() or stats.calls_waiting > _MOST_WAITING * stats.threads
+    def adapt_to_load(self) -> None:
+        """Put off work that can wait if there is too much; call after each tick of `load` on the event loop."""
+        if self.capacity.update():
+            self._is_crowded = self.capacity.is_crowded(self.pages())
+        self.jobs.pause_background(self.load.is_high())
+        self.jobs.spare_first_frames(self._is_crowded)
+
+    def is_crowded(self) -> bool:
+        """Whether frames between the first and the last of a map should be left out."""
+        return self._is_crowded or self.load.is_high()
 
 
 _lock = threading.Lock()

@@ -81,8 +81,8 @@ class Settings:
     most_connections
         Maximum number of open connections besides WebSockets; further ones are closed.
     compiled_operations
-        Maximum number of compiled operations of the integrators of all potentials but those of the catalogue, about 4 kB
-        each; code is never unloaded.
+        Maximum number of compiled operations of the integrators of all potentials but those of the catalogue; code is never
+        unloaded.
     cache_bytes
         Size limit of the result cache, in bytes; a complete map of 224 × 224 pixels takes 1.4 MB.
     memory_ceiling
@@ -91,9 +91,10 @@ class Settings:
         Number of compute threads; by default the number of cores available to the process.
     log
         Format of the log.
-    longest_delay
-        Delay of first frames by the event loop and by other computations and programs, in seconds, above which one thread is kept
-        for them, and for seconds of which the server is overloaded (`app.runtime.overload`) and refuses further pages.
+    processes
+        Number of server processes that share the processors of the machine.
+    cores_per_page
+        Processors that an acting visitor takes (`app.runtime.capacity`).
     frame_ancestors
         Origins that may embed the page in a frame; empty for none.
     bokeh_patches
@@ -111,7 +112,8 @@ class Settings:
     memory_ceiling: int = _setting(0, _integer(0, 2**50))
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
-    longest_delay: float = _setting(1.0, _number(0.05, 3600.0))
+    processes: int = _setting(1, _integer(1, 1024))
+    cores_per_page: float = _setting(0.025, _number(0.001, 1.0))
     frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)
     bokeh_patches: bool = _setting(True, _YES_OR_NO)
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 
+from app.runtime.capacity import FULL, WINDOW_SECONDS
 from app.runtime.health import not_ready_reason, resident_bytes
 from app.runtime.metrics import NAMESPACE
-from app.runtime.overload import WINDOW_SECONDS
 from app.runtime.process_state import ProcessState
 from engine.integrator.jit.compiled_operations import compiled_operations
 
@@ -33,13 +33,13 @@ class StateCollector(Collector):
         yield _gauge("sessions_open", "Open sessions", len(sessions))
         yield _gauge("sessions_limit", "Maximum number of sessions", state.settings.most_sessions)
         yield _gauge("websockets_open", "Open WebSockets", sum(session.connection_count for session in sessions))
-        yield _gauge("overloaded", "Whether pages are refused because first frames are late", state.overload.is_overloaded())
+        yield _gauge("crowded", "Whether work that can wait is put off", state.is_crowded())
+        yield _gauge("cores", f"Processors that other programs left in the last {WINDOW_SECONDS} s", state.capacity.cores)
         yield _gauge(
-            "delay_seconds",
-            f"Longest delay of a first frame by the event loop, other computations and programs, last {WINDOW_SECONDS} s",
-            state.overload.delay,
+            "capacity_taken",
+            f"Share of these, or of the event loop, that open pages may take; beyond {FULL:g} pages are refused",
+            state.capacity.taken(state.pages()),
         )
-        yield _gauge("delay_limit_seconds", "Delay above which pages are refused", state.settings.longest_delay)
         yield _gauge("resident_memory_bytes", "Resident memory", resident_bytes())
         yield CounterMetricFamily(
             f"{NAMESPACE}_formulas_stopped",

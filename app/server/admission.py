@@ -13,7 +13,7 @@ from tornado.web import HTTPError
 from app.runtime.health import refusal_reason
 from app.runtime.process_state import process_state
 from app.runtime.settings import variable_name
-from app.runtime.visitors import network_of
+from app.runtime.visitors import network_of, visitor_of
 
 LONGEST_LINK = 8192
 """Most characters of the address of a page."""
@@ -40,7 +40,7 @@ def admit(request: Any) -> None:
         raise HTTPError(http.client.REQUEST_URI_TOO_LONG, reason=f"The address is longer than {LONGEST_LINK} characters.")
     network = network_of(request.remote_ip)
     _refuse(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state(), network))
-    pages = sum(network_of(_request_of(session).remote_ip) == network for session in process_state().sessions())
+    pages = sum(visitor_of(session.document) == network for session in process_state().sessions())
     _refuse(http.client.TOO_MANY_REQUESTS, _share_reason(pages))
 
 
@@ -92,10 +92,6 @@ def forget_socket(address: str) -> None:
     sockets[network] -= 1
     if not sockets[network]:
         del sockets[network]
-
-
-def _request_of(session: Any) -> Any:
-    return session.document.session_context.request
 
 
 def _share_reason(count: int) -> str | None:

@@ -60,6 +60,7 @@ def begin_shutdown(state: ProcessState) -> None:
     log.info("stopping")
     state.jobs.stop()
     state.limited.close()
+    state.compiler.close()
 
 
 def finish_shutdown(state: ProcessState) -> None:

@@ -22,7 +22,7 @@ from engine.maps.warmup import (
     prepare_for_maps,
     reserve_catalogue,
 )
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")
@@ -30,7 +30,7 @@ log = logging.getLogger(f"bokeh.{__name__}")
 
 def prepare_for_orbits(potential: Potential) -> None:
     """Compile the kernels of single orbits, or load them from the cache."""
-    start = start_states(potential, SECTION.plane, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))[0]
+    start = start_states(potential, SECTION, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))[0]
     call_after_maps(lambda: integrate_orbit(potential, start, 10.0 * potential.units.time))
 
 

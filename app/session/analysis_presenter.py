@@ -2,32 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from html import escape
 from typing import Any
 
 import numpy as np
 
-from app.job_clients.error_messages import WINDOW_UNKNOWN
-from app.job_clients.follow_up_requests import FollowUp
+from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.glossary import with_terms
 from app.state.view import Analysis
+from app.state.view_state import WINDOW_UNKNOWN
 from app.views.analysis.basin_measures import TOLD, BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
-from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, Sweep, SweepSpec, Window
+from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, SweepSpec, Window
 from engine.jobs.job import Job
 from engine.maps.warmup import is_ready_for_maps
-from engine.slices.section import SECTION
+from engine.results import Sweep
+from engine.slices.planes import SECTION
 from engine.slices.slice_text import default_range
 from engine.sweeps.map_jobs import measure_job, sweep_job
 from engine.sweeps.measures import CURVES
 from plots.layers.layer import Layer
-from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.layers.map_analyses import NO_ANALYSES
 from plots.layers.table import LAYERS
 from plots.pictures.palette import Palette
 
@@ -36,43 +36,45 @@ _SIDES = (112, 112)
 
 
 class AnalysisPresenter:
-    """Analyses that the view state asks for; `on_analyses(analyses)` receives the results for the current map."""
+    """Analyses that the view state asks for; their results are shown over the maps, and are among those of the session."""
 
-    def __init__(
-        self,
-        context: SessionContext,
-        maps: MapsView,
-        on_analyses: Callable[[MapAnalyses], None],
-        on_curves: Callable[[Sweep | None], None],
-    ) -> None:
+    def __init__(self, context: SessionContext, maps: MapsView) -> None:
         state, jobs, locked = context.state, context.jobs, context.locked
-        self._open_view = context.open_view
-        self._state, self._maps, self._on_analyses, self._on_curves = state, maps, on_analyses, on_curves
+        self._open_view, self._notice = context.open_view, context.notice
+        self._state, self._results, self._maps = state, context.results, maps
         self._spec: MapSpec | None = None
         self._swept: SweepSpec | None = None
-        self._analyses = NO_ANALYSES
         # Results of the layers that are on, with their maps and jobs, before a part of them is selected.
         self._found: dict[str, tuple[EscapeMap, Any, Job[Any]]] = {}
         self._notes: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
-        self.measures = BasinMeasuresView(locked(self._measure), context.copy, locked(lambda: state.param.update(box=None)))
-        self.curves = CurvesView(locked(self._sweep), self._open_value, context.latest)
+        self.measures = BasinMeasuresView(self._measure, context.copy, lambda: state.param.update(box=None))
+        self.curves = CurvesView(self._sweep, self._open_value, context.latest)
         self._measuring = {
             name: LatestRequest(jobs, partial(self._show_slow, name), partial(self.measures.say, name), locked)
             for name in self.measures.buttons
         }
         state.follow(self._follow_box, "box")
         self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
+        self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), self._fail, locked)
         self._connect()
 
-    def follow_ups(self) -> list[FollowUp]:
+    def _list_follow_ups(self) -> list[FollowUp]:
         """Analyses of each complete map."""
         return [
             *map(self._layer, LAYERS.values()),
             *(self._measure_of_map(measure.name) for measure in TOLD if not measure.slow),
         ]
 
-    def begin(self, spec: MapSpec) -> None:
+    def _follow_map(self) -> None:
+        """Analyse the map in view, once it is complete."""
+        frame = self._results.frame
+        if frame is not None:
+            self._begin(frame.spec)
+        self._follow_ups.follow(self._results.whole_map)
+        self._mark_computing()
+
+    def _begin(self, spec: MapSpec) -> None:
         """Prepare for a new map: remove the results of another one."""
         if spec == self._spec:
             return
@@ -81,15 +83,10 @@ class AnalysisPresenter:
         self._stop_measuring()
         self._maps.overlays.begin(spec)
         self.measures.begin()
-        if self._analyses != NO_ANALYSES:
-            self._update(NO_ANALYSES)
+        if self._results.analyses != NO_ANALYSES:
+            self._results.analyses = NO_ANALYSES
         self.note(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
-        self._mark_computing()
-
-    def end_computing(self) -> None:
-        """Nothing is computed any more."""
-        self._maps.mark_computing(frozenset())
 
     def set_palette(self, palette: Palette) -> None:
         """Change the colours."""
@@ -98,11 +95,13 @@ class AnalysisPresenter:
 
     def close(self) -> None:
         """Cancel all requests at the end of the session."""
+        self._follow_ups.follow(None)
         self._stop_measuring()
         self._sweeping.cancel()
 
     def _connect(self) -> None:
         watch, state = self._state.param.watch, self._state
+        self._results.param.watch(lambda event: self._follow_map(), "frame")
         watch(lambda *events: self._show_pictures(), ["layers", "compared"])
         watch(self._switch_layers, "layers")
         watch(lambda event: self._select(), "settings")
@@ -146,23 +145,23 @@ class AnalysisPresenter:
         self._mark_computing()
 
     def _mark_computing(self) -> None:
-        """Say in the pictures which layers have no complete result yet."""
-        spec = self._spec
-        if spec is not None:
-            allowed = {layer.name for layer in self._layers_on() if not layer.refusal(spec)}
-            done = {name for name, (_, result, _) in self._found.items() if getattr(result, "complete", True)}
-            self._maps.mark_computing(frozenset(allowed - done))
+        """Say in the pictures which layers of a complete map have no complete result yet."""
+        whole = self._results.whole_map
+        wanted = {layer.name for layer in self._layers_on() if whole is not None and not layer.refusal(whole.spec)}
+        done = {name for name, (_, result, _) in self._found.items() if getattr(result, "complete", True)}
+        self._maps.mark_computing(frozenset(wanted - done))
+
+    def _fail(self, sentence: str) -> None:
+        """Show why an analysis has no result; no other one is known to be under way."""
+        self._maps.mark_computing(frozenset())
+        self._notice.warn(sentence)
 
     def _remove(self, name: str) -> None:
         """Remove the result of a layer."""
         self._found.pop(name, None)
         self._maps.remove_layer(name)
-        self._update(self._analyses.with_result(name, None))
+        self._results.analyses = self._results.analyses.with_result(name, None)
         self.note(**{name: ""})
-
-    def _update(self, analyses: MapAnalyses) -> None:
-        self._analyses = analyses
-        self._on_analyses(analyses)
 
     def _explain_refusals(self) -> None:
         if self._spec is not None:
@@ -196,7 +195,7 @@ class AnalysisPresenter:
         self._maps.show_layer(layer.name, frame, selected)
         self.note(**{layer.name: selected.describe()})
         if getattr(result, "complete", True):
-            self._update(self._analyses.with_result(layer.name, selected))
+            self._results.analyses = self._results.analyses.with_result(layer.name, selected)
 
     # Measurements started by buttons.
 
@@ -231,7 +230,7 @@ class AnalysisPresenter:
             self._stop_sweep()
             return
         state, energies = self._state, self._state.energies
-        plane = state.plane if state.plane.energy_axis is None and state.plane.parameter is None else SECTION.plane
+        plane = state.plane if state.plane.energy_axis is None and state.plane.parameter is None else SECTION
         name, energy, along = self.curves.against.value, None, None
         low, high = energies.low, energies.high
         if name != "h":
@@ -257,7 +256,7 @@ class AnalysisPresenter:
         if curves is not None and curves.complete:
             self._stop_sweep()
         self.curves.show(curves)
-        self._on_curves(curves)
+        self._results.curves = curves
 
     def _open_value(self, value: float) -> None:
         """Show the map of an energy, or of a value of the parameter, on the plane of the curves."""

@@ -11,9 +11,10 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.system_review import review_job
 from app.state.view import View
-from app.views.components.numbers import grouped, percent
+from app.views.components.numbers import percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
+from engine.foundations.wording import format_whole
 from engine.jobs.job import Job, Queue
 from engine.maps.warmup import is_ready_for_maps, prepare_for_maps
 from engine.sweeps.map_jobs import map_job, members_job
@@ -44,6 +45,7 @@ class ComparisonPresenter:
         refuse: Callable[[str], None],
     ) -> None:
         self._state, self._maps, self._say, self._refuse = context.state, maps, say, refuse
+        self._open_view = context.open_view
         self._frame: EscapeMap | None = None
         self._other: EscapeMap | None = None
         self._reviewed: SystemReview | None = None
@@ -53,13 +55,32 @@ class ComparisonPresenter:
         self._review = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
         self._request = LatestRequest(context.jobs, self._take, self._fail, context.locked)
         self._state.param.watch(lambda event: self._follow(), "compared")
+        context.results.param.watch(lambda event: self._follow_map(context.results.whole_map), "frame")
         self._continue()
 
-    def follow(self, frame: EscapeMap) -> None:
-        """Compare this complete map."""
-        self._frame = frame
-        self._continue()
-        self._describe()
+    def compare(self, on: bool) -> None:
+        """Compare later views with the present one in the same window, or end the comparison."""
+        state = self._state
+        if not on:
+            state.compared = None
+            return
+        window = state.find_window() if is_ready_for_maps(state.potential) else state.window
+        state.param.update(compared=state.view, window=window)
+
+    def swap_views(self) -> None:
+        """Exchange the view of the controls and the one that it is compared with."""
+        state, other = self._state, self._state.compared
+        if other is None:
+            return
+        energy = {} if other.energy is None else {"energy": other.energy}
+        self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.view})
+
+    def _follow_map(self, frame: EscapeMap | None) -> None:
+        """Compare a complete map; while there is none, the last one."""
+        if frame is not None:
+            self._frame = frame
+            self._continue()
+            self._describe()
 
     def close(self) -> None:
         """Cancel the requests at the end of the session."""
@@ -154,5 +175,5 @@ def _difference(one: EscapeMap, other: EscapeMap) -> str:
     if not counted.any():
         return "no start in the window has an orbit in both."
     differ = counted & (one.fate != other.fate)
-    count, share = int(np.count_nonzero(differ)), float(np.mean(differ[counted]))
-    return f"{grouped(count)} of {grouped(int(np.count_nonzero(counted)))} starts have different outcomes ({percent(share)})."
+    of_all = " of ".join(format_whole(int(np.count_nonzero(pixels))) for pixels in (differ, counted))
+    return f"{of_all} starts have different outcomes ({percent(float(np.mean(differ[counted])))})."

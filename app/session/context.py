@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.job_clients.latest_request import Locked
+from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
+from app.views.components.notice import Notice
 from engine import System
 from engine.jobs.client import JobSubmitter
 
@@ -20,8 +22,12 @@ class SessionContext:
     ----------
     state
         The view state.
+    results
+        What is computed for it.
     jobs
         Computes results.
+    notice
+        Shows messages.
     locked, latest
         Wrap functions that change the document; of the calls of the second kind only the latest runs.
     copy
@@ -31,7 +37,9 @@ class SessionContext:
     """
 
     state: ViewState
+    results: ShownResults
     jobs: JobSubmitter
+    notice: Notice
     locked: Locked
     latest: Locked
     copy: Callable[[str], None]

@@ -10,8 +10,8 @@ from urllib.parse import parse_qsl
 import panel as pn
 from bokeh.document import Document
 
+from app.session.history import History
 from app.session.potential_presenter import PotentialPresenter
-from app.state.history import History
 from app.state.permalink import (
     EMBED,
     LINKED,
@@ -27,7 +27,7 @@ from app.state.system_review import is_known, review_catalogue_entry
 from app.state.view import PICTURES
 from app.state.view_state import ViewState
 from app.views.components.notice import Notice
-from app.views.components.progress import ProgressView
+from app.views.maps.progress import ProgressView
 from app.views.panels.browser_events import BrowserEvents
 from app.views.panels.embedding import OpenLink
 from engine import System

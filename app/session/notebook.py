@@ -55,12 +55,12 @@ class Explorer:
     @property
     def map(self) -> EscapeMap | None:
         """The map in view; None while it is computed."""
-        return self._session.downloads.escape_map if self._session is not None else None
+        return self._session.results.whole_map if self._session is not None else None
 
     @property
     def orbits(self) -> tuple[Orbit, ...]:
         """The clicked orbits that are computed."""
-        chosen = self._session.downloads.chosen_orbits if self._session is not None else ()
+        chosen = self._session.results.orbits if self._session is not None else ()
         return tuple(one.orbit for one in chosen if one.orbit is not None)
 
     def close(self) -> None:

@@ -5,26 +5,28 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
 import panel as pn
 from param.parameterized import Event
 
 from app.job_clients.divergent_start_requests import DivergentStartRequests
-from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.session.context import SessionContext
+from app.state.view import Start
 from app.views.maps.markers import NO_POINTS, Markers
 from app.views.maps.well import WellView
 from app.views.orbits.inspector import Inspector
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
+from app.views.orbits.path_picture import path_picture
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
-from engine.slices.section import SECTION
-from engine.trajectories.chaos_indicators import IndicatorVerdict
+from engine.slices.planes import SECTION
+from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
-from plots.pictures.palette import Palette
+from plots.pictures.palette import PALETTES, Palette
 
 REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
 
@@ -43,8 +45,6 @@ class OrbitPresenter:
         Marks on the maps, and the picture of the paths.
     on_start
         Called with x and ordinate of a start that is typed.
-    on_verdicts
-        Called with the orbits when their results change.
     """
 
     def __init__(
@@ -53,24 +53,28 @@ class OrbitPresenter:
         marks: Markers,
         well: WellView,
         on_start: Callable[[float, float], None],
-        on_verdicts: Callable[[Sequence[ChosenOrbit]], None],
     ) -> None:
         state, jobs, locked, latest = context.state, context.jobs, context.locked, context.latest
-        self._state, self._marks, self._well, self._on_verdicts = state, marks, well, on_verdicts
-        self._open_view = context.open_view
+        self._state, self._results, self._marks, self._well = state, context.results, marks, well
+        self._open_view, self._notice = context.open_view, context.notice
+        self._by_touch = False
+        # A start that has been tapped, until its orbit is told of.
+        self._tapped: Start | None = None
         self._shown: tuple[ChosenOrbit, ...] = ()
         # The interval of time in view, and the curves restricted to it; None is the whole duration.
         self._interval: Interval | None = None
         self._restricted: list[OrbitCurves | None] = []
+        # What the pictures show: starts with their curves, the place of the chosen one, and the palette.
+        self._drawn: Any = None
         self._show_restricted = locked(self._on_restricted)
         actions = OrbitActions(
             add=locked(on_start),
             choose=locked(self._choose),
-            remove=locked(lambda: state.remove_start(state.chosen)),
-            clear=locked(lambda: state.param.update(starts=(), chosen=0)),
-            find_divergent_start=locked(lambda: self._divergent_start.search()),
-            open_plane=locked(self._open_plane),
-            show_all_times=locked(lambda: self._brush(None)),
+            remove=lambda: state.remove_start(state.chosen),
+            clear=lambda: state.param.update(starts=(), chosen=0),
+            find_divergent_start=lambda: self._divergent_start.search(),
+            open_plane=self._open_plane,
+            show_all_times=lambda: self._brush(None),
             copy=context.copy,
         )
         self.controls: OrbitControls = OrbitControls(actions)
@@ -79,22 +83,18 @@ class OrbitPresenter:
         self.playback = Playback(latest(self._set_time))
         self._separation_plot: SeparationPlot = SeparationPlot()
         self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot, latest)
-        self._orbits = OrbitRequests(state, jobs, self._show, latest)
+        self._orbits = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
         self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
-        self._indicators = IndicatorsRequests(state, jobs, self._show_verdicts, self.controls.say, locked)
         state.param.watch(self._end_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
         state.follow(self.controls.follow_plane, "plane")
         state.param.watch(lambda event: self._show(self._shown), "chosen")
+        state.param.watch(self._take_tapped, "starts")
 
     def begin(self) -> None:
         """Request the orbits of the state."""
         self._end_message()
         self._orbits.follow()
-
-    def find_divergent_start(self) -> None:
-        """Search for the nearest start that escapes elsewhere than the chosen orbit."""
-        self._divergent_start.search()
 
     def set_palette(self, palette: Palette) -> None:
         """Change the colours."""
@@ -104,11 +104,23 @@ class OrbitPresenter:
 
     def begin_touch(self) -> None:
         """The page is used by touch."""
+        self._by_touch = True
         self.plots.begin_touch()
+
+    def _take_tapped(self, event: Event) -> None:
+        added = [start for start in event.new if start not in event.old]
+        self._tapped = added[0] if len(added) == 1 and self._by_touch else None
+
+    def _tell_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
+        """Show the verdict and the path of an orbit that has been tapped: on a phone both are out of view."""
+        for one, colour in zip(orbits, PALETTES[self._state.palette].orbits, strict=False):
+            if one.start == self._tapped and one.drawing is not None:
+                self._tapped = None
+                self._notice.show(one.headline(), path_picture(one.drawing, colour))
 
     def close(self) -> None:
         """Cancel all requests at the end of the session."""
-        for requests in (self._orbits, self._divergent_start, self._separation, self._indicators):
+        for requests in (self._orbits, self._divergent_start, self._separation):
             requests.close()
 
     def _end_message(self, *events: Event) -> None:
@@ -128,26 +140,30 @@ class OrbitPresenter:
         if start is None:
             return
         x, y, px, py = state.start_state(start)
-        starts = ((x, px),) if y == 0.0 and SECTION.direction * py > 0.0 else ()
+        starts = ((x, px),) if y == 0.0 and SECTION.sign * py > 0.0 else ()
         energy = float(state.plane.energies(state.energy, *start))
         self._open_view(
             state.plane.system_at(state.system, *start),
-            {"plane": SECTION.plane, "energy": energy, "window": None, "starts": starts, "chosen": 0},
+            {"plane": SECTION, "energy": energy, "window": None, "starts": starts, "chosen": 0},
         )
 
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show the orbits that are known."""
-        chosen = self._state.chosen
+        """Show the orbits that are known; only the words if their digits alone are new."""
+        state = self._state
         if [one.drawing for one in orbits] != [one.drawing for one in self._shown]:
             self._interval, self._restricted = None, []
         self._shown = tuple(orbits)
-        if chosen >= len(orbits) and orbits:
+        if state.chosen >= len(orbits) and orbits:
             return
+        drawn = [(one.start, one.drawing) for one in orbits], state.chosen, state.palette
         with pn.io.hold():
-            self._mark()
-            self._draw()
-            self._separation.follow(orbits)
-            self._indicators.follow(orbits)
+            if drawn != self._drawn:
+                self._drawn = drawn
+                self._mark()
+                self._draw()
+                self._separation.follow(orbits)
+            self._tell()
+            self._tell_tapped(orbits)
             # Last: Panel links stylesheets of another host when it changes a text that is not in the document yet.
             # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
             self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
@@ -155,7 +171,7 @@ class OrbitPresenter:
     def _mark(self) -> None:
         """Mark starts and sections on the maps."""
         self._marks.show_starts([one.start for one in self._shown])
-        on_section = self._state.plane == SECTION.plane
+        on_section = self._state.plane == SECTION
         drawings = [one.drawing for one in self._shown]
         self._marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in drawings])
 
@@ -174,12 +190,12 @@ class OrbitPresenter:
         self._well.set_time(t)
         self.plots.set_time(t)
 
-    def _show_verdicts(self, orbits: Sequence[ChosenOrbit], verdicts: Sequence[IndicatorVerdict]) -> None:
+    def _tell(self) -> None:
         """Show the results of the orbits in words."""
-        with pn.io.hold():
-            self.controls.show(orbits, self._state.chosen)
-            self.controls.show_indicators(verdicts)
-            self._on_verdicts(orbits)
+        one = self._shown[self._state.chosen] if self._shown else None
+        self.controls.show(self._shown, self._state.chosen)
+        self.controls.show_indicators(() if one is None or one.orbit is None else evaluate_indicators(one.orbit, one.digits))
+        self._results.orbits = self._shown
 
     def _brush(self, interval: Interval | None) -> None:
         """Restrict the curves to an interval of time; None shows the whole duration."""

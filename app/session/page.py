@@ -1,4 +1,4 @@
-"""The page: its frame, and where each view of an explorer stands in it."""
+"""The page: its frame, what other programs show of its address, and where each view of an explorer stands in it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,19 @@ from jinja2 import Template
 from panel.io.resources import parse_template
 
 from app.session.explorer import Explorer
-from app.state.link_summary import link_sentence, link_title
 from app.state.view import View
 from app.views.components.notice import watch_connection
 from app.views.components.theme import THEME_KEY, ExplorerDesign, theme_css
 from app.views.components.widgets import FULL_HEIGHT
+from engine import System
+from engine.foundations.wording import format_number
+from engine.systems.formulas.formula_parser import formula_letters
+from engine.systems.system import TYPED
 
 TITLE = "Escape Explorer"
+
+LONGEST_FORMULA = 80
+"""Largest number of characters of a formula in a title."""
 
 
 @cache
@@ -26,6 +32,34 @@ def _frame() -> Template:
     """The page's HTML without its widgets."""
     frame: Template = parse_template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
     return frame
+
+
+def link_title(view: View) -> str:
+    """Name of the system, with the formula of a typed one."""
+    formula = _shown_formula(view.system)
+    return f"{view.system.title}, V = {formula}" if formula else view.system.title
+
+
+def link_sentence(view: View) -> str:
+    """What the view shows, in one sentence."""
+    energy = "" if view.known_energy is None else f" at h = {format_number(view.known_energy, 6)}"
+    return (
+        f"{link_title(view)} on the plane {view.plane.title}{energy}: "
+        "each start of an orbit has the colour of the exit through which the orbit leaves the well."
+    )
+
+
+def _shown_formula(system: System) -> str:
+    """A typed formula without its clauses, which contain names; empty if it is long or has words that no formula has.
+
+    Other programs show it as a text of this server, whoever wrote the link.
+    """
+    formula = system.formula.partition(";")[0].strip() if system.case == TYPED else ""
+    try:
+        formula_letters(formula)
+    except ValueError:
+        return ""
+    return formula if len(formula) <= LONGEST_FORMULA else ""
 
 
 class RootColumn(pn.Column):
@@ -68,10 +102,10 @@ def explorer_page(explorer: Explorer) -> ExplorerTemplate:
 def _picture_alone(explorer: Explorer) -> pn.viewable.Viewable:
     """The picture that is shown large, and the link to the whole page."""
     return _column(
-        explorer.progress.bar,
-        explorer.maps.grid.layout(),
+        explorer.maps.progress.bar,
+        explorer.maps.view.grid.layout(),
         explorer.links.open_link.pane,
-        *(view.layout() for view in (explorer.browser, explorer.engine, explorer.notice)),
+        *(view.layout() for view in (explorer.browser, explorer.preview.engine, explorer.notice)),
         css_class="picture-alone",
     )
 
@@ -82,13 +116,13 @@ def _stage(explorer: Explorer) -> pn.viewable.Viewable:
         explorer.analysis,
         explorer.drawers,
         explorer.browser,
-        explorer.engine,
+        explorer.preview.engine,
         explorer.notice,
     )
     return _column(
-        explorer.progress.bar,
-        explorer.toolbar.layout(*explorer.progress.layout()),
-        explorer.maps.grid.layout(),
+        explorer.maps.progress.bar,
+        explorer.maps.toolbar.layout(*explorer.maps.progress.layout()),
+        explorer.maps.view.grid.layout(),
         explorer.analyses.notes,
         *(view.layout() for view in views),
         css_class="stage",

@@ -14,9 +14,10 @@ from app.state.help_texts import title_with_help
 from app.state.view import Analysis
 from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
-from engine import EscapeFlux, compute_flux
+from engine import compute_flux
 from engine.jobs.job import Job
 from engine.maps.warmup import is_ready_for_maps
+from engine.results import EscapeFlux
 
 
 class WatchPresenter:
@@ -28,14 +29,15 @@ class WatchPresenter:
         self._player: EnsemblePlayer | None = None
         self._flux = LatestRequest(context.jobs, self._show_flux, lambda sentence: None, context.locked)
         watch = self._state.param.watch
+        context.results.param.watch(lambda event: self._request_rate() if context.results.whole_map else None, "frame")
         watch(lambda *events: self._follow(), ["system", "watched", "starts", "chosen", "box"])
-        watch(lambda *events: self.request_rate(), ["system", "plane", "energy", "analysis"])
+        watch(lambda *events: self._request_rate(), ["system", "plane", "energy", "analysis"])
 
     def build(self) -> list[pn.viewable.Viewable]:
         """The player."""
         self._player = EnsemblePlayer(self._take)
         self._follow()
-        self.request_rate()
+        self._request_rate()
         title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
         return [title, self._player]
 
@@ -43,7 +45,7 @@ class WatchPresenter:
         """Cancel the request at the end of the session."""
         self._flux.cancel()
 
-    def request_rate(self) -> None:
+    def _request_rate(self) -> None:
         """Request the decay rate while the player is on the page and the kernels that find it are compiled."""
         state = self._state
         if self._player is None or state.analysis is not Analysis.WATCH:

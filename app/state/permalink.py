@@ -35,7 +35,7 @@ EMBED = "embed"
 
 _FIRST_EMBEDDED = "basins"
 _SHOWN = 40
-_PLANE, _FIX, _ENERGY = "plane", "fix", "h"
+_PLANE, _FIX, _ENERGY, _JACOBI = "plane", "fix", "h", "C"
 # Before the names of a view to compare with.
 _COMPARED = "with_"
 _VIEW_NAMES = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
@@ -54,6 +54,7 @@ _SETTING_FORMATS = {name: choice_format(setting.choices) for name, setting in SE
 _FORMATS: dict[str, Format] = {
     **SYSTEM_FORMATS,
     _ENERGY: number_format(-LARGEST_NUMBER, LARGEST_NUMBER, "a number, such as 0.25"),
+    _JACOBI: number_format(-LARGEST_NUMBER, LARGEST_NUMBER, "a number, such as 3.17"),
     **{parameter.name: parameter.form for parameter in _LINKED.values()},
     **dict.fromkeys(LAYERS, SWITCH),
     **_SETTING_FORMATS,
@@ -110,6 +111,8 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
     found, problems = _read_each(parameters, prefix)
     values = {attribute: found[parameter.name] for attribute, parameter in _LINKED.items() if parameter.name in found}
     values |= _read_layers(found)
+    if _JACOBI in found:
+        values["jacobi"] = found[_JACOBI]
     if EMBED in found:
         picture = values["focus"] = found[EMBED]
         values |= {"layers": values.get("layers", frozenset()) | {LAYER_OF[picture].name}} if picture in LAYER_OF else {}
@@ -128,7 +131,7 @@ def linked_view(values: Mapping[str, Any]) -> View:
 
 def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a link that have a meaning for any system."""
-    dropped = {"system", "energy", *(name for name, parameter in VIEW_PARAMETERS.items() if parameter.of_system)}
+    dropped = {"system", "energy", "jacobi", *(name for name, parameter in VIEW_PARAMETERS.items() if parameter.of_system)}
     if linked_view(values).plane.parameter is not None:
         dropped.add("plane")
     return {name: value for name, value in values.items() if name not in dropped}
@@ -144,6 +147,13 @@ def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[di
     reviewed
         The review of the system of their `linked_view`, which is not refused.
     """
+    constant = values.get("jacobi")
+    values = {name: value for name, value in values.items() if name != "jacobi"}
+    if constant is not None and "energy" not in values:
+        if not reviewed.potential.rotation:
+            fitting, problems = fit_to_system(values, reviewed)
+            return fitting, [f"Ignored C={constant:.6g}: the frame of this system does not rotate.", *problems]
+        values["energy"] = reviewed.potential.jacobi_energy(constant)
     lowest, first = float(reviewed.potential.value(0.0, 0.0)), reviewed.energies.first
     t_max = min(ViewState.param.t_max.default, longest_first_t_max(reviewed.potential))
     shown = {"energy": first, "t_max": t_max, **values, "system": reviewed.system}

@@ -20,7 +20,7 @@ from app.state.link_formats import (
 )
 from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Plane, Slice, System, Window
-from engine.slices.energies import Energy
+from engine.slices.axes import Energy
 from engine.systems.review.potential_review import SystemReview
 from plots.layers.layer import Settings
 from plots.layers.table import PICTURES as MAPS

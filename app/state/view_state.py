@@ -25,6 +25,7 @@ from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Orbit, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.jobs.job import Job, Queue
+from engine.maps.warmup import is_ready_for_maps
 from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview
@@ -32,6 +33,8 @@ from engine.systems.system import TYPED
 from plots.layers.table import LAYERS, SETTINGS
 from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
+
+WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
 
 # In natural units of time.
 _LONGEST_FIRST = 1000.0
@@ -161,6 +164,12 @@ class ViewState(param.Parameterized):
     def map_spec(self) -> MapSpec:
         """Specification of the map; ValueError if a choice is invalid."""
         return self.view.map_spec(self.reviewed)
+
+    def find_window(self) -> Window:
+        """The window in view; ValueError while it is not known, as the event loop must not compile the kernels that find it."""
+        if self.window is None and not is_ready_for_maps(self.potential):
+            raise ValueError(WINDOW_UNKNOWN)
+        return self.map_spec().find_window()
 
     def start_state(self, start: Start) -> tuple[float, ...]:
         """x, y, px, py of a start; NaN if it is forbidden."""

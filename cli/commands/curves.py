@@ -24,7 +24,8 @@ from cli.option_marks import Of
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, print_result
-from engine import ParameterAxis, Potential, Slice, Sweep, SweepSpec, System, compute_sweep
+from engine import ParameterAxis, Potential, Slice, SweepSpec, System, compute_sweep
+from engine.results import Sweep
 from engine.sweeps.measures import CURVES, QUICK_CURVES
 from engine.systems.parameters import WELL_PARAMETERS
 from plots.printed.figure_files import curves_figure_bytes

@@ -23,18 +23,14 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from cli.arguments import OneEnergy
 from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import But, Of
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, Table, print_result
 from engine import (
-    DecayLaws,
-    EscapeFlux,
-    EscapeStatistics,
-    ExitMatching,
     Fate,
-    Outcomes,
     Potential,
     Slice,
     classify_orbits,
@@ -47,6 +43,7 @@ from engine import (
     sample_starts,
 )
 from engine.propagation.fates import name_fate
+from engine.results import DecayLaws, EscapeFlux, EscapeStatistics, ExitMatching, Outcomes
 from engine.slices.window import GivenWindow
 from plots.pictures.palette import Palette
 from plots.printed.ensemble_movie import MovieFormat, ensemble_movie_bytes
@@ -61,7 +58,7 @@ MOST_PATHS = 20_000
 def run(
     *,
     potential: Potential,
-    energy: Annotated[float, Of(sample_starts)],
+    energy: OneEnergy,
     count: Annotated[int, Of(sample_starts)] = 3000,
     seed: Annotated[int, Of(sample_starts)],
     plane: Annotated[Slice | None, But(defaults={"plane": None})],

@@ -15,18 +15,19 @@ from typing import Annotated, Any
 
 import typer
 
-from cli.option_marks import Of
+from cli.arguments import OneEnergy
 from cli.options import with_options
 from cli.output_files import reserve_output, split_ending, write_files
 from cli.printing import AsJson, Table, print_result
-from engine import EscapeFlux, LyapunovOrbit, Potential, compute_flux, find_lyapunov_orbits
+from engine import LyapunovOrbit, Potential, compute_flux, find_lyapunov_orbits
+from engine.results import EscapeFlux
 
 
 @with_options
 def run(
     *,
     potential: Potential,
-    energy: Annotated[float, Of(find_lyapunov_orbits)],
+    energy: OneEnergy,
     output: Annotated[Path | None, typer.Option(metavar="FILE.csv")] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -42,7 +43,7 @@ def run(
     with reserve_output(output):
         orbits = find_lyapunov_orbits(potential, energy)
         files = write_files({output: _paths_csv(orbits)}) if output is not None else []
-    flux = compute_flux(potential, energy) if orbits else None
+    flux = compute_flux(potential, energy) if orbits and not potential.rotation else None
     _print(energy, potential.escape_energy, orbits, flux, files, as_json)
 
 
@@ -65,23 +66,30 @@ def _print(
     as_json: bool,
 ) -> None:
     answer: dict[str, Any] = {"energy": energy, "escape_energy": escape_energy}
-    if flux is None:
+    if not orbits:
         sentence = f"No Lyapunov orbits: h = {energy:g} is not above the escape energy {escape_energy:.12g}."
         print_result(as_json, answer | {"orbits": []}, sentence, files=files)
         return
+    through = [None] * len(orbits) if flux is None else flux.flux.tolist()
     found = [
-        {"channel": orbit.channel, "name": orbit.name, "period": orbit.period, "flux": through, "ends": _ends(orbit)}
-        for orbit, through in zip(orbits, flux.flux.tolist(), strict=True)
+        {"channel": orbit.channel, "name": orbit.name, "period": orbit.period, "flux": share, "ends": _ends(orbit)}
+        for orbit, share in zip(orbits, through, strict=True)
     ]
     rows = [
-        (orbit.name, f"{orbit.period:.12g}", f"{through:.9g}", *(f"({x:.12f}, {y:.12f})" for x, y in _ends(orbit)))
-        for orbit, through in zip(orbits, flux.flux.tolist(), strict=True)
+        (
+            *(orbit.name, f"{orbit.period:.12g}", "" if share is None else f"{share:.9g}"),
+            *(f"({x:.12f}, {y:.12f})" for x, y in _ends(orbit)),
+        )
+        for orbit, share in zip(orbits, through, strict=True)
     ]
-    table = Table(("channel", "period", "flux", "turning point (x, y)", "turning point (x, y)"), rows)
-    print_result(as_json, answer | {"orbits": found} | flux.numbers(), table, flux.describe(), files=files)
+    # In a rotating frame orbits do not turn back: these are the start and the point half a period later.
+    point = ("turning point (x, y)",) * 2 if flux is not None else ("point (x, y)", "half a period later")
+    table = Table(("channel", "period", "flux", *point), rows)
+    of_all = ({}, []) if flux is None else (flux.numbers(), [flux.describe()])
+    print_result(as_json, answer | {"orbits": found} | of_all[0], table, *of_all[1], files=files)
 
 
 def _ends(orbit: LyapunovOrbit) -> list[list[float]]:
-    """Return x, y of both turning points."""
-    ends: list[list[float]] = orbit.half_path[[0, -1]].tolist()
-    return ends
+    """Return x, y at the start and half a period later."""
+    middle = orbit.x.size // 2
+    return [[float(orbit.x[k]), float(orbit.y[k])] for k in (0, middle)]

@@ -18,13 +18,14 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from cli.arguments import choose_energy
+from cli.arguments import GivenEnergy
 from cli.execution import Place
 from cli.option_marks import Of
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
 from cli.printing import AsJson, print_result
-from engine import Fate, Orbit, OrbitVerdict, Potential, Slice, integrate_orbit, judge_orbit
+from engine import Fate, Orbit, Potential, Slice, integrate_orbit, judge_orbit
+from engine.results import OrbitVerdict
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from engine.trajectories.chaos_indicators import IndicatorVerdict, evaluate_indicators
 from plots.pictures.orbit_curves import compute_orbit_curves
@@ -42,7 +43,7 @@ def run(
     *,
     potential: Potential,
     plane: Slice,
-    energy: Annotated[float | None, Of(choose_energy)],
+    energy: GivenEnergy,
     start: Annotated[tuple[float, float] | None, typer.Option(metavar="X ORDINATE")] = None,
     state: Annotated[State | None, typer.Option(metavar="X Y PX PY")] = None,
     t_max: Annotated[float, Of(integrate_orbit)],

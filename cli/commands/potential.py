@@ -18,7 +18,8 @@ import typer
 from cli.arguments import find_potential
 from cli.options import with_options
 from cli.printing import AsJson, Table, print_result
-from engine import POTENTIALS, PotentialReview, review_potential
+from engine import POTENTIALS, review_potential
+from engine.results import PotentialReview
 from engine.systems.catalogue.table import CATALOGUE
 
 

@@ -11,7 +11,7 @@ from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_unit
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.propagation.section_points import find_section_points
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 from engine.systems.potential import Potential
 
 # Starts on each exit: every tenth sample of the Lyapunov orbit except near its ends, and angles to the inward direction.
@@ -67,7 +67,7 @@ def _is_interior(potential: Potential, energy: float, points: np.ndarray) -> np.
     """(n,) bool: points (n, 2) allowed at this energy and inside all exits; NaN points and orbits that left again are neither."""
     x, px = points.T
     with np.errstate(invalid="ignore"):
-        allowed = SECTION.plane.required_energy(potential, x, px) <= energy
+        allowed = SECTION.required_energy(potential, x, px) <= energy
     outside = find_outside_in_well_units(potential, energy, np.where(allowed, x, 0.0), np.zeros_like(x))
     interior: np.ndarray = allowed & (outside == 0)
     return interior

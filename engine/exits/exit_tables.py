@@ -68,7 +68,7 @@ class ExitTable:
 
     def points_at(self, energy: float, positions: np.ndarray) -> np.ndarray:
         """(2, m) the points of the exit at an energy above the saddle, at s (m,) from −1 to 1."""
-        return _points(_interpolate(self.nodes, self.rows, float(np.sqrt(energy - self.saddle))), positions)
+        return _points(_interpolate(self.nodes, self.rows, energy - self.saddle), positions)
 
 
 def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...]:
@@ -127,7 +127,7 @@ def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -
         except ValueError:
             continue
         rows = np.array([_row(curve) for curve in inside])
-        found = [_points(_interpolate(nodes, rows, sigma), _POSITIONS) for sigma in between.tolist()]
+        found = [_points(_interpolate(nodes, rows, sigma**2), _POSITIONS) for sigma in between.tolist()]
         if np.abs(np.array(found) - [_points(curve, _POSITIONS) for curve in expected]).max() < _SAFETY * LARGEST_ERROR:
             used = np.flatnonzero(np.abs(rows).max(axis=0) > _NEGLIGIBLE).max() + 1
             return ExitTable(saddle, saddle + share * (highest - saddle), nodes, rows[:, :used].copy())
@@ -149,11 +149,12 @@ def _row(curve: np.ndarray) -> np.ndarray:
     return np.concatenate([[gate, reach], curve[_CURVE_COLUMNS]])
 
 
-def _interpolate(nodes: np.ndarray, rows: np.ndarray, place: float) -> np.ndarray:
-    """(columns,) the exit at a place."""
-    curve = np.zeros(events.CURVE_COLUMNS)
-    interpolate_exit(nodes, rows, place, events.CURVE, curve, np.zeros(3))
-    return curve
+def _interpolate(nodes: np.ndarray, rows: np.ndarray, above: float) -> np.ndarray:
+    """(columns,) the exit at an energy above its saddle."""
+    curves, gates = np.zeros((1, 1, events.CURVE_COLUMNS)), np.zeros((1, 3))
+    interpolate_exit(nodes, rows, 0.0, events.CURVE, np.array([above]), 0, curves, gates)
+    found: np.ndarray = curves[0, 0]
+    return found
 
 
 def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:

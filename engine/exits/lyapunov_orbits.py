@@ -129,8 +129,9 @@ class LyapunovOrbit(Result):
 
     @property
     def name(self) -> str:
-        """The numbers of its channels: "1", or "1+3" where two are one exit."""
-        return name_channels((self.channel, *self.others))
+        """The name of its exit: "L1" if it has one, or the numbers of its channels, "1", or "1+3" where two are one exit."""
+        named = self.potential.exit_names if len(self.potential.exit_names) == self.potential.channels else ()
+        return name_channels((self.channel, *self.others), named)
 
     @property
     def outward(self) -> np.ndarray:

@@ -17,7 +17,7 @@ FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         "CHAOS_THRESHOLD": ("its value, 1e-7", "..propagation.fates:CHAOS_THRESHOLD"),
         "Certificate": ("Evidence", "..propagation.evidence:Evidence"),
-        "Curves": ("Sweep", "..sweeps.sweep:Sweep"),
+        "Curves": ("escape_explorer.results.Sweep", "..sweeps.sweep:Sweep"),
         "CurvesSpec": ("SweepSpec", "..sweeps.former_calls:make_curves_spec"),
         "IndicatorVerdict": ("OrbitVerdict.findings", "..trajectories.chaos_indicators:IndicatorVerdict"),
         "SweepPlan": ("plan_sweep", "..sweeps.plan:SweepPlan"),
@@ -56,8 +56,12 @@ def find_former_name(name: str, stacklevel: int = 2) -> Any:
 
     stacklevel: whom to warn, as of `warnings.warn`; by default the caller.
     """
+    results = import_module("..results", __package__)
+    if name in results.__all__:
+        _warn(name, f"escape_explorer.results.{name}", stacklevel + 1)
+        return getattr(results, name)
     if name not in FORMER_NAMES:
-        raise AttributeError(f"module 'engine' has no attribute {name!r}")
+        raise AttributeError(f"module 'escape_explorer' has no attribute {name!r}")
     new, place = FORMER_NAMES[name]
     _warn(name, new, stacklevel + 1)
     module, _, attribute = place.partition(":")

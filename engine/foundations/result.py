@@ -1,6 +1,6 @@
 """Results show themselves: pictures on Matplotlib axes and in notebooks, tables for pandas and xarray.
 
-The pictures are drawn by another package, which is imported at the first of them; see `engine.foundations.pictures`.
+The pictures are drawn by another package, which is imported at the first of them; see `engine.foundations.extras`.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays
-from engine.foundations.codes import describe_codes
+from engine.foundations.extras import load_pictures
 from engine.foundations.former_names import FORMER_FIELDS
-from engine.foundations.pictures import load_pictures
 from engine.foundations.stored_fields import write_field
-from engine.foundations.summary import show_numbers, summarize
+from engine.foundations.wording import describe_codes, show_numbers, summarize
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,6 +1,18 @@
-"""Numbers and counts in sentences."""
+"""Numbers, counts and codes in sentences and tables, and results in a few lines of text."""
 
 from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from enum import Enum, IntEnum
+from typing import Any
+
+import numpy as np
+
+# Of the text of a result.
+_WIDTH, _MOST_LINES = 100, 3
+# A space at which lines do not end.
+_UNBROKEN = "\u00a0"
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -39,3 +51,65 @@ def _typeset(text: str) -> str:
         return number
     power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
     return power if number == "1" else f"{number} × {power}"
+
+
+def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str, str]:
+    """The dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``.
+
+    `labels` name the codes from 1 on that are not members of the enumeration, such as the outcomes of a `Fate`. The attribute
+    leaves them out if they are the default ones, "exit 1" and so on.
+    """
+    known = [f"{code.value}: {code.name.lower()}" for code in codes]
+    are_default = all(label == _exit(code) for code, label in enumerate(labels, 1))
+    return {"codes": "; ".join([*known, *([] if are_default else (f"{k}: {label}" for k, label in enumerate(labels, 1)))])}
+
+
+def name_code(codes: type[IntEnum], code: int, labels: Sequence[str] = ()) -> str:
+    """Return a code in words; `labels` name the codes from 1 on that are not members, which otherwise are exits."""
+    if code in codes:
+        return codes(code).name.lower().replace("_", " ")
+    return labels[code - 1] if 1 <= code <= len(labels) else _exit(code)
+
+
+def _exit(code: int) -> str:
+    return f"exit {code}"
+
+
+def show_numbers(numbers: Mapping[str, Any], codes: Mapping[str, type[IntEnum]], labels: Sequence[str] = ()) -> dict[str, str]:
+    """Scalars as text, by name: codes in words, with the labels of fates from 1, other numbers to four digits."""
+    return {name: _show(value, codes.get(name), labels) for name, value in numbers.items()}
+
+
+def _show(value: Any, codes: type[IntEnum] | None, labels: Sequence[str]) -> str:
+    if codes is not None:
+        return name_code(codes, value, labels)
+    if isinstance(value, float):
+        return format_number(value)
+    return str(value.value if isinstance(value, Enum) else value)
+
+
+def summarize(title: str, sentence: str, shown: Mapping[str, str], arrays: Mapping[str, np.ndarray]) -> str:
+    """A title with a sentence, then the scalars and the arrays, each in three lines at most."""
+    lines = _wrap(f"{title}: {sentence}" if sentence else title, indent="")
+    lines += _wrap_items(f"{name} {value}" for name, value in shown.items())
+    return "\n".join(lines + _wrap_items(_name_arrays(arrays)))
+
+
+def _name_arrays(arrays: Mapping[str, np.ndarray]) -> Iterator[str]:
+    """Names of arrays with their shape, those of equal shape together."""
+    for shape in dict.fromkeys(array.shape for array in arrays.values()):
+        names = " ".join(name for name, array in arrays.items() if array.shape == shape)
+        yield f"{names} {' × '.join(map(str, shape))}"
+
+
+def _wrap_items(items: Iterable[str]) -> list[str]:
+    """A list of items in lines that end between two of them."""
+    lines = _wrap(", ".join(item.replace(" ", _UNBROKEN) for item in items))
+    return [line.replace(_UNBROKEN, " ") for line in lines]
+
+
+def _wrap(text: str, indent: str = "  ") -> list[str]:
+    return textwrap.wrap(
+        text, _WIDTH, initial_indent=indent, subsequent_indent="  ", max_lines=_MOST_LINES, placeholder=" …",
+        break_long_words=False,
+    )  # fmt: skip

@@ -13,6 +13,7 @@ import linecache
 import sys
 import threading
 from collections.abc import Hashable
+from functools import partial
 from types import ModuleType
 from typing import Any
 
@@ -23,13 +24,14 @@ from engine.expressions.graph import make_graph
 from engine.expressions.nodes import Expression
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.integrator.jit.decorator import kernel
+from engine.integrator.jit.disk_cache import DEFINE
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import straight_line, table_reader
-from engine.integrator.kernels import fixed_step, interior, periodic_shooting, propagate, section_passages, speed_integrals
+from engine.integrator.kernels import fixed_step, interior, orbit_lanes, periodic_shooting, propagate
 from engine.integrator.source.recurrence import Definition, GeneratedCode, generate_code
 from engine.integrator.source.series import REACH, Setting
 
-_KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, section_passages, speed_integrals, interior)
+_KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
 # Cached potentials; binding the coefficients of one more of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()
@@ -177,6 +179,7 @@ def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]
     linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")
     programs = {function.program.name: straight_line(function.program) for function in code.functions}
     vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
+    setattr(module, DEFINE, partial(_define_module, code))
     exec(compile(source, f"<{name}>", "exec"), vars(module))
     return name, {
         function.name: GeneratedKernel(getattr(module, function.name), len(function.program.operations))

@@ -15,12 +15,22 @@ import threading
 from typing import Any
 
 from numba import types
+from numba.core.typing.templates import Signature
 
 from engine.foundations.cache_files import SUFFIX, cache_folder, read_cached, write_cached
 from engine.integrator.jit.disk_cache import program_digest
 from engine.integrator.jit.kernel_module import SETTINGS, lower_kernels
 from engine.integrator.jit.webassembly import PAIR
-from engine.integrator.kernels import dense_output, ensemble, exit_curves, generated_calls, interior, propagate
+from engine.integrator.kernels import (
+    ensemble,
+    exit_curves,
+    generated_calls,
+    interior,
+    pixels,
+    propagate,
+    random_starts,
+    slice_starts,
+)
 
 log = logging.getLogger(__name__)
 
@@ -31,27 +41,33 @@ _i1, _i2, _codes, _flags = types.int64[::1], types.int64[:, ::1], types.int8[::1
 _exits = types.NamedTuple((_f2, _f3, _i1), propagate.Exits)  # type: ignore[no-untyped-call]
 _orbits = types.NamedTuple((_f2, _f1, _i1, _i1, _codes, _flags, _f2), propagate.Orbits)  # type: ignore[no-untyped-call]
 _ensemble = types.NamedTuple((_f2, _f1, _f3, _codes, _f1, _f1, _f2), ensemble.Ensemble)  # type: ignore[no-untyped-call]
+_potential = (_address, _f1)
+_motion = (_f2, _count)
 _points = (_f1, _f1, _f1, _f3, _i1, _codes)
 
-KERNELS: dict[str, tuple[Any, Any]] = {
-    "propagate": (
-        propagate.propagate,
-        _count(_address, _address, _f1, _i1, _number, _flag, _number, _count, _count, _exits, _orbits, _f2),
-    ),
-    "advance_ensemble": (
-        ensemble.advance_ensemble,
-        _void(_address, _address, _f1, _number, _number, _number, _f2, _f2, _ensemble),
-    ),
-    "place_ensemble": (ensemble.place_ensemble, _void(_number, _ensemble, _f2, _codes)),
-    "find_outside_polynomial": (interior.find_outside_polynomial, _void(_i2, _f1, _f2, _f2, *_points)),
-    "find_outside": (interior.find_outside, _void(_address, _f1, _number, *_points)),
-    "interpolate_exit": (exit_curves.interpolate_exit, _void(_f1, _f2, _number, _count, _f1, _f1)),
-    "exit_points": (exit_curves.exit_points, _void(_f1, _f1, _f2)),
-    "evaluate_series": (dense_output.evaluate_series, _void(_f3, _i1, _f1, _f2)),
-    "compute_series": (generated_calls.compute_series, _void(_address, _f1, _f2, _f3)),
-    "potential_at": (generated_calls.potential_at, _number(_address, _f1, _number, _number)),
+KERNELS: dict[Any, Signature] = {
+    propagate.propagate: _count(_address, _address, _f1, _i1, _number, _flag, _number, _count, _count, _exits, _orbits, _f2),
+    ensemble.advance_ensemble: _void(_address, _address, _f1, _number, _number, _number, _f2, _f2, _ensemble),
+    ensemble.begin_ensemble: _void(_f2, _ensemble, _f2, _codes),
+    ensemble.place_ensemble: _void(_number, _ensemble, _f2, _codes),
+    ensemble.reverse_ensemble: _count(_number, _ensemble, _codes, _f2),
+    ensemble.measure_spread: _number(_f2, _f2, _codes),
+    interior.find_outside_polynomial: _void(_i2, _f1, _f2, _f2, *_points),
+    interior.find_outside: _void(_address, _f1, _number, *_points),
+    exit_curves.interpolate_exit: _void(_f1, _f2, _number, _count, _f1, _count, _f3, _f2),
+    exit_curves.exit_points: _void(_f1, _f1, _f2),
+    generated_calls.compute_series: _void(_address, _f1, _f2, _f3),
+    generated_calls.sample_steps: _void(_address, _f1, _f2, _count, _number, _f2),
+    slice_starts.find_starts: _void(*_potential, *_motion, _number, _f2, _f2, _f1),
+    slice_starts.find_required_energies: _void(*_potential, *_motion, _f1, _f2),
+    slice_starts.interpolate_window: _flag(_f1, _f2, _number, _f1),
+    pixels.place_pixels: _void(_f1, _count, _count, _i1, _count, _count, _f2, _i1),
+    pixels.select_starts: _count(_f2, _codes, _i1, _codes, _i1, _f2, _i1),
+    pixels.report_ends: _void(_orbits, _i1, _codes, _f1, _f1),
+    random_starts.scatter_points: _void(_i1, _f1, _flag, _f2),
+    random_starts.draw_at_exits: _count(*_potential, _f2, _number, _flag, _i1, _f2),
 }
-"""Kernels by the names of the functions of the module, with the types of their results and arguments."""
+"""The kernels of the module, which names its functions after them, with the types of their results and arguments."""
 
 _building = threading.Lock()
 

@@ -18,7 +18,7 @@ from engine.jobs.cache import ABSENT, ResultCache
 from engine.jobs.clock import Clock
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_priority import MapPriority
-from engine.jobs.orbit_semaphore import SMALL_JOB, OrbitSemaphore
+from engine.jobs.orbit_semaphore import OrbitSemaphore
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
@@ -45,13 +45,10 @@ class _Run:
     account: Hashable
     map_priority: MapPriority | None
     """Priority of a map on display; None for other jobs, whose short calls run in the background."""
-    clock: Clock
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
     """The last partial result."""
     executors: Mapping[Queue, QueueExecutor] = field(default_factory=dict)
-    begun: float | None = None
-    """Processor time of the coordinating thread when the job began there."""
 
     def stop(self) -> None:
         """Cancel the job and its queued calls."""
@@ -63,24 +60,6 @@ class _Run:
         """Drop all references, so that reference counting alone frees the memory, and return the subscriptions."""
         subscriptions, self.subscriptions, self.executors, self.latest = self.subscriptions, [], {}, None
         return subscriptions
-
-    @property
-    def measured(self) -> MapPriority | None:
-        """Of a map whose wait is measured; None for large maps, which wait for each other on idle machines, too."""
-        return self.map_priority if self.job.orbits_held <= SMALL_JOB else None
-
-    def waited(self) -> float:
-        """Seconds that a map without a frame has waited, apart from what was computed for it; call on the coordinating thread."""
-        if self.measured is None or self.measured() is not Priority.FIRST_FRAME or self.begun is None:
-            return 0.0
-        calls = self.executors[Queue.FIRST_FRAME].computed if self.executors else 0.0
-        return max(0.0, self.measured.seconds() - calls - (self.clock.thread_time() - self.begun))
-
-    def waiting(self) -> float:
-        """Seconds that a map has waited for its first call to begin."""
-        if self.measured is None or any(executor.has_begun for executor in self.executors.values()):
-            return 0.0
-        return self.measured.seconds()
 
     def priority(self) -> Priority:
         """Priority of the short calls."""
@@ -132,7 +111,6 @@ class Jobs:
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
         self._lock = threading.RLock()
         self._in_flight: dict[Job[Any], _Run] = {}
-        self._first_frame_wait = 0.0
         self.cache = ResultCache(cache_bytes)
 
     def request[Result](
@@ -172,8 +150,8 @@ class Jobs:
                 latest = self._in_flight[job].latest
             elif not complete:
                 latest = None
-                priority = MapPriority(self._clock) if job.queue is Queue.FIRST_FRAME else None
-                run = self._in_flight[job] = _Run(job, [subscription], client, account, priority, self._clock)
+                priority = self._map_priority() if job.queue is Queue.FIRST_FRAME else None
+                run = self._in_flight[job] = _Run(job, [subscription], client, account, priority)
                 self._coordinators.submit(self._run_job, run)
         if complete or latest is not None:
             subscription.deliver(latest, last=complete)
@@ -197,25 +175,14 @@ class Jobs:
             orbits_held=self._semaphore.held,
             orbits_limit=self._semaphore.limit,
             threads=count_workers(self._executor) if self._executor is not None else self._scheduler.threads,
+            computed=sum(queue.computed for queue in (self._scheduler, self._compilations)),
         )
 
-    def take_first_frame_wait(self) -> float:
-        """Longest time in seconds that the first frame of a map has waited since the last call of this method.
-
-        It counts from the request, apart from the processor time of the map itself: a visitor with costly maps delays nobody,
-        but a load on the threads, the interpreter or the processors does, even one of another program. Maps none of whose calls
-        has begun also count; large maps do not, as they wait until others release their memory.
-        """
-        with self._lock:
-            waiting = [run.waiting() for run in self._in_flight.values()]
-            longest, self._first_frame_wait = max(self._first_frame_wait, *waiting, 0.0), 0.0
-        return longest
-
-    def _count_wait(self, run: _Run) -> None:
-        self._first_frame_wait = max(self._first_frame_wait, run.waited())
+    def _map_priority(self) -> MapPriority:
+        return MapPriority(lambda: self._scheduler.first_frames_spared, self._clock)
 
     def spare_first_frames(self, spared: bool) -> None:
-        """Keep one thread for first frames, or no longer; see `FairScheduler.spare_first_frames`."""
+        """Put off what may be replaced before anyone looks at it, or no longer; see `FairScheduler.spare_first_frames`."""
         self._scheduler.spare_first_frames(spared)
 
     def pause_background(self, paused: bool) -> None:
@@ -242,7 +209,6 @@ class Jobs:
                 del self._in_flight[job]
 
     def _run_job(self, run: _Run) -> None:
-        run.begun = run.clock.thread_time()
         error: Exception | None = None
         result: Any = ABSENT
         try:
@@ -305,7 +271,6 @@ class Jobs:
     def _finish(self, run: _Run, result: Any, error: Exception | None) -> list[Subscription]:
         """Cache the result, remove the job and return its subscriptions."""
         with self._lock:
-            self._count_wait(run)
             # An interrupted result must not replace a complete one.
             if result is not ABSENT and (_is_complete(result) or not _is_complete(self.cache.get(run.job, ABSENT))):
                 self.cache.put(run.job, result)
@@ -320,7 +285,6 @@ class Jobs:
             return
         with self._lock:
             run.latest = result
-            self._count_wait(run)
             if run.map_priority is not None:
                 run.map_priority.add_frame(result.horizon)
             subscriptions = list(run.subscriptions)

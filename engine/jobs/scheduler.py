@@ -50,20 +50,11 @@ class _Call(NamedTuple):
         if not self.future.set_running_or_notify_cancel():
             return
         try:
-            result = self._compute()
+            result = self.function()
         except BaseException as error:
             self.future.set_exception(error)
         else:
             self.future.set_result(result)
-
-    def _compute(self) -> Any:
-        clock = self.executor.clock
-        begin = clock.thread_time()
-        self.executor.has_begun = True
-        try:
-            return self.function()
-        finally:
-            self.executor.count(clock.thread_time() - begin)
 
 
 class FairScheduler:
@@ -77,11 +68,18 @@ class FairScheduler:
         By default that of this process.
     one_each
         Whether a client has one call at a time, so that it leaves the other threads to others.
+
+    Attributes
+    ----------
+    computed
+        Processor time of the calls that have ended, in seconds.
+    first_frames_spared
+        Whether `spare_first_frames` is in force.
     """
 
     def __init__(self, pool: ThreadPoolExecutor | None = None, clock: Clock = time, *, one_each: bool = False) -> None:
         self._pool = pool or default_executor()
-        self.clock = clock
+        self._clock = clock
         self._one_each = one_each
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
@@ -93,7 +91,8 @@ class FairScheduler:
         self._running: Counter[Priority] = Counter()
         self._served: Counter[Hashable] = Counter()
         self._background_paused = False
-        self._first_frames_spared = False
+        self.first_frames_spared = False
+        self.computed = 0.0
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
 
@@ -133,7 +132,7 @@ class FairScheduler:
         for some of them in turn. To start the calls that are settled meanwhile, call this method about every 0.1 s.
         """
         with self._lock:
-            ended, self._first_frames_spared = self._first_frames_spared and not spared, spared
+            ended, self.first_frames_spared = self.first_frames_spared and not spared, spared
         if ended or spared:
             self._start_threads(self.threads if ended else 1)
 
@@ -169,16 +168,17 @@ class FairScheduler:
         """Run calls until none may start."""
         while chosen := self._take_next():
             call, priority = chosen
-            begun = self.clock.monotonic()
+            begun, computed = self._clock.monotonic(), self._clock.thread_time()
             call.run()
-            self._end_call(call.executor.client, priority, self.clock.monotonic() - begun)
+            self._end_call(call.executor.client, priority, self._clock.monotonic() - begun, self._clock.thread_time() - computed)
 
-    def _end_call(self, client: Hashable, priority: Priority, duration: float) -> None:
+    def _end_call(self, client: Hashable, priority: Priority, duration: float, computed: float) -> None:
         with self._lock:
             self._running[priority] -= 1
+            self.computed += computed
             self._served -= Counter([client])
             if priority is Priority.LONG_CALL:
-                self._next_long_call = self.clock.monotonic() + _PAUSE_PER_LONG_CALL * duration
+                self._next_long_call = self._clock.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
     def _take_next(self) -> tuple[_Call, Priority] | None:
         """The next call that may start; without one, the thread is no longer active."""
@@ -213,39 +213,23 @@ class FairScheduler:
             return True
         fewer = max(self.threads - 1, 1)
         others = self._running.total() - self._running[Priority.FIRST_FRAME]
-        if self._first_frames_spared and (others >= fewer or priority is Priority.UNSETTLED):
+        if self.first_frames_spared and (others >= fewer or priority is Priority.UNSETTLED):
             return False
         if priority is not Priority.LONG_CALL:
             return not self._background_paused
         running = self._running[priority]
         if self._background_paused:
-            return running == 0 and self.clock.monotonic() >= self._next_long_call
+            return running == 0 and self._clock.monotonic() >= self._next_long_call
         return running < fewer
 
 
 class QueueExecutor(Executor):
-    """Executor whose calls are queued in a `FairScheduler`.
-
-    Attributes
-    ----------
-    has_begun
-        Whether a thread has begun one of its calls.
-    computed
-        Processor time of its calls that have ended, in seconds.
-    """
+    """Executor whose calls are queued in a `FairScheduler`."""
 
     def __init__(self, scheduler: FairScheduler, client: Hashable, priority: Callable[[], Priority]) -> None:
         self._scheduler = scheduler
-        self.clock = scheduler.clock
         self.client = client
         self.priority = priority
-        self.has_begun, self.computed = False, 0.0
-        self._lock = threading.Lock()
-
-    def count(self, seconds: float) -> None:
-        """Count the processor time of a call."""
-        with self._lock:
-            self.computed += seconds
 
     @property
     def _max_workers(self) -> int:

@@ -23,6 +23,8 @@ class JobStats:
         Orbits of large running jobs and their limit.
     threads
         Worker threads.
+    computed
+        Processor time of calls of low priority that have ended, in seconds.
     """
 
     in_flight: int
@@ -35,3 +37,4 @@ class JobStats:
     orbits_held: int
     orbits_limit: int
     threads: int
+    computed: float

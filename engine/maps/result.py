@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.codes import describe_codes
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import MapResult
 from engine.foundations.validation import checked_flag
+from engine.foundations.wording import describe_codes
 from engine.maps.spec import MapSpec
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.evidence import Evidence
@@ -158,7 +158,7 @@ class EscapeMap(MapResult):
 
     @property
     def is_rounded(self) -> bool:
-        """Whether double precision does not support `NOTED_SHARE` of the pixels or more."""
+        """Whether double precision does not support 1 % of the pixels or more."""
         return self.rounded_share is not None and self.rounded_share >= NOTED_SHARE
 
     @property
@@ -226,7 +226,12 @@ class EscapeMap(MapResult):
 
         abscissa, ordinate = self.spec.plane.axis_names
         dims = (ordinate, abscissa)
-        variables = outcome_variables(self.spec, self.fate, self.escape_time, self.crossings, self.energy_error) | {
+        fates = describe_codes(Fate, [outcome.label for outcome in self.outcomes])
+        variables = {
+            "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **fates}),
+            "escape_time": (dims, self.escape_time, {"long_name": "escape time", "units": "1"}),
+            "crossings": (dims, self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
+            "energy_error": (dims, self.energy_error, {"long_name": "relative energy error", "units": "1"}),
             "outside": (dims, self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
             "evidence": (dims, self.evidence, {"long_name": "why the orbit is bounded", **describe_codes(Evidence)}),
         }
@@ -265,21 +270,6 @@ def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, f
     ends = (code for code, outcome in enumerate(outcomes, 1) if outcome.occurs)
     codes = (*ends, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
     return {int(code): float(np.mean(interior == code)) if interior.size else 0.0 for code in codes}
-
-
-def outcome_variables(
-    spec: MapSpec, fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, energy_error: np.ndarray
-) -> dict[str, tuple[tuple[str, str], np.ndarray, dict[str, Any]]]:
-    """What orbits of a map end at, as variables of a dataset; arrays (rows, columns)."""
-    abscissa, ordinate = spec.plane.axis_names
-    dims = (ordinate, abscissa)
-    fates = describe_codes(Fate, [outcome.label for outcome in spec.outcomes])
-    return {
-        "fate": (dims, fate, {"long_name": "exit channel (k >= 1) or outcome code", **fates}),
-        "escape_time": (dims, escape_time, {"long_name": "escape time", "units": "1"}),
-        "crossings": (dims, crossings, {"long_name": "upward crossings of y = 0 before escape"}),
-        "energy_error": (dims, energy_error, {"long_name": "relative energy error", "units": "1"}),
-    }
 
 
 def find_interior(fate: np.ndarray) -> np.ndarray:

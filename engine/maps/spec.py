@@ -12,8 +12,8 @@ import numpy as np
 
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
+from engine.slices.axes import Energy, common_energy, scaled_energy
 from engine.slices.default_window import map_window
-from engine.slices.energies import Energy, common_energy, scaled_energy
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice
@@ -56,7 +56,9 @@ class MapSpec:
         the default window, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows the
         default window is moved by half a pixel where its middle line would be one of symmetry, on which orbits stay for ever.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless; where the unit 1/ω of time of the well is above 1, in this unit.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless; where the unit 1/ω of time of the well is above 1, in this unit. By
+        default 1e5; in rotating frames 1000/Ω, and with centres or an escape radius 1000: there bounded orbits are followed to
+        the end.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
@@ -86,7 +88,7 @@ class MapSpec:
     energy: Energy
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: GivenWindow | None = None
-    t_max: float = 1e5
+    t_max: float = None  # type: ignore[assignment]
     use_evidence: bool = True
     backward: bool = False
 
@@ -100,7 +102,7 @@ class MapSpec:
             energy: Energy | Sequence[float] | np.ndarray,
             resolution: Sequence[int] = DEFAULT_RESOLUTION,
             window: GivenWindow | None = None,
-            t_max: float = 1e5,
+            t_max: float | None = None,
             use_evidence: bool = True,
             backward: bool = False,
         ) -> None: ...

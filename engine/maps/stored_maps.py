@@ -14,7 +14,7 @@ from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.spec import MapSpec
 from engine.propagation.fates import Fate
 from engine.slices.slice_text import read_slice
-from engine.systems.stored_potential import read_potential
+from engine.systems.formulas.stored_potential import read_potential
 from engine.systems.system import System
 
 if TYPE_CHECKING:

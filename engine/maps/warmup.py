@@ -28,7 +28,7 @@ from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.periodic.stable_manifolds import find_stable_manifolds
 from engine.propagation.section_points import find_section_points
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 from engine.systems.compiled import kernels_of
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
@@ -207,7 +207,7 @@ def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> N
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
-    spec = MapSpec(potential, SECTION.plane, energy, (2, 2), t_max=_T_MAX * potential.units.time)
+    spec = MapSpec(potential, SECTION, energy, (2, 2), t_max=_T_MAX * potential.units.time)
     return compute_map(spec, execution=_EXECUTION)
 
 
@@ -219,8 +219,8 @@ def _open_energy(potential: Potential) -> float:
 def _start(potential: Potential) -> np.ndarray:
     """(1, 4) a state of low energy in the middle of a well, or, without a well, one at the typical radius."""
     if potential.well.is_minimum and potential.escape_radius is None:
-        return SECTION.plane.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
-    return SECTION.plane.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
+        return SECTION.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
+    return SECTION.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
 
 
 def call_after_maps(*calls: Callable[[], object]) -> None:

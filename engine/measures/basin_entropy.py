@@ -11,7 +11,7 @@ import numpy as np
 from engine.foundations.result import RecordedResult
 from engine.foundations.validation import checked_count
 from engine.foundations.wording import format_count
-from engine.measures.labels import checked_labels, describe_labels
+from engine.measures.starts import checked_labels, describe_labels
 
 BOX = 5
 """Default side of a box in pixels, that is 25 starts per box, as in Daza et al. (2016)."""

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from engine.foundations.proportions import wilson_interval
 from engine.foundations.result import Result
+from engine.foundations.validation import short_repr
+from engine.measures.starts import wilson_interval
 from engine.propagation.fates import Regularity
 
 _JUDGED = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
@@ -50,21 +51,28 @@ def compute_chaotic_share(character: Any) -> ChaoticShare:
     Parameters
     ----------
     character
-        `Regularity` codes of any shape, such as those of a `RegularityMap`.
+        A `RegularityMap`, or `Regularity` codes of any shape.
 
     Returns
     -------
     The `ChaoticShare`.
 
+    Raises
+    ------
+    ValueError
+        If there are no codes.
+
     Examples
     --------
     >>> from escape_explorer import CASES, MapSpec, Plane, compute_chaotic_share, compute_map, compute_regularity
     >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (20, 20), t_max=2e3))
-    >>> share = compute_chaotic_share(compute_regularity(escapes).character)
+    >>> share = compute_chaotic_share(compute_regularity(escapes))
     >>> round(share.low, 2), round(share.share, 2), round(share.high, 2)
     (0.17, 0.23, 0.3)
     """
-    codes = np.asarray(character)
+    codes = np.asarray(getattr(character, "character", character))
+    if codes.dtype.kind not in "iu":
+        raise ValueError(f"character={short_repr(character)}: must be a RegularityMap, or an array of codes of Regularity")
     chaotic, judged = int(np.count_nonzero(codes == Regularity.CHAOTIC)), int(np.count_nonzero(np.isin(codes, _JUDGED)))
     if not judged:
         return ChaoticShare(0, 0, np.nan, np.nan, np.nan)

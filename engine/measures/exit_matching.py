@@ -9,9 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.proportions import wilson_interval
 from engine.foundations.validation import checked_integers
-from engine.measures.starts import Measurable, Starts, read_starts
+from engine.measures.starts import Measurable, Starts, read_starts, wilson_interval
 from engine.propagation.fates import Fate, OrbitResult, name_fate
 from engine.systems.outcomes import Outcome
 

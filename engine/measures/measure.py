@@ -110,13 +110,13 @@ class Measure:
     meaning
         What it tells, in about five words.
     compute
-        Returns its result for a `MeasuredMap`; None where it is not defined.
+        Returns its result for a map and what is measured on it; None where it is not defined.
     quantities
         Its numbers.
     help
         What it is and how to read its curve, in two to four sentences; empty without a curve.
     curve
-        How its numbers are drawn against the energy or a parameter; `NO_CURVE` if they are not.
+        How its numbers are drawn against the energy or a parameter; an empty curve if they are not.
     sentence
         Returns the result in words; None if the measure is not told in words.
     slow
@@ -126,7 +126,7 @@ class Measure:
     terms
         Terms of the glossary that it needs, with their meanings.
     other_variables
-        Returns further variables of the dataset for a `SweepPoint` and the result.
+        Returns further variables of the dataset for a point of a sweep and the result.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""What measures count: starts with the outcomes of their orbits, as arrays."""
+"""What measures count: starts with the outcomes of their orbits, their labels, and confidence intervals of shares."""
 
 from __future__ import annotations
 
@@ -8,15 +8,20 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from engine.foundations.arrays import read_only
 from engine.foundations.former_names import rename_stored
 from engine.foundations.stored_fields import plain_attributes
-from engine.foundations.validation import short_repr
+from engine.foundations.validation import checked_array, short_repr
+from engine.propagation.fates import Fate
 from engine.slices.window import Window
 from engine.systems.outcomes import Outcome, read_outcomes
 
 if TYPE_CHECKING:
     import xarray as xr
 
+
+Z_95 = 1.959963984540054
+"""Half-width of the central 95 % of the normal distribution, in standard deviations."""
 
 # Attributes of datasets that say what was found, not how.
 _FOUND = {"result", "outcomes", "worst_energy_error", "complete", "counts", "rounded_share"}
@@ -139,3 +144,87 @@ def _read_dataset(name: str, dataset: xr.Dataset) -> Starts:
 
 def _spacing(centres: np.ndarray) -> float:
     return float(np.ptp(centres)) / max(centres.size - 1, 1)
+
+
+def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Label the basins of escape of a map and select the pixels that count.
+
+    Forbidden, outside, undecided and failed starts never count. An unfinished map therefore lacks the orbits that escape late,
+    which lie on the basin boundaries, and appears less mixed than the finished map.
+
+    Parameters
+    ----------
+    fate
+        (rows, columns) integer `Fate` codes and outcomes of a map, finished or not.
+    bounded
+        Whether bounded orbits are a label of their own, 0, or do not count; each measure has its `COUNTS_BOUNDED`.
+
+    Returns
+    -------
+    labels
+        (rows, columns) int, a read-only view of `fate`: the outcome of escaping orbits, `Fate.BOUNDED` = 0 of bounded ones, and
+        arbitrary codes where `valid` is False.
+    valid
+        (rows, columns) bool, the pixels that count; read-only.
+    """
+    valid = (fate >= 1) | (bounded & (fate == Fate.BOUNDED))
+    return read_only(fate.view()), read_only(valid)
+
+
+def describe_labels(labels: Any) -> dict[str, Any]:
+    """How the map was made of which labels are given; empty for an array."""
+    return dict(read_starts("labels", labels).made_by) if hasattr(labels, "fate") else {}
+
+
+def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
+    """`labels` as integers and `valid` as bool, both (rows, columns), of a map those of `exit_labels`.
+
+    Raises
+    ------
+    ValueError
+        For any other shape or type, and for negative labels without `valid`: they are codes of starts without an outcome.
+    """
+    if hasattr(labels, "fate"):
+        labels, valid = exit_labels(read_starts("labels", labels).fate, bounded=bounded)
+    labels = checked_array("labels", labels, keep_type=True)
+    if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
+        raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be integers, (rows, columns)")
+    if valid is None:
+        if labels.size and labels.min() < 0:
+            raise ValueError(
+                f"labels: {np.count_nonzero(labels < 0)} are negative, the codes of starts without an outcome; "
+                "give the map itself, or valid=(labels >= 0)"
+            )
+        return labels, np.ones(labels.shape, np.bool_)
+    valid = checked_array("valid", valid, keep_type=True)
+    if valid.shape != labels.shape or valid.dtype != np.bool_:
+        raise ValueError(
+            f"valid of shape {valid.shape} and type {valid.dtype}: must be bool, shaped like the labels {labels.shape}"
+        )
+    return labels, valid
+
+
+def wilson_interval(counts: Any, totals: Any) -> tuple[np.ndarray, np.ndarray]:
+    """95 % score interval of a share (Wilson 1927, Journal of the American Statistical Association 22, 209).
+
+    The interval holds for independent random draws. Starts on a grid scatter less.
+
+    Parameters
+    ----------
+    counts
+        Numbers of successes, 0 to `totals`, of any shape.
+    totals
+        Numbers of draws, of a shape that broadcasts with `counts`.
+
+    Returns
+    -------
+    low, high
+        Limits between 0 and 1, of the common shape; 0 and 1 without draws.
+    """
+    counts, totals = np.broadcast_arrays(np.asarray(counts, float), np.asarray(totals, float))
+    drawn = np.maximum(totals, 1.0)
+    share, spread = counts / drawn, Z_95**2 / drawn
+    middle = (share + spread / 2) / (1 + spread)
+    half_width = np.sqrt(spread * share * (1 - share) + spread**2 / 4) / (1 + spread)
+    some = totals > 0.0
+    return np.where(some, np.maximum(middle - half_width, 0.0), 0.0), np.where(some, np.minimum(middle + half_width, 1.0), 1.0)

@@ -12,7 +12,7 @@ import numpy as np
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.wording import format_count
-from engine.measures.labels import checked_labels, describe_labels
+from engine.measures.starts import checked_labels, describe_labels
 
 MIN_BASINS = 3
 """Fewest basins for the Wada property; two basins always share their boundary."""

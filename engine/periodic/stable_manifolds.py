@@ -24,7 +24,7 @@ from engine.foundations.result import Result
 from engine.foundations.validation import checked_count, checked_number, checks_types
 from engine.periodic.unstable_manifold import UnstableManifold
 from engine.slices.default_window import default_window
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 from engine.slices.window import GivenWindow, Window, checked_window
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
@@ -99,7 +99,7 @@ class StableManifolds(Result):
 
     def provenance(self) -> dict[str, Any]:
         """The potential, the energy, the slice, the integrator and the version."""
-        return describe_run(self.potential, energy=self.energy, plane=SECTION.plane.title)
+        return describe_run(self.potential, energy=self.energy, plane=SECTION.title)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """All points, with the number of their arc from 1, its channel and its image."""
@@ -190,7 +190,7 @@ def find_stable_manifolds(
     potential.check_at_rest("stable manifolds")
     images = checked_count("images", images, 1, MOST_IMAGES)
     given, given_energy, units = potential, checked_number("energy", energy), potential.units
-    whole = default_window(potential, SECTION.plane, given_energy)
+    whole = default_window(potential, SECTION, given_energy)
     part = None if window is None else checked_window(window)
     potential, energy = potential.in_well_units, given_energy / units.energy
     factors = 1.0 / units.length, 1.0 / units.momentum

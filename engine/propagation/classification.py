@@ -72,7 +72,7 @@ def classify_orbits(
     potential: Potential,
     energy: float,
     states: Any,
-    t_max: float = 1e5,
+    t_max: float | None = None,
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Outcomes:
@@ -87,7 +87,7 @@ def classify_orbits(
     states
         (n, 4) x, y, px, py; finite, with that energy to within 1e-9 in units of the well.
     t_max
-        Largest integration time, 0 < t_max ≤ 1e8, dimensionless.
+        Largest integration time, 0 < t_max ≤ 1e8, dimensionless; by default as in `MapSpec`.
     execution
         How the computation runs. When it is cancelled, orbits without a result stay `Fate.NOT_COMPUTED`.
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from engine.foundations.codes import name_code
 from engine.foundations.result import RecordedResult
+from engine.foundations.wording import name_code
 from engine.integrator.kernels import events
 from engine.systems.outcomes import Exit, Outcome, write_outcomes
 
@@ -27,8 +27,8 @@ class Fate(IntEnum):
     """Code of the fate of an orbit. Codes k from 1 are not members: the orbit ended at ``potential.outcomes[k - 1]``."""
 
     BOUNDED = events.BOUNDED
-    FORBIDDEN = -1
-    OUTSIDE = -2
+    FORBIDDEN = events.FORBIDDEN
+    OUTSIDE = events.OUTSIDE
     NOT_COMPUTED = events.NOT_COMPUTED
     FAILED = events.FAILED
 

@@ -1,4 +1,4 @@
-"""Axes of a slice: what changes along them."""
+"""Axes of a slice: what changes along them, and the energy of its starts."""
 
 from __future__ import annotations
 
@@ -57,6 +57,11 @@ class Coordinate(Enum):
         """The unit of the coordinate in which it is a number of the size of the well."""
         momentum = {"px": units.momentum, "py": units.momentum, "v": units.momentum}
         return {"x": units.length, "y": units.length, **momentum, "h": units.energy}.get(self.value, 1.0)
+
+    @property
+    def components(self) -> dict[Coordinate, float]:
+        """How far starts move along each coordinate where the axis rises by 1."""
+        return {self: 1.0}
 
     def in_well_units(self, units: WellUnits) -> Coordinate:
         """The axis itself: its values have units, it has none."""
@@ -149,6 +154,11 @@ class _SystemAxis:
     """An axis along which the system differs, and starts stay as they are."""
 
     key: str
+
+    @property
+    def components(self) -> dict[Coordinate, float]:
+        """None: starts stay as they are."""
+        return {}
 
     @property
     def symbol(self) -> str:
@@ -259,3 +269,22 @@ def _system_of(potential: Potential) -> System:
 
 
 Axis = Coordinate | Direction | ParameterAxis | HeldParameter
+
+
+Energy = float | tuple[float, float]
+"""The energy of a map: h, or on a slice with an axis h its range (low, high)."""
+
+
+def common_energy(energy: Energy) -> float | None:
+    """h of all starts of a map; None on a slice with an axis h."""
+    return None if isinstance(energy, tuple) else energy
+
+
+def highest_energy(energy: Energy) -> float:
+    """The highest h of a map."""
+    return energy[1] if isinstance(energy, tuple) else energy
+
+
+def scaled_energy(energy: Energy, factor: float) -> Energy:
+    """The energy of a map in other units."""
+    return (factor * energy[0], factor * energy[1]) if isinstance(energy, tuple) else factor * energy

@@ -9,8 +9,18 @@ import numpy as np
 from engine.exits.interior import find_outside_in_well_units
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.foundations.validation import checks_types
-from engine.slices.axes import ANGLES, MOMENTA, Axis, Coordinate, Direction, ParameterAxis
-from engine.slices.energies import Energy, common_energy, highest_energy, scaled_energy
+from engine.slices.axes import (
+    ANGLES,
+    MOMENTA,
+    Axis,
+    Coordinate,
+    Direction,
+    Energy,
+    ParameterAxis,
+    common_energy,
+    highest_energy,
+    scaled_energy,
+)
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.window import Window

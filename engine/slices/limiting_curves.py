@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine.foundations.validation import checked_number, checks_types
-from engine.slices.energies import Energy, common_energy
+from engine.slices.axes import Energy, common_energy
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.window import GivenWindow, Window, checked_window

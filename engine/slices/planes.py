@@ -35,6 +35,9 @@ class Plane(Slice, Enum):
 SPACE = Plane.X_Y
 """The plane of the positions, in which V, paths and exits are drawn."""
 
+SECTION = Plane.X_PX
+"""The slice of the states on the surface of section whose crossings are counted: y = 0, upward (Zotos 2014)."""
+
 
 def checked_slice(value: Any) -> Slice:
     """A slice, given as one or by the title or the key of a named one: "(x, px)" or "x_px"."""

@@ -7,7 +7,7 @@ energy and exits of its own, along a parameter also a potential.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +15,8 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
-from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, ParameterAxis
-from engine.slices.energies import Energy
+from engine.integrator.kernels import slice_starts
+from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, Energy, ParameterAxis
 from engine.slices.slice_rules import check_coordinates, momentum_left
 from engine.slices.slice_starts import compute_required_energy, compute_states
 from engine.systems.potential import Potential
@@ -170,16 +170,13 @@ class Slice:
         return f"{kinetic}V{place} = h"
 
     def to_dict(self, units: WellUnits) -> dict[str, Any]:
-        """The slice as plain data in units of a well: see `Slice` in modules/system.js of the page."""
+        """The slice as plain data in units of a well: see `Slice` in modules/engine/system.js of the page."""
         scaled = self.in_well_units(units)
-        moves = [{axis.key: 1.0} if isinstance(axis, Coordinate) else _components(axis) for axis in scaled.axes]
-        fixed = {c.key: 0.0 for c in STATE if c is not self.decided} | {c.key: value for c, value in scaled.fixed}
         return {
             "axes": list(self.axis_names),
             "units": list(self.axis_units(units)),
-            "moves": moves,
-            "fixed": fixed,
-            "decided": self.decided.key,
+            "motion": [_coordinates(dict(scaled.fixed)), *(_coordinates(axis.components) for axis in scaled.axes)],
+            "decided": _decided(self),
             "sign": self.sign,
             "mirrored": self.mirrored_axes,
         }
@@ -189,7 +186,7 @@ class Slice:
         return self.abscissa.unit(units), self.ordinate.unit(units)
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
-        """As `WellUnits.restore`, for a result whose `x` and `ordinate`, numbers or arrays, are positions on this slice."""
+        """Convert a result from units of the well; its `x` and `ordinate`, numbers or arrays, are positions on this slice."""
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
         for coordinate in (x, ordinate):
@@ -297,6 +294,15 @@ class Slice:
         return images.ravel()
 
 
-def _components(axis: Axis) -> dict[str, float]:
-    """The components of a direction by name; none for a parameter, along which starts do not move."""
-    return {c.key: value for c, value in axis.components.items()} if isinstance(axis, Direction) else {}
+def _coordinates(values: Mapping[Coordinate, float]) -> list[float]:
+    """Coordinates in the columns of `engine.integrator.kernels.slice_starts`; those left out are 0."""
+    held = {"angle" if coordinate in ANGLES else coordinate.key: value for coordinate, value in values.items()}
+    return [held.get(name, 0.0) for name in ("x", "y", "px", "py", "angle", "h")]
+
+
+def _decided(plane: Slice) -> int:
+    """What the energy decides, as a code of `engine.integrator.kernels.slice_starts`."""
+    if plane.decided is not Coordinate.SPEED:
+        return slice_starts.PX if plane.decided is Coordinate.PX else slice_starts.PY
+    used = {*plane.axes, *(coordinate for coordinate, _ in plane.fixed)}
+    return slice_starts.LAUNCHED_FROM_RADIUS if Coordinate.BETA in used else slice_starts.LAUNCHED

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from engine.integrator.kernels import slice_starts as kernel
 from engine.slices.axes import MOMENTA, STATE, Coordinate, Direction
 from engine.systems.potential import Potential
 
@@ -24,15 +25,17 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
     start = _coordinates(plane, x, ordinate)
     with np.errstate(over="ignore", invalid="ignore"):
         # An overflow far from the origin gives a forbidden start.
-        left = plane.energies(energy, x, ordinate) - potential.value(start[Coordinate.X], start[Coordinate.Y])
-        doubled = 2.0 * left - _square_of_others(plane, start)
-    found = plane.sign * np.sqrt(np.where(doubled >= 0, doubled, np.nan))
-    if plane.decided is Coordinate.SPEED:
-        with np.errstate(invalid="ignore"):
-            # At the centre of a body the speed is infinite.
-            start[Coordinate.PX], start[Coordinate.PY] = _velocity(start, found)
-    else:
-        start[plane.decided] = found
+        value = potential.value(start[Coordinate.X], start[Coordinate.Y])
+        energies = plane.energies(energy, x, ordinate)
+        found = kernel.decided_momentum(energies, value, _held_momentum(plane, start), plane.sign)
+        # At the centre of a body the speed is infinite.
+        if plane.decided is not Coordinate.SPEED:
+            start[plane.decided] = found
+        elif Coordinate.THETA in start:
+            start[Coordinate.PX], start[Coordinate.PY] = kernel.launch(found, start[Coordinate.THETA])
+        else:
+            place = start[Coordinate.X], start[Coordinate.Y]
+            start[Coordinate.PX], start[Coordinate.PY] = kernel.launch_from_radius(*place, found, start[Coordinate.BETA])
     return np.column_stack([start[coordinate] for coordinate in STATE])
 
 
@@ -44,8 +47,8 @@ def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, o
             required[here] = compute_required_energy(line, each, x[here], ordinate[here])
         return required
     start = _coordinates(plane, x, ordinate)
-    kinetic = 0.5 * _square_of_others(plane, start) - plane.energies(0.0, x, ordinate)
-    lowest: np.ndarray = kinetic + potential.value(start[Coordinate.X], start[Coordinate.Y])
+    value = potential.value(start[Coordinate.X], start[Coordinate.Y])
+    lowest: np.ndarray = kernel.rest_energy(_held_momentum(plane, start), value) - plane.energies(0.0, x, ordinate)
     return lowest
 
 
@@ -72,22 +75,9 @@ def _coordinates(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> dict[Coor
     return start
 
 
-def _square_of_others(plane: Slice, start: Mapping[Coordinate, np.ndarray]) -> Any:
-    """The square of the momentum that the energy does not decide; 0 if it decides both."""
+def _held_momentum(plane: Slice, start: Mapping[Coordinate, np.ndarray]) -> Any:
+    """The momentum that the energy does not decide; 0 if it decides the speed."""
     if plane.decided is Coordinate.SPEED:
         return 0.0
-    (other,) = (start[momentum] for momentum in MOMENTA if momentum is not plane.decided)
-    return other * other
-
-
-def _velocity(start: Mapping[Coordinate, np.ndarray], speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """px and py of starts with an angle and a speed (n,)."""
-    if Coordinate.THETA in start:
-        angle = start[Coordinate.THETA]
-        return speed * np.cos(angle), speed * np.sin(angle)
-    x, y, angle = start[Coordinate.X], start[Coordinate.Y], start[Coordinate.BETA]
-    radius = np.hypot(x, y)
-    # At the origin, where no direction is radial, that of the +y axis is taken, which is its own mirror image under x → −x.
-    away_x, away_y = np.where(radius > 0, (x, y) / np.where(radius > 0, radius, 1.0), np.array([[0.0], [1.0]]))
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return speed * (cosine * away_x - sine * away_y), speed * (cosine * away_y + sine * away_x)
+    (held,) = (start[momentum] for momentum in MOMENTA if momentum is not plane.decided)
+    return held

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from engine.foundations.validation import checked_number, short_repr
+from engine.integrator.kernels.slice_starts import interval_centre
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,8 @@ class Window:
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
         """x (columns,) and ordinate (rows,) of the pixel centres; they are exactly symmetric if the window is."""
-        return _interval_centres(self.x_low, self.x_high, columns), _interval_centres(self.ordinate_low, self.ordinate_high, rows)
+        x = interval_centre(self.x_low, self.x_high, np.arange(columns), columns)
+        return x, interval_centre(self.ordinate_low, self.ordinate_high, np.arange(rows), rows)
 
 
 type GivenWindow = Window | tuple[float, float, float, float]
@@ -54,8 +56,3 @@ def checked_window(window: Any) -> Window:
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"window={short_repr(window)}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
     return Window(x_low, x_high, ordinate_low, ordinate_high)
-
-
-def _interval_centres(low: float, high: float, count: int) -> np.ndarray:
-    offsets = (2 * np.arange(count) + 1 - count) / (2 * count)
-    return 0.5 * (low + high) + (high - low) * offsets

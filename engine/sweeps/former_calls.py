@@ -27,7 +27,7 @@ def make_curves_spec(
     plane: Slice,
     values: Sequence[float],
     resolution: tuple[int, int] = (112, 112),
-    t_max: float = 1e5,
+    t_max: float | None = None,
     exponent: bool = True,
     along: ParameterAxis | None = None,
     energy: float | None = None,

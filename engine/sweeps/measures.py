@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from engine.foundations.codes import describe_codes
+from engine.foundations.wording import describe_codes
 from engine.maps.result import EscapeMap
 from engine.maps.uncertain_pairs import WORK, compute_uncertainty_exponent
 from engine.measures.basin_entropy import compute_basin_entropy

@@ -28,10 +28,10 @@ from engine.measures.wada import WadaTest
 from engine.periodic.stable_manifolds import StableManifolds
 from engine.propagation.classification import Outcomes
 from engine.sweeps.sweep import Sweep
+from engine.systems.formulas.stored_potential import read_potential
 from engine.systems.outcomes import read_outcomes
 from engine.systems.potential import Potential
 from engine.systems.review.potential_review import PotentialReview
-from engine.systems.stored_potential import read_potential
 from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.flux import EscapeFlux
 from engine.trajectories.nearest_divergent_start import DivergentStart

@@ -55,7 +55,7 @@ class SweepSpec:
         measure "maps", whose arrays have common axes, that of the highest energy. In the three cases the interior grows with h on
         both planes, so that this window contains the default windows of all other energies.
     t_max
-        Integration time, dimensionless, 0 < t_max ≤ 1e8.
+        Integration time, dimensionless, 0 < t_max ≤ 1e8; by default as in `MapSpec`.
     use_evidence
         As in `MapSpec`.
     measures
@@ -79,7 +79,7 @@ class SweepSpec:
     values: Sequence[float] | np.ndarray
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: GivenWindow | None = None
-    t_max: float = 1e5
+    t_max: float = None  # type: ignore[assignment]
     use_evidence: bool = True
     measures: Sequence[str] = ("maps",)
     along: ParameterAxis | None = None
@@ -96,7 +96,7 @@ class SweepSpec:
             values: Sequence[float] | np.ndarray,
             resolution: Sequence[int] = DEFAULT_RESOLUTION,
             window: GivenWindow | None = None,
-            t_max: float = 1e5,
+            t_max: float | None = None,
             use_evidence: bool = True,
             measures: Sequence[str] = ("maps",),
             along: ParameterAxis | None = None,

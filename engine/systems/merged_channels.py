@@ -32,9 +32,9 @@ class MergedExit(NamedTuple):
         return name_channels(self.channels)
 
 
-def name_channels(channels: Sequence[int]) -> str:
-    """The numbers of an exit as its name: "1", or "1+3" if it has several channels."""
-    return "+".join(map(str, channels))
+def name_channels(channels: Sequence[int], names: Sequence[str] = ()) -> str:
+    """The name of an exit from the names of all channels, or else their numbers: "1", or "1+3" if it has several channels."""
+    return "+".join(names[channel - 1] if names else str(channel) for channel in channels)
 
 
 def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[MergedExit, ...]:
@@ -60,21 +60,24 @@ def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
     return numbers
 
 
-def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float) -> str:
+def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float, names: Sequence[str] = ()) -> str:
     """The name of the exit that a channel is, or is part of, at the energies from `low` to `high`.
 
-    "1", "1+3" for the lowest of the numbers, "3 in 1+3" for another one, "1, 1+3 above h = 0.3" for a range of energies.
+    Without the names of all channels their numbers are used: "1", "1+3" for the lowest of the numbers, "3 in 1+3" for another
+    one, "1, 1+3 above h = 0.3" for a range of energies.
     """
-    names = [(low, _name_at(channel, mergers, low))]
+    changes = [(low, _name_at(channel, mergers, low, names))]
     for energy in sorted(merger.energy for merger in mergers if low <= merger.energy < high):
-        name = _name_at(channel, mergers, np.nextafter(energy, np.inf))
-        if name != names[-1][1]:
-            names.append((energy, name))
-    return ", ".join([names[0][1], *(f"{name} above h = {energy:.6g}" for energy, name in names[1:])])
+        name = _name_at(channel, mergers, np.nextafter(energy, np.inf), names)
+        if name != changes[-1][1]:
+            changes.append((energy, name))
+    return ", ".join([changes[0][1], *(f"{name} above h = {energy:.6g}" for energy, name in changes[1:])])
 
 
-def _name_at(channel: int, mergers: Sequence[ChannelMerger], energy: float) -> str:
+def _name_at(channel: int, mergers: Sequence[ChannelMerger], energy: float, names: Sequence[str]) -> str:
+    own = name_channels([channel], names)
     for merged in merged_exits(mergers, energy):
         if channel in merged.channels:
-            return merged.name if channel == merged.channels[0] else f"{channel} in {merged.name}"
-    return str(channel)
+            together = name_channels(merged.channels, names)
+            return together if channel == merged.channels[0] else f"{own} in {together}"
+    return own

@@ -233,7 +233,7 @@ class Outcome:
     Attributes
     ----------
     kind
-        Through an exit over a saddle, by a collision with a centre, or beyond the escape radius: a class of `KINDS`.
+        Through an exit over a saddle, by a collision with a centre, or beyond the escape radius: a class with its words.
     label
         In legends and tables: "exit 1", "collision with the Moon", "escape".
     action

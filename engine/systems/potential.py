@@ -19,6 +19,7 @@ from engine.foundations.validation import LONGEST_TIME, check_type, checked_numb
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
+from engine.systems.jacobi import squared_speed_of_origin
 from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
 from engine.systems.parameters import WELL_PARAMETERS, symbol_of
 from engine.systems.provenance import describe_potential
@@ -33,6 +34,9 @@ Terms = tuple[tuple[int, int, float], ...]
 
 # Stands for the centres, or the escape radius, that are among the ends.
 _OF_ENDS: Any = ...
+
+# In units of 1/Ω.
+_SHORT_TIME = 1000.0
 
 
 @with_former_fields
@@ -66,8 +70,11 @@ class Potential(Result):
     system
         The `System` whose potential it is; None for one that was made otherwise.
     ends
-        What orbits end at besides exits, of any kind of `engine.systems.outcomes`; `centres` and `escape_radius` replace those of
+        What orbits end at besides exits, such as a `Centre`; `centres` and `escape_radius` replace those of
         their kinds.
+    exit_names
+        Names of the exits in channel order, such as ("L2", "L1"), which have no influence on any result; they are used where
+        there are as many exits.
 
     Raises
     ------
@@ -92,11 +99,12 @@ class Potential(Result):
     origin: tuple[float, float] = (0.0, 0.0)
     lineage: Lineage = field(default=SEARCHED, repr=False)
     system: System | None = field(default=None, repr=False, compare=False)
+    exit_names: tuple[str, ...] = field(default=(), repr=False, compare=False)
     inner_names: ClassVar = Result.inner_names | {
-        "check_at_rest", "check_same_motion", "check_without_centres", "checked_t_max", "continued", "form", "gaps",
+        "check_at_rest", "check_same_motion", "check_without_centres", "checked_t_max", "continued", "exit_names", "form", "gaps",
         "hessian_matrix", "in_well_units", "lineage", "reversed_in_time", "tori_are_evidence", "units", "well",
     }  # fmt: skip
-    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system"), "terms")
+    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names"), "terms")
 
     def __init__(
         self,
@@ -110,6 +118,7 @@ class Potential(Result):
         *,
         ends: Sequence[End] = (),
         system: System | None = None,
+        exit_names: Sequence[str] = (),
     ) -> None:
         check_type("name", name, str)
         if isinstance(form, Expression):
@@ -129,6 +138,7 @@ class Potential(Result):
             "origin": (checked_number("origin", origin[0]), checked_number("origin", origin[1])),
             "lineage": lineage,
             "system": system,
+            "exit_names": tuple(_checked(exit_names, "exit_names", str)),
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
@@ -155,12 +165,12 @@ class Potential(Result):
 
     @property
     def critical_points(self) -> np.ndarray:
-        """(n, 2) all points with ∇V = 0, see `Well.critical_points`."""
+        """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). ValueError if they form a curve."""
         return self.well.critical_points
 
     @property
     def saddles(self) -> np.ndarray:
-        """(n, 2) exit saddles in channel order, see `Well.saddles`."""
+        """(n, 2) the saddles that lead out of the well at the origin, in channel order; none with an escape radius."""
         return self.well.saddles
 
     @property
@@ -170,17 +180,20 @@ class Potential(Result):
 
     @property
     def escape_energy(self) -> float:
-        """The lowest energy at which orbits can escape, see `Well.escape_energy`."""
+        """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none.
+
+        It is −∞ with an escape radius, because orbits can then start outside the saddles at every energy.
+        """
         return self.well.escape_energy
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
         """What orbits can end at: the exits in channel order, then `ends`; the first one is fate 1."""
-        return self.well.outcomes
+        return self.outcomes_at(-np.inf) if self.exit_names else self.well.outcomes
 
     def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
         """The outcomes as `outcomes`, named as exits are at an energy, or in a range of energies (low, high)."""
-        return self.well.outcomes_at(energy)
+        return self.well.outcomes_at(energy, self.exit_names if len(self.exit_names) == self.channels else ())
 
     @property
     def units(self) -> WellUnits:
@@ -263,7 +276,7 @@ class Potential(Result):
         nearest = minima[np.argmin(np.hypot(*(minima - place).T))].tolist()
         ends = tuple(end.moved(*nearest) for end in self.ends)
         origin = self.origin[0] + nearest[0], self.origin[1] + nearest[1]
-        return self._changed(form=self.form.moved(*nearest), ends=ends, origin=origin)
+        return self._changed(form=self.form.moved(*nearest), ends=ends, origin=origin, exit_names=())
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
         """Return the potential with other centres and another escape radius; the parameters are those of `Potential`."""
@@ -275,7 +288,12 @@ class Potential(Result):
         return self._changed(rotation=-self.rotation) if self.rotation else self
 
     def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
-        """`t_max` as a float, 0 < t_max ≤ longest; in units of the well where its unit of time is longer than 1."""
+        """`t_max` as a float, 0 < t_max ≤ longest; in units of the well where its unit of time is longer than 1.
+
+        None stands for 1e5, or a shorter time where bounded orbits are followed to the end.
+        """
+        if t_max is None:
+            t_max = 1e5 if self.tori_are_evidence else _SHORT_TIME / (abs(self.rotation) or 1.0)
         return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
 
     def check_same_motion(self, other: Potential, what: str) -> None:
@@ -344,6 +362,36 @@ class Potential(Result):
         """H of states (…, 4) = x, y, px, py."""
         x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
         return 0.5 * (px * px + py * py) + self.value(x, y)
+
+    def jacobi_constant(self, energy: Any) -> Any:
+        """The Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays have the same shape.
+
+        C = −2H about the axis of the frame, in the problem of three bodies the barycentre, where U = Σ m/r + ½ (x² + y²). In
+        the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Where authors add μ(1 − μ) to C, theirs is larger by it.
+
+        Raises
+        ------
+        ValueError
+            If the frame does not rotate.
+
+        Examples
+        --------
+        >>> from escape_explorer import POTENTIALS
+        >>> hill, earth_moon = POTENTIALS["Hill"], POTENTIALS["Earth-Moon"]
+        >>> round(hill.jacobi_constant(hill.escape_energy), 5), round(earth_moon.jacobi_constant(earth_moon.escape_energy), 5)
+        (4.32675, 3.18834)
+        """
+        return self._squared_speed_of_origin - 2.0 * energy
+
+    def jacobi_energy(self, constant: Any) -> Any:
+        """The energy H of Jacobi constants, see `jacobi_constant`."""
+        return 0.5 * (self._squared_speed_of_origin - constant)
+
+    @property
+    def _squared_speed_of_origin(self) -> float:
+        if not self.rotation:
+            raise ValueError(f"potential={self.name}: its frame must rotate for a Jacobi constant")
+        return squared_speed_of_origin(self.form, self.rotation)
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Potential:
         """This potential with other frequencies of its well and another strength of its perturbation.

@@ -22,14 +22,18 @@ def describe_potential(potential: Potential) -> dict[str, Any]:
         "rotation": potential.rotation,
         **{kind.attribute: kind.write([end for end in potential.ends if isinstance(end, kind)]) for kind in end_kinds()},
         "origin": json.dumps(potential.origin),
+        **({"exit_names": json.dumps(potential.exit_names)} if potential.exit_names else {}),
     }
 
 
 def describe_run(potential: Potential, **request: Any) -> dict[str, Any]:
     """How a computation with a potential was made: the potential, what was asked for, the integrator and the version."""
+    energy = request.get("energy")
+    constant = {"jacobi_constant": potential.jacobi_constant(energy)} if potential.rotation and isinstance(energy, float) else {}
     return {
         **describe_potential(potential),
         **request,
+        **constant,
         "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
         "version": metadata.version("escape-explorer"),
     }

@@ -182,15 +182,18 @@ class Well(ReadOnlyArrays):
         numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[below]
         return numbers
 
-    def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
-        """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high)."""
+    def outcomes_at(self, energy: float | tuple[float, float], given: Sequence[str] = ()) -> tuple[Outcome, ...]:
+        """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high).
+
+        given: the names of all channels; without them an exit is called "channel 1".
+        """
         low, high = energy if isinstance(energy, tuple) else (energy, energy)
-        if not self.merged_exits(high):
+        if not (given or self.merged_exits(high)):
             return self.outcomes
         lowest = self.exit_numbers(low)
-        names = [describe_channel(channel, self.channel_mergers, low, high) for channel in range(1, self.channels + 1)]
+        names = [describe_channel(channel, self.channel_mergers, low, high, given) for channel in range(1, self.channels + 1)]
         exits = [
-            Exit.outcome(channel, f"{Exit.word} {name}", occurs=bool(lowest[channel] == channel))
+            Exit.outcome(channel, name if given else f"{Exit.word} {name}", occurs=bool(lowest[channel] == channel))
             for channel, name in enumerate(names, 1)
         ]
         return (*exits, *self.outcomes[self.channels :])

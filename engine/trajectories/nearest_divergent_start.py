@@ -12,7 +12,7 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.validation import checked_number, checks_types
 from engine.propagation.classification import classify_in_well_units
 from engine.propagation.fates import Fate, OrbitResult, name_fate
-from engine.slices.energies import Energy
+from engine.slices.axes import Energy
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.systems.outcomes import Outcome
@@ -69,7 +69,7 @@ def find_divergent_start(
     energy: Energy,
     x: float,
     ordinate: float,
-    t_max: float = 1e5,
+    t_max: float | None = None,
     *,
     furthest: float | None = None,
     execution: Execution = DEFAULT_EXECUTION,

@@ -6,13 +6,13 @@ import functools
 
 import numpy as np
 
-from engine import DescriptorMap, EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
+from engine import EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
 from engine.jobs.job import Job
 from engine.maps.descriptors import DEFAULT_DURATION, checked_choices
+from engine.results import DescriptorMap
 from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Layer, Pixels, Setting, Settings
-from plots.layers.legend import ColourScale, Legend
-from plots.layers.picture import Picture, ShownMap
+from plots.layers.picture import ColourScale, Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
 from plots.pictures.palette import Entry, Palette
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from plots.layers.legend import Legend
-from plots.layers.picture import Picture, ShownMap
+from plots.layers.picture import Legend, Picture, ShownMap
 from plots.pictures.palette import Palette
 
 

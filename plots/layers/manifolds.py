@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine import MapSpec, StableManifolds, find_stable_manifolds
+from engine import MapSpec, find_stable_manifolds
 from engine.jobs.job import Job
 from engine.periodic.stable_manifolds import MOST_IMAGES, ManifoldArc
-from engine.slices.section import SECTION
+from engine.results import StableManifolds
+from engine.slices.planes import SECTION
 from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
 from plots.pictures.palette import Entry, Mark, Palette
 
@@ -72,8 +73,8 @@ def _job(spec: MapSpec, settings: Settings) -> Job[StableManifolds]:
 
 
 def _refusal(spec: MapSpec) -> str:
-    if spec.plane != SECTION.plane or spec.backward:
-        return f"Stable manifolds are curves in the {SECTION.plane.title} plane and are drawn on maps forward in time there only."
+    if spec.plane != SECTION or spec.backward:
+        return f"Stable manifolds are curves in the {SECTION.title} plane and are drawn on maps forward in time there only."
     return "Stable manifolds are found in frames that do not rotate only." if spec.potential.rotation else ""
 
 
@@ -88,7 +89,7 @@ MANIFOLDS = Layer(
     count=Count("IMAGES", MOST_IMAGES),
     settings=(IMAGE,),
     select=lambda manifolds, settings: select_image(manifolds, IMAGE.value_in(settings)),
-    spec_of=lambda manifolds: MapSpec(manifolds.potential, SECTION.plane, manifolds.energy),
+    spec_of=lambda manifolds: MapSpec(manifolds.potential, SECTION, manifolds.energy),
     over=Over(pictures=("curves", "basins", "crossings"), legend=_entries, strokes=manifold_strokes),
     has_table=True,
 )

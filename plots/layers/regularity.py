@@ -6,12 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from engine import EscapeMap, Evidence, Fate, MapSpec, Regularity, RegularityMap, compute_regularity
+from engine import EscapeMap, Evidence, Fate, MapSpec, Regularity, compute_regularity
 from engine.jobs.job import Job
+from engine.results import RegularityMap
 from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Code, Layer, Pixels, Settings, occurring_entries
-from plots.layers.legend import Legend
-from plots.layers.picture import Picture, ShownMap
+from plots.layers.picture import Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
 from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
 

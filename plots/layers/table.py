@@ -9,10 +9,9 @@ from types import MappingProxyType
 from plots.layers.descriptors import DESCRIPTORS
 from plots.layers.escapes import BASINS, COMPARED, CROSSINGS, CURVES, DIFFERENCES, TIMES
 from plots.layers.layer import Layer, Setting
-from plots.layers.legend import Legend
 from plots.layers.manifolds import MANIFOLDS
 from plots.layers.origins import ORIGINS
-from plots.layers.picture import Picture, ShownMap
+from plots.layers.picture import Legend, Picture, ShownMap
 from plots.layers.regularity import REGULARITY
 from plots.layers.trust import TRUST
 from plots.pictures.palette import Entry

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine import MEASURES, Measure, Sweep
+from engine import MEASURES, Measure
+from engine.results import Sweep
 
 SHARES = MEASURES["shares"]
 """The measure of the first panel, which has a curve for each outcome."""

@@ -11,8 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import DecayLaws, EscapeStatistics, Fate, Measure, Outcome, Sweep
+from engine import Fate, Measure, Outcome
 from engine.measures.decay_laws import LawFit
+from engine.results import DecayLaws, EscapeStatistics, Sweep
 from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
 from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
 from plots.pictures.sweep_panels import CURVE_PANELS, SHARES, is_measured

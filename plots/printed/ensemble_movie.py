@@ -18,8 +18,9 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
-from engine import Fate, Potential, SampledOrbits, Window, compute_flux
+from engine import Fate, Potential, Window, compute_flux
 from engine.foundations.extras import require_package
+from engine.results import SampledOrbits
 from plots.pictures.orbit_curves import find_well_window
 from plots.pictures.palette import LIGHT, Palette
 from plots.printed.figure_axes import RENDER_LOCK, label_axes, name_panel, new_figure, set_font, style_axes

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from engine import EscapeMap, Potential, Sweep, Window, compute_statistics
+from engine import EscapeMap, Potential, Window, compute_statistics
+from engine.results import Sweep
 from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.pictures.orbit_curves import OrbitCurves, initial_state
 from plots.pictures.palette import Palette

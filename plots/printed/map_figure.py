@@ -28,13 +28,12 @@ from engine import (
     Window,
 )
 from engine.exits.lyapunov_orbits import find_known_exits
-from engine.slices.energies import common_energy
+from engine.slices.axes import common_energy
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from plots.layers.layer import Stroke
-from plots.layers.legend import ColourScale
 from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.layers.map_images import picture_pixels
-from plots.layers.picture import ShownMap
+from plots.layers.picture import ColourScale, ShownMap
 from plots.layers.table import LAYERS, TITLES, map_legend
 from plots.pictures.axis_labels import label_axis
 from plots.pictures.palette import LIGHT, MARK_EDGE, Palette

@@ -14,22 +14,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import (
-    DecayLaws,
-    EscapeMap,
-    EscapeStatistics,
-    LyapunovOrbit,
-    Orbit,
-    Potential,
-    PotentialReview,
-    Result,
-    SampledOrbits,
-    Sweep,
-    UncertaintyExponent,
-    Window,
-)
+from engine import EscapeMap, LyapunovOrbit, Orbit, Potential, Result, Window
 from engine.foundations.extras import require_package
 from engine.maps.pixels import PixelAnalysis
+from engine.results import DecayLaws, EscapeStatistics, PotentialReview, SampledOrbits, Sweep, UncertaintyExponent
 from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from plots.layers.layer import Layer

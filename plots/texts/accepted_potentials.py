@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 
-from engine import PotentialReview
 from engine.foundations.validation import LARGEST_NUMBER
+from engine.results import PotentialReview
 from engine.systems.review.energy_ranges import HIGHEST_SHOWN
 from plots.pictures.palette import PAPER
 

@@ -9,7 +9,8 @@ from importlib import metadata
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, Sweep, System, judge_orbit
+from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, Slice, System, judge_orbit
+from engine.results import OrbitVerdict, Sweep
 from engine.systems.system import TYPED
 from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 

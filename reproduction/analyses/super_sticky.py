@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine import EscapeMap, Fate, MapSpec, Regularity, RegularityMap, classify_orbits
+from engine import EscapeMap, Fate, MapSpec, Regularity, classify_orbits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.maps.pixels import MirrorPixels
+from engine.results import RegularityMap
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +34,7 @@ class SuperStickySearch:
     states
         (n, 4) x, y, px, py of the starts.
     fate, escape_time, crossings
-        (n,) as in `engine.Outcomes`, counted from the start; `Fate.BOUNDED` for orbits that do not escape by `t_max`.
+        (n,) as in `engine.results.Outcomes`, counted from the start; `Fate.BOUNDED` for orbits that do not escape by `t_max`.
     images
         Number of starts per integrated orbit: 2 for a mirror symmetric map, else 1.
     t_max

@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import CASES, EscapeMap, Fate, Plane, Window
-from plots.layers.legend import ColourScale
 from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.layers.map_images import picture_pixels
+from plots.layers.picture import ColourScale
 from plots.pictures.palette import PAPER
 from plots.pictures.time_scale import TimeScale, common_scale
 from plots.printed.figure_axes import add_figure_legend, label_axes, legend_handles, name_panel, new_figure

@@ -10,7 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import EscapeStatistics, Plane, compute_statistics, fit_decay_laws
+from engine import Plane, compute_statistics, fit_decay_laws
+from engine.results import EscapeStatistics
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from plots.printed.curve_figures import draw_decay_laws, draw_shares
 from plots.printed.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes

@@ -1,4 +1,4 @@
-"""Tables of docs/rotating-papers.md, one row for each map of a paper. Run: python -m reproduction.rotating.tables"""
+"""Tables of docs/reproduction.md, one row for each map of a paper. Run: python -m reproduction.rotating.tables"""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ _FITS = """\
 
 _LAWS = """\
 S(t) is the share of the starts inside, on (x, px), that have not escaped by t; a law is fitted from the time from which it
-holds ([escape laws](escape-laws.md))."""
+holds."""
 
 
 def write_fits(cache: MapCache) -> str:

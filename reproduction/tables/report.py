@@ -1,4 +1,4 @@
-"""Report of the numbers of the paper and the computed ones, as Markdown (docs/reproduction.md) and as CSV."""
+"""Report of the numbers of the paper and the computed ones, as Markdown and as CSV."""
 
 from __future__ import annotations
 
@@ -237,8 +237,8 @@ edge is fitted, too.
 Some statements need a definition:
 
 - A start is inside a basin if it and its eight neighbours escape through the same channel.
-- A start on a boundary is next to all basins if the boundary of each basin is within {boundary_pixels} pixels ([Wada](wada.md)).
-- The [uncertainty exponent](uncertainty-exponent.md) stands for the fat-fractal exponent of a footnote: both are 1 if there is no
+- A start on a boundary is next to all basins if the boundary of each basin is within {boundary_pixels} pixels (Wada).
+- The uncertainty exponent stands for the fat-fractal exponent of a footnote: both are 1 if there is no
   fractal.
 - Escape times near islands and near exits are medians over the neighbours of bounded starts and of starts outside.
 

@@ -30,7 +30,7 @@ from engine import (
     find_lyapunov_orbits,
     fit_decay_laws,
 )
-from engine.measures.labels import exit_labels
+from engine.measures.starts import exit_labels
 from engine.sweeps.measures import QUICK_CURVES
 from tests.cli.conftest import Run
 

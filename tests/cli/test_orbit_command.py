@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from engine import CASES, Plane, integrate_orbit, judge_orbit, start_states
+from engine import CASES, POTENTIALS, Plane, find_lyapunov_orbits, integrate_orbit, judge_orbit, start_states
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.palette import COLOUR_BLIND_SAFE
@@ -76,3 +76,26 @@ def test_start_outside_writes_files(run: Run, tmp_path: Path) -> None:
     assert code == 0
     assert "Outside" in out
     assert sorted(path.name for path in tmp_path.iterdir()) == ["orbit.csv", "orbit.png"]
+
+
+def test_jacobi_constant_stands_for_the_energy_of_a_rotating_frame(run: Run) -> None:
+    potential = POTENTIALS["Earth-Moon"]
+    code, out, _ = run("lyapunov", "Earth-Moon", "--jacobi", 3.17, "--json")
+    orbits = find_lyapunov_orbits(potential, potential.jacobi_energy(3.17))
+    assert code == 0
+    assert [(one["name"], one["period"]) for one in json.loads(out)["orbits"]] == [
+        (name, pytest.approx(orbit.period)) for name, orbit in zip(("L2", "L1"), orbits, strict=True)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (("Hill", "--energy", -2, "--jacobi", 4), "jacobi=4.0: give either --energy H or --jacobi C"),
+        (("I", "--jacobi", 3), "potential=I: its frame must rotate for a Jacobi constant"),
+        (("I",), "energy: give --energy H, or --jacobi C in a rotating frame"),
+    ],
+)
+def test_wrong_energies_are_refused(words: tuple[object, ...], problem: str, run: Run) -> None:
+    code, _, err = run("lyapunov", *words)
+    assert (code, problem in err) == (2, True)

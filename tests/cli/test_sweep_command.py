@@ -13,7 +13,8 @@ import xarray as xr
 
 import engine
 from cli.main import INTERRUPTED, INVALID_REQUEST
-from engine import CASES, Execution, Plane, Sweep, SweepSpec
+from engine import CASES, Execution, Plane, SweepSpec
+from engine.results import Sweep
 from tests.cli.conftest import Run
 
 SWEEP = ("sweep", "I", "--low", 0.13, "--high", 0.2, "--count", 3, "--resolution", "9x7", "--t-max", 50)

@@ -14,7 +14,6 @@ import pytest
 
 from engine import (
     CASES,
-    DivergentStart,
     EscapeMap,
     Fate,
     LyapunovOrbit,
@@ -34,6 +33,7 @@ from engine import (
     judge_orbit,
     review_potential,
 )
+from engine.results import DivergentStart
 from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits

@@ -1,4 +1,4 @@
-"""Every kind of outcome is typed, kept in files, told in words and coloured; so is the one that CONTRIBUTING.md adds."""
+"""Every kind of outcome is typed, kept in files, told in words and coloured; so is the one that docs/extending.md adds."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import pytest
 
 from engine import Centre, MapSpec, Plane, Potential, compute_map, compute_origin_fates, parse_formula, write_formula
 from engine.systems import outcomes
+from engine.systems.formulas.stored_potential import read_potential
 from engine.systems.outcomes import KINDS, EscapeCircle
 from engine.systems.provenance import describe_potential
-from engine.systems.stored_potential import read_potential
 from plots.layers.origins import ORIGINS
 from plots.pictures.palette import PALETTES, end_places
-from tests.contributing import run_example
+from tests.extending import run_example
 
 WELL = "½(x² + y²) − xy²"
 DOCK = (0.2, 0.3, 0.05, "the dock")
@@ -21,7 +21,7 @@ DOCK = (0.2, 0.3, 0.05, "the dock")
 @pytest.fixture
 def station(monkeypatch: pytest.MonkeyPatch) -> type[outcomes.End]:
     """The kind of the example, with some colours."""
-    kind: type[outcomes.End] = run_example("Example: add a kind of outcome", outcomes)["Station"]
+    kind: type[outcomes.End] = run_example("Example: add a kind of outcome", vars(outcomes))["Station"]
     monkeypatch.setitem(KINDS, kind.key, kind)
     for palette in PALETTES.values():
         monkeypatch.setitem(palette.of_kinds, kind.key, ("#005f73", "#0a9396", "#94d2bd", "#e9d8a6"))

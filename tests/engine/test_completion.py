@@ -43,7 +43,7 @@ def test_a_prompt_does_not_complete_inner_names() -> None:
 def test_all_names_can_be_imported_at_once() -> None:
     names: dict[str, object] = {}
     exec("from escape_explorer import *", names)
-    assert {"Explorer", "compute_map", "FormulaError", "LawFit"} <= names.keys()
+    assert {"Explorer", "compute_map", "FormulaError", "open_result"} <= names.keys()
 
 
 def test_without_the_page_its_name_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,7 +13,7 @@ from urllib.parse import parse_qsl, urlencode
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.link_summary import link_sentence, link_title
+from app.session.page import link_sentence, link_title
 from app.state.permalink import LINKED, linked_view, read_link, write_link
 from app.state.view_state import ViewState
 from engine import CASES

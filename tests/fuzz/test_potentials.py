@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from app.state.permalink import linked_view, read_link, write_link
 from app.state.view_state import ViewState
 from cli.arguments import file_name_part, find_potential
-from engine import Potential, PotentialReview, System, parse_formula, review_potential, write_formula
+from engine import Potential, System, parse_formula, review_potential, write_formula
+from engine.results import PotentialReview
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED

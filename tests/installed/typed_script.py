@@ -10,23 +10,18 @@ import escape_explorer
 from escape_explorer import (
     CASES,
     POTENTIALS,
-    BasinEntropy,
     Coordinate,
-    DecayLaws,
     EscapeMap,
     Execution,
     Fate,
     MapSpec,
     Orbit,
-    Outcomes,
     ParameterAxis,
     Plane,
     Potential,
-    RegularityMap,
     Slice,
     SweepSpec,
     System,
-    WadaTest,
     Window,
     classify_orbits,
     compute_basin_entropy,
@@ -43,6 +38,7 @@ from escape_explorer import (
     plan_sweep,
     sample_starts,
 )
+from escape_explorer.results import BasinEntropy, DecayLaws, Outcomes, RegularityMap, WadaTest
 
 EDGES = (-1.0, 1.0, -1.0, 1.0)
 

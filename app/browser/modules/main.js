@@ -1,14 +1,14 @@
 // @ts-check
 /** Connects the component of the page, see `app/browser/engine_component.py`, with the modules. */
 
-import {Card} from "./card.js"
-import {Frames} from "./frames.js"
-import {lightPixels} from "./legend.js"
-import {Overlay} from "./overlay.js"
-import {Player} from "./player.js"
-import {Pool, workerCount} from "./pool.js"
-import {setPresent} from "./present.js"
-import {Preview} from "./preview.js"
+import {Card} from "./gestures/card.js"
+import {Frames} from "./workers/frames.js"
+import {lightPixels} from "./painting/legend.js"
+import {Overlay} from "./painting/overlay.js"
+import {Player} from "./gestures/player.js"
+import {Pool, workerCount} from "./workers/pool.js"
+import {setPresent} from "./gestures/present.js"
+import {Preview} from "./gestures/preview.js"
 
 /** The smallest module with an instruction on vectors. */
 // prettier-ignore
@@ -38,7 +38,7 @@ export function start(model, el) {
       .renderers.map((/** @type {any} */ renderer) => renderer.data_source)
       .find((/** @type {any} */ source) => source?.name === name)
   const kernels = WebAssembly.compileStreaming(fetch(new URL("./kernels.wasm", import.meta.url)))
-  const pool = new Pool(() => new Worker(new URL("./worker.js", import.meta.url), {type: "module"}))
+  const pool = new Pool(() => new Worker(new URL("./workers/worker.js", import.meta.url), {type: "module"}))
   const frames = new Frames(pool, workerCount(), (view, pixels, moving) => preview.show(view, pixels, moving))
   /** @type {Preview} */
   const preview = new Preview(find, findSource, frames, new Overlay(el))
@@ -61,7 +61,7 @@ export function start(model, el) {
   )
   document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyreleased", () => preview.release())
-  /** @type {{system: import("./system.js").System, modules: import("./integrator.js").Modules} | null} */
+  /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
   let taken = null
   const tellPresent = () => {
     const [colours, labels] = [() => model.view.colours ?? [], () => model.view.labels ?? []]

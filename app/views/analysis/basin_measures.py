@@ -14,9 +14,10 @@ from app.state.glossary import with_terms
 from app.views.analysis.measure_charts import PairsChart, SurvivalChart
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button, number_rows
-from engine import MEASURES, DecayLaws, Measure, Result, UncertaintyExponent, Window
+from engine import MEASURES, Measure, Result, Window
 from engine.foundations.wording import format_decimals, format_number
 from engine.measures.measure import Quantity
+from engine.results import DecayLaws, UncertaintyExponent
 
 TOLD: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
 """The measures that the page tells in words, in their order."""
@@ -121,7 +122,8 @@ def _rows_of(measure: Measure, result: Any, sentence: str) -> str:
     numbers = {label: text for label, text in shown if label and text}
     details = f" <button type='button' class='term' popovertarget='told-{measure.name}'>details</button>"
     place = f", {measure.place}" if measure.place else ""
-    head = f"<b>{measure.title}</b> {measure.meaning}{place}{details if numbers else f'<br>{escape(sentence)}'}"
+    said = "" if numbers else f"<br>{escape(sentence)}"
+    head = f"<b>{measure.title}</b>{details if numbers else ''}<br>{measure.meaning}{place}{said}"
     rows = "".join(f"<tr><td>{label}</td><td class='number'>{text}</td></tr>" for label, text in numbers.items())
     return f"<tbody><tr><th colspan=2>{head}</th></tr>{rows}</tbody>"
 

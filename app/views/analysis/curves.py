@@ -18,7 +18,8 @@ from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
-from engine import Measure, Outcome, Sweep, System
+from engine import Measure, Outcome, System
+from engine.results import Sweep
 from engine.systems.parameters import symbol_of
 from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
 from plots.pictures.sweep_panels import CURVE_PANELS, SHARES, find_numbers

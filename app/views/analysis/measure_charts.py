@@ -12,8 +12,8 @@ from bokeh.plotting import figure
 from app.views.components.legends import legend
 from app.views.components.plots import chart_hover, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
-from engine import DecayLaws, UncertaintyExponent
 from engine.measures.decay_laws import LawFit
+from engine.results import DecayLaws, UncertaintyExponent
 from plots.pictures.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
 _LAW_POINTS = 200

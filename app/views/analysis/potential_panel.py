@@ -13,7 +13,8 @@ from app.browser.inputs.formula_box import FormulaBox
 from app.browser.inputs.parameter_slider import ParameterSlider
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import button, flex_row
-from engine import PotentialReview, System
+from engine import System
+from engine.results import PotentialReview
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
 from engine.systems.parameters import WELL_PARAMETERS

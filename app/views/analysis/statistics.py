@@ -12,16 +12,19 @@ import panel as pn
 from bokeh.models import LogAxis, LogTicker
 from bokeh.models.dom import HTML
 
+from app.job_clients.shown_results import ShownResults
 from app.state.help_texts import title_with_help
+from app.state.view import Analysis
+from app.state.view_state import ViewState
 from app.views.components.legends import patch
-from app.views.components.numbers import grouped, percent, percent_range
+from app.views.components.numbers import percent, percent_range
 from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
-from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
-from engine.foundations.wording import format_number
+from engine import EscapeMap, Fate, compute_statistics
+from engine.foundations.wording import format_number, format_whole
 from engine.propagation.fates import UNRESOLVED
-from plots.pictures.palette import PAPER, Palette
+from engine.results import EscapeStatistics
 from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
 
 CROSSINGS, PROBABILITY = "n", "p"
@@ -41,43 +44,30 @@ class StatisticsView:
 
     Parameters
     ----------
-    on_whole
-        Called to remove the box.
+    state
+        The view state, whose box the button removes.
+    results
+        Of the session.
     on_copy
         Called with the table as tab-separated text.
     """
 
-    def __init__(self, on_whole: Callable[[], None], on_copy: Callable[[str], None]) -> None:
-        self._palette = PAPER
+    def __init__(self, state: ViewState, results: ShownResults, on_copy: Callable[[str], None]) -> None:
+        self._state = state
         self._frame: EscapeMap | None = None
-        self._box: Window | None = None
-        self._active = False
+        self._is_built = False
         self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
-        self.whole = button(COUNT_WHOLE, on_whole, visible=False)
+        self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.copy = copy_button(self._rows, on_copy)
+        state.follow(lambda box: self.whole.param.update(visible=box is not None), "box")
+        state.param.watch(lambda *events: self._count(), ["box", "analysis", "palette"])
+        results.param.watch(lambda event: self._show(event.new), "frame")
 
-    def activate(self, active: bool) -> None:
-        """Count while the section is on the page."""
-        self._active = active
-        self._count()
-
-    def show(self, frame: EscapeMap) -> None:
-        """Show the statistics of a frame."""
-        self._frame = frame
-        self._count()
-
-    def show_box(self, box: Window | None) -> None:
-        """Count in a box; None is the whole view."""
-        if box == self._box:
-            return
-        self._box = box
-        self.whole.visible = box is not None
-        self._count()
-
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the outcomes."""
-        self._palette = palette
-        self._count()
+    def _show(self, frame: EscapeMap | None) -> None:
+        """Count the pixels of a frame, once it has its full resolution."""
+        if frame is not None and frame.stride == 1:
+            self._frame = frame
+            self._count()
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Make the content of the section."""
@@ -87,13 +77,16 @@ class StatisticsView:
         self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escapes after n crossings")
         _describe(self._probabilities, _PROBABILITIES_TEXT)
         histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
+        self._is_built = True
+        self._count()
         left = pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])
         return [left, histogram, probabilities]
 
     def _count(self) -> None:
-        if self._frame is None or not self._active:
+        """Count while the section is on the page."""
+        if self._frame is None or not self._is_built or self._state.analysis is not Analysis.STATISTICS:
             return
-        statistics = compute_statistics(self._frame, self._box)
+        statistics = compute_statistics(self._frame, self._state.box)
         self.table.object = self._table(statistics)
         self._show_times(*statistics.time_histogram(BINS))
         self._show_probabilities(statistics.escape_probabilities[: len(_NUMBERS)])
@@ -112,7 +105,7 @@ class StatisticsView:
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Name, colour and code of each fate in the table."""
-        palette, outcomes = self._palette, statistics.outcomes
+        palette, outcomes = self._state.colours, statistics.outcomes
         entries = zip(palette.end_entries(outcomes), outcomes, strict=True)
         ends = [(entry.label, entry.colour, fate) for fate, (entry, outcome) in enumerate(entries, 1) if outcome.occurs]
         bounded = [("bounded", palette.bounded, int(Fate.BOUNDED))]
@@ -127,7 +120,7 @@ class StatisticsView:
             for name, colour, code in self._shares(statistics)
         )
         body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in _facts(statistics).items())
-        place = "the whole view" if self._box is None else "the box drawn on the maps"
+        place = "the whole view" if self._state.box is None else "the box drawn on the maps"
         caption = f"Interior starts in {place}, with 95 % intervals"
         return f"<table aria-label='statistics'><caption>{caption}</caption>{body}</table>"
 
@@ -135,7 +128,7 @@ class StatisticsView:
         """The table, with shares at full precision."""
         if self._frame is None:
             return []
-        statistics = compute_statistics(self._frame, self._box)
+        statistics = compute_statistics(self._frame, self._state.box)
         shares, intervals = statistics.shares, statistics.share_intervals
         rows: list[tuple[str, ...]] = [("fate", "share", "95 % low", "95 % high")]
         for name, _, code in self._shares(statistics):
@@ -146,7 +139,7 @@ class StatisticsView:
 
 def _facts(statistics: EscapeStatistics) -> dict[str, str]:
     return {
-        "interior starts": grouped(statistics.starts),
+        "interior starts": format_whole(statistics.starts),
         "direct escapes": percent(statistics.direct_share, 2),
         "mean escape time": _number(statistics.mean_escape_time),
         "median escape time": _number(statistics.median_escape_time),

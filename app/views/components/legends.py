@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from app.views.components.numbers import grouped
-from plots.layers.legend import ColourScale, ColourTable, Legend
+from engine.foundations.wording import format_whole
+from plots.layers.picture import ColourScale, ColourTable, Legend
 from plots.pictures.palette import Entry, Mark, short_label
 
 # Colours of a scale that the browser interpolates.
@@ -36,10 +36,10 @@ def legend(entries: Iterable[Entry]) -> str:
 
 
 def picture_legend(of: Legend) -> str:
-    """HTML of the legend in the frame of a picture, where there is little room."""
+    """HTML of the entries of the legend below a picture, where there is little room."""
     scale = _scale(of.scale) if of.scale is not None else ""
     sentence = f" <span>{escape(of.sentence)}</span>" if of.sentence else ""
-    return f"<div class='legend'>{_classes(of)}{scale}{sentence}{legend_items(of.over)}</div>"
+    return f"{_classes(of)}{scale}{sentence}{legend_items(of.over)}"
 
 
 def _classes(of: Legend) -> str:
@@ -63,7 +63,7 @@ def _scale(scale: ColourScale) -> str:
 
 
 def _number(value: float) -> str:
-    return grouped(value) if value == round(value) else f"{value:g}"
+    return format_whole(value) if value == round(value) else f"{value:g}"
 
 
 def _table(table: ColourTable) -> str:

@@ -1,13 +1,6 @@
-"""Numbers as the page writes them."""
+"""Percentages as the page writes them."""
 
 from __future__ import annotations
-
-from engine.foundations.wording import format_whole
-
-
-def grouped(value: float) -> str:
-    """A whole number with spaces between groups of three digits: 100 000."""
-    return format_whole(value)
 
 
 def percent(share: float, decimals: int = 1) -> str:

@@ -89,7 +89,7 @@ def annotate_picture(
     names
         Of the axes, beside them.
     legend, notes
-        Below the frame; the legend is HTML.
+        Below the frame; the legend is HTML, see `legends.picture_legend`.
     """
     enlarge = f"Enlarge, or show all: {title}"
     abscissa, ordinate = (_MOMENTUM.sub(r"p<sub>\1</sub>", name) for name in names)
@@ -97,8 +97,8 @@ def annotate_picture(
         f"{title_with_help(title, plot.name, under_way)}"
         f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
         f"<i class='axis-name abscissa'>{abscissa} →</i><i class='axis-name ordinate'>{ordinate} ↑</i>"
-        f"<div class='foot' data-picture='{plot.name}'>{legend}"
-        f"{''.join(f'<span>{note}</span>' for note in notes)}</div>"
+        f"<div class='foot legend' data-picture='{plot.name}'>{legend}"
+        f"{''.join(f'<small>{note}</small>' for note in notes)}</div>"
     )
     # Not a new model: for each one Bokeh searches all models of the page.
     plot.elements[0].html = html

@@ -47,8 +47,14 @@ class Switches(_NamedGroup, pn.widgets.CheckBoxGroup):
 
 def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **options: Any) -> pn.widgets.Button:
     """A button; `kind` is "default", "primary" for the main action of a section, or "light" for one without a frame."""
+
+    def click(event: Any) -> None:
+        # Panel runs callbacks of widgets without the session's lock, which changes of bare Bokeh models need; held ones have it.
+        with pn.io.hold():
+            on_click()
+
     widget = pn.widgets.Button(label=label, color=kind, **options)
-    widget.on_click(lambda event: on_click())
+    widget.on_click(click)
     return widget
 
 
@@ -93,7 +99,7 @@ def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, na
     """Make a widget show an attribute of a state, and write to it."""
 
     def write(event: Any) -> None:
-        # Panel runs callbacks of widgets without the session's lock, which changes of bare Bokeh models need; held ones have it.
+        # Held for the same reason as in `button`.
         with pn.io.hold():
             state.param.update({name: event.new})
 

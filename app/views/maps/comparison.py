@@ -7,7 +7,7 @@ from typing import Any
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper
 from bokeh.plotting import figure
 
-from app.views.components.curve_layers import CurveLayers
+from app.views.maps.curve_layers import CurveLayers
 from app.views.maps.hover import fate_hover
 from app.views.maps.map_ranges import MapRanges
 from engine import EscapeMap, Slice

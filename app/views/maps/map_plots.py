@@ -26,10 +26,10 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.state.view import PICTURES
-from app.views.components.curve_layers import CurveLayers
 from app.views.components.legends import picture_legend
 from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
 from app.views.maps.comparison import ComparedMap
+from app.views.maps.curve_layers import CurveLayers
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_ranges import MapRanges, TwoFingers
 from app.views.maps.map_toolbar import Drag
@@ -307,7 +307,7 @@ class MapsView:
             self.compared.draw(plot, self._mappers[name])
             self.marks.draw(plot, sections=False)
             return
-        # What the browser draws by itself, see modules/pictures.js.
+        # What the browser draws by itself, see modules/painting/pictures.js.
         plot.tags = ["map", MAPS.index(name)]
         image = plot.add_glyph(self.source, Image(image=picture.column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if picture.has_times:

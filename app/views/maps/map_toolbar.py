@@ -7,6 +7,7 @@ from enum import StrEnum
 
 import panel as pn
 
+from app.state.view_state import ViewState
 from app.views.components.widgets import SegmentedControl, button, flex_row, keep_place
 
 
@@ -24,14 +25,15 @@ class MapToolbar:
 
     Parameters
     ----------
-    home
-        Called when the button is pressed.
+    state
+        The view state, whose window the button removes.
     set_drag
         Called with the mode that is chosen.
     """
 
-    def __init__(self, home: Callable[[], None], set_drag: Callable[[Drag], None]) -> None:
-        self.home = button("Whole plane", home, kind="light", margin=0, styles=keep_place(shown=False))
+    def __init__(self, state: ViewState, set_drag: Callable[[Drag], None]) -> None:
+        show_all = lambda: state.param.update(window=None)  # noqa: E731
+        self.home = button("Whole plane", show_all, kind="light", margin=0, styles=keep_place(shown=False))
         self.drag = SegmentedControl(
             label="Drag over a map to",
             options=[Drag.PAN, Drag.ZOOM, Drag.COUNT],
@@ -40,6 +42,8 @@ class MapToolbar:
             css_classes=["segmented", "narrow"],
         )
         self.drag.param.watch(lambda event: set_drag(event.new), "value")
+        # The button is seen while it leads somewhere.
+        state.follow(lambda window: self.home.param.update(styles=keep_place(shown=window is not None)), "window")
 
     def layout(self, *before: pn.viewable.Viewable) -> pn.viewable.Viewable:
         """A row of the parts `before`, the choice, and the button."""
@@ -50,7 +54,3 @@ class MapToolbar:
     def begin_touch(self) -> None:
         """The page is used by touch: one finger scrolls the page until another mode is chosen."""
         self.drag.param.update(options=[Drag.SCROLL, Drag.PAN, Drag.ZOOM, Drag.COUNT], value=Drag.SCROLL)
-
-    def follow(self, *, zoomed: bool) -> None:
-        """Show the button while it leads somewhere."""
-        self.home.styles = keep_place(shown=zoomed)

@@ -13,12 +13,11 @@ from app.browser.components.orbit_list import OrbitList
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.glossary import with_terms
 from app.views.components.collapsible_section import Fold
-from app.views.components.numbers import grouped
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, copy_button, flex_row, number_rows
 from engine import Coordinate, Orbit, Slice
-from engine.foundations.wording import format_number, format_time
-from engine.slices.section import SECTION
+from engine.foundations.wording import format_number, format_time, format_whole
+from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import IndicatorVerdict
 from plots.pictures.orbit_curves import initial_state
 from plots.pictures.palette import Palette
@@ -94,7 +93,7 @@ class OrbitControls:
         decided = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
         self.open_plane.visible = bool(decided)
         if decided:
-            self.open_plane.label = f"Open {SECTION.plane.title} at this {' and '.join(axis.symbol for axis in decided)}"
+            self.open_plane.label = f"Open {SECTION.title} at this {' and '.join(axis.symbol for axis in decided)}"
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
@@ -187,7 +186,7 @@ def _values(orbit: Orbit | None) -> str:
         "energy h": format_number(orbit.energy, 10),
         "start x, y": f"{format_number(orbit.x[0], 6)}, {format_number(orbit.y[0], 6)}",
         "start px, py": f"{format_number(orbit.px[0], 6)}, {format_number(orbit.py[0], 6)}",
-        "upward crossings of y = 0": grouped(orbit.crossings),
+        "upward crossings of y = 0": format_whole(orbit.crossings),
         "last SALI": format_number(orbit.sali[-1], 3),
         "relative energy error": format_number(orbit.energy_error, 2),
     }

@@ -21,7 +21,7 @@ from bokeh.plotting import figure
 from app.views.components.orbit_lines import band_columns, band_style, in_front, line_columns, line_style, lines, opacities
 from app.views.components.plots import FigurePane, history_figure, set_range
 from engine import CASES, integrate_orbit, start_states
-from engine.slices.section import SECTION
+from engine.slices.planes import SECTION
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
 from plots.pictures.palette import MARK_EDGE, PAPER, THRESHOLD, Palette
@@ -119,7 +119,7 @@ class OrbitPlots:
 def prepare() -> None:
     """Draw a long path once, so that datashader compiles its code."""
     potential = CASES["III"]
-    state = start_states(potential, SECTION.plane, 0.2, np.zeros(1), np.full(1, 0.1))[0]
+    state = start_states(potential, SECTION, 0.2, np.zeros(1), np.full(1, 0.1))[0]
     compute_orbit_curves(potential, integrate_orbit(potential, state, 5000.0))
 
 

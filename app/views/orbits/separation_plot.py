@@ -8,7 +8,7 @@ from bokeh.models import ColumnDataSource, Line, Range1d
 
 from app.views.components.plots import history_figure, set_decades, set_range
 from app.views.components.texts import TextPane
-from engine import Separation
+from engine.results import Separation
 from plots.pictures.palette import PAPER, Palette
 
 TITLE = "Distance of two orbits"

@@ -2,40 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from html import escape
 from math import isfinite
 
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.numbers import grouped, percent
+from app.views.components.numbers import percent
 from app.views.components.texts import TextPane
-from engine import EscapeMap, Fate, compute_statistics
-from engine.foundations.wording import format_time
+from engine import Fate, compute_statistics
+from engine.foundations.wording import format_time, format_whole
 from engine.propagation.fates import UNRESOLVED
 
 
 class AccessibleTable:
     """A table of what the page shows; it is only written while it is open."""
 
-    def __init__(self, state: ViewState) -> None:
-        self._state = state
-        self._frame: EscapeMap | None = None
-        self._orbits: Sequence[ChosenOrbit] = ()
+    def __init__(self, state: ViewState, results: ShownResults) -> None:
+        self._state, self._results = state, results
         self.text = TextPane("", name="accessible-table", sizing_mode="stretch_width", margin=(0, 10))
         self.fold = Fold("This page as a table", lambda: [self.text])
         self.fold.button.on_click(lambda event: self._write())
-
-    def show_map(self, frame: EscapeMap) -> None:
-        """Set the map."""
-        self._frame = frame
-        self._write()
-
-    def show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Set the orbits."""
-        self._orbits = orbits
-        self._write()
+        results.param.watch(lambda *events: self._write(), ["frame", "orbits"])
 
     def _write(self) -> None:
         if self.fold.is_open:
@@ -50,7 +38,7 @@ class AccessibleTable:
     def _view(self) -> list[tuple[str, str]]:
         state, reviewed = self._state, self._state.reviewed
         rows = [("system", reviewed.system.title), ("potential V(x, y)", reviewed.formula)]
-        rows += [("plane", state.plane.title), ("t_max", grouped(state.t_max))]
+        rows += [("plane", state.plane.title), ("t_max", format_whole(state.t_max))]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
         if state.window is not None:
             w = state.window
@@ -58,9 +46,10 @@ class AccessibleTable:
         return [*rows, ("energy h", f"{state.energy!r}")]
 
     def _map(self) -> list[tuple[str, str]]:
-        if self._frame is None:
+        frame = self._results.whole_map
+        if frame is None:
             return []
-        statistics = compute_statistics(self._frame)
+        statistics = compute_statistics(frame)
         shares = statistics.shares
         rows = [(end.action, percent(shares[fate], 2)) for fate, end in enumerate(statistics.outcomes, 1)]
         rows += [(UNRESOLVED, percent(shares[Fate.FAILED], 2))] if statistics.failed else []
@@ -71,7 +60,7 @@ class AccessibleTable:
     def _chosen(self) -> list[tuple[str, str]]:
         return [
             (f"orbit {place + 1}, from {one.start[0]:.6g}, {one.start[1]:.6g}", one.describe())
-            for place, one in enumerate(self._orbits)
+            for place, one in enumerate(self._results.orbits)
         ]
 
 

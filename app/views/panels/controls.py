@@ -14,10 +14,10 @@ from app.browser.inputs.number_box import NumberBox
 from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState
-from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
+from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
 from engine import CASES, Plane, Potential, Slice
 from engine.foundations.wording import format_number
 from engine.systems.catalogue.entry import EnergyRange
@@ -197,7 +197,7 @@ class Controls:
 
     def _follow_system(self) -> None:
         """Show slider, ticks, formula, channels and escape energy of the system."""
-        state, reviewed, energies = self.state, self.state.reviewed, self.state.energies
+        state, energies = self.state, self.state.energies
         self.case.value = self._case()
         self.other.color = "light" if self._case() else "primary"
         self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
@@ -221,7 +221,10 @@ class Controls:
         on_h = state.plane.energy_axis is not None
         is_below, is_above = state.energy < state.energies.low, state.energy > state.energies.high
         place = "below" if is_below else "above" if is_above else ""
-        note = f"h = {format_number(state.energy, 12)}, {place} the slider" if place else ""
+        notes = [f"h = {format_number(state.energy, 12)}, {place} the slider"] if place else []
+        if state.potential.rotation:
+            notes.append(f"C = {format_number(state.potential.jacobi_constant(state.energy), 9)}, the Jacobi constant")
+        note = "; ".join(notes)
         self.energy.param.update(disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
         self.exact_energy.disabled = on_h
         for shown in (self.energy, self.exact_energy):

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 
-from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
-from engine import EscapeMap, Sweep
-from engine.slices.energies import highest_energy
-from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
+from engine import EscapeMap
+from engine.slices.axes import highest_energy
 from plots.layers.table import LAYER_OF, TITLES
 from plots.printed.figure_files import (
     curves_figure_bytes,
@@ -29,41 +27,33 @@ FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curve
 """Titles of all figures."""
 
 
-@dataclass(frozen=True)
-class ShownResults:
-    """What the page shows; None and empty for what is not computed."""
-
-    frame: EscapeMap | None = None
-    analyses: MapAnalyses = NO_ANALYSES
-    orbits: Sequence[ChosenOrbit] = ()
-    curves: Sweep | None = None
-
-
 def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
     """Return the figures by title; they keep the results of this moment, even if the page changes afterwards."""
     choices: dict[str, Make] = {}
     drawings = [one.drawing for one in shown.orbits if one.drawing is not None]
-    if shown.frame is not None:
-        choices |= _map_choices(shown.frame, shown, state)
-        spec = shown.frame.spec
+    frame = shown.whole_map
+    if frame is not None:
+        choices |= _map_choices(frame, shown, state)
+        spec = frame.spec
         energy = highest_energy(spec.energy)
         choices[WELL] = partial(well_figure_bytes, spec.potential, energy, drawings, state.colours)
     if drawings:
         verdicts = [one.describe() for one in shown.orbits if one.drawing is not None]
         choices[ORBITS] = partial(orbits_figure_bytes, state.potential, drawings, state.colours, verdicts)
-    if shown.frame is not None:
-        choices[STATISTICS] = partial(statistics_figure_bytes, shown.frame, state.box)
+    if frame is not None:
+        choices[STATISTICS] = partial(statistics_figure_bytes, frame, state.box)
     if shown.curves is not None and shown.curves.values.size:
         choices[CURVES] = partial(curves_figure_bytes, shown.curves)
     return choices
 
 
 def _map_choices(frame: EscapeMap, shown: ShownResults, state: ViewState) -> dict[str, Make]:
-    pictures = [name for name in TITLES if name != "curves" and (name not in LAYER_OF or LAYER_OF[name].name in shown.analyses)]
+    analyses, orbits = shown.analyses, shown.orbits
+    pictures = [name for name in TITLES if name != "curves" and (name not in LAYER_OF or LAYER_OF[name].name in analyses)]
 
     def make(names: Sequence[str], format: FigureFormat, style: FigureStyle) -> bytes:
-        return map_figure_bytes(frame, names, palette, format, style, analyses=shown.analyses, starts=starts, times=times)
+        return map_figure_bytes(frame, names, palette, format, style, analyses=analyses, starts=starts, times=times)
 
-    palette, times, starts = state.colours, state.lock_times, tuple(one.start for one in shown.orbits)
+    palette, times, starts = state.colours, state.lock_times, tuple(one.start for one in orbits)
     choices: dict[str, Make] = {ALL_MAPS: partial(make, pictures)}
     return choices | {TITLES[name]: partial(make, [name]) for name in pictures}

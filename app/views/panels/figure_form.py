@@ -13,10 +13,11 @@ import panel as pn
 from app.browser.components.file_saver import FileSaver
 from app.browser.components.image_copier import ImageCopier
 from app.browser.inputs.number_box import NumberBox
+from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane
 from app.views.components.widgets import SegmentedControl, Switches, button
-from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, ShownResults, figure_choices
+from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, figure_choices
 from plots.printed.figure_style import FigureFormat, FigureStyle
 
 _TITLES = "Titles"
@@ -32,7 +33,7 @@ class FigureForm:
 
     Parameters
     ----------
-    state
+    state, results
         Of the session.
     saver
         Sends files to the browser.
@@ -42,9 +43,15 @@ class FigureForm:
         Called with the success of copying an image.
     """
 
-    def __init__(self, state: ViewState, saver: FileSaver, name: Callable[[str], str], on_copied: Callable[[bool], None]) -> None:
-        self._state, self._saver, self._name = state, saver, name
-        self._shown = ShownResults()
+    def __init__(
+        self,
+        state: ViewState,
+        results: ShownResults,
+        saver: FileSaver,
+        name: Callable[[str], str],
+        on_copied: Callable[[bool], None],
+    ) -> None:
+        self._state, self._results, self._saver, self._name = state, results, saver, name
         self._style: dict[str, float] = {name: getattr(FigureStyle(), name) for name in _NUMBERS}
         self.what = pn.widgets.Select(label="What to draw", options=[ALL_MAPS], sizing_mode="stretch_width", margin=(0, 10))
         formats = {format.name: format for format in FigureFormat}
@@ -53,7 +60,8 @@ class FigureForm:
         self.save = button("Save figure", self._on_save, kind="primary")
         self.copy = ImageCopier(self._on_copy, on_copied, margin=(5, 10))
         self.text = StatusPane("", margin=(0, 10), css_classes=["quiet"])
-        self.show(self._shown)
+        results.param.watch(lambda *events: self._offer(), ["frame", "analyses", "orbits", "curves"])
+        self._offer()
 
     def build(self) -> list[pn.viewable.Viewable]:
         """The section, in a column."""
@@ -64,10 +72,9 @@ class FigureForm:
         numbers = pn.Row(*boxes, margin=0)
         return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
 
-    def show(self, shown: ShownResults) -> None:
+    def _offer(self) -> None:
         """Offer the figures of what the page shows; what is chosen stays, as the next map may have it."""
-        self._shown = shown
-        offered = {ALL_MAPS, self.what.value, *figure_choices(shown, self._state)}
+        offered = {ALL_MAPS, self.what.value, *figure_choices(self._results, self._state)}
         self.what.options = [title for title in FIGURES if title in offered]
 
     @property
@@ -83,7 +90,7 @@ class FigureForm:
         ValueError
             If there is nothing to draw.
         """
-        choices, name = figure_choices(self._shown, self._state), self.what.value
+        choices, name = figure_choices(self._results, self._state), self.what.value
         if name not in choices:
             raise ValueError(f"{name}: this is not computed yet.")
         return "" if name == ALL_MAPS else "-" + re.sub(r"\W+", "-", name.lower()).strip("-"), choices[name]

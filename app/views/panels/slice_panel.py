@@ -15,6 +15,7 @@ from app.state.view_state import ViewState
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import flex_row
 from engine import Coordinate, ParameterAxis, Slice, System
+from engine.slices.planes import checked_slice
 from engine.slices.slice_text import AXIS_NAMES, default_range
 from engine.systems.parameters import symbol_of
 
@@ -40,12 +41,10 @@ class SlicePanel:
     ----------
     state
         The view.
-    on_slice
-        Called with a chosen slice, without the session's lock.
     """
 
-    def __init__(self, state: ViewState, on_slice: Callable[[Slice], None]) -> None:
-        self._state, self._on_slice = state, on_slice
+    def __init__(self, state: ViewState) -> None:
+        self._state = state
         self._following = False
         self.axes = [_make_list("Horizontal axis"), _make_list("Vertical axis")]
         self.mode = _make_list("The energy decides")
@@ -155,12 +154,14 @@ class SlicePanel:
     def _submit(self, make: Callable[[], Slice]) -> None:
         """Report a slice, or show why it cannot be made."""
         try:
-            chosen = make()
+            chosen = checked_slice(make())
         except ValueError as error:
             self.message.object = f"<p role='alert'>{escape(str(error))}</p>"
             self._follow_axes()
         else:
-            self._on_slice(chosen)
+            # Held changes need no lock of the session.
+            with pn.io.hold():
+                self._state.show_slice(chosen)
 
     def _follow_axes(self) -> None:
         """Show the axes of the state again after a choice was refused."""

@@ -23,7 +23,8 @@ import logging
 import pickle
 import sys
 from collections.abc import Callable
-from importlib import metadata
+from functools import partial
+from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +38,25 @@ from engine.foundations.cache_files import SUFFIX, cache_folder, delete_cached, 
 PACKAGE = Path(__file__).parents[1]
 """Where all source is that compiled kernels contain copies of."""
 
+DEFINE = "define"
+"""Name in a generated module of a function that defines it, for another process."""
+
 log = logging.getLogger(__name__)
+
+_other_process: Callable[[Callable[[], None]], None] | None = None
+
+
+def compile_in(process: Callable[[Callable[[], None]], None] | None) -> None:
+    """Let another process compile, which shares the cache: what Numba needs for it, and keeps of it, is never in this one.
+
+    Parameters
+    ----------
+    process
+        Makes a call in the other process, to which cloudpickle can send it, and raises ValueError if it cannot; None for this
+        process.
+    """
+    global _other_process
+    _other_process = process
 
 
 class KernelCache(_Cache):
@@ -47,7 +66,8 @@ class KernelCache(_Cache):
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        self._name = f"{function.__module__}.{function.__qualname__}"
+        self._module, self._function = function.__module__, function.__qualname__
+        self._name = f"{self._module}.{self._function}"
         self._source = _hash_package(PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
 
     @property
@@ -61,13 +81,24 @@ class KernelCache(_Cache):
         rtsys.initialize(target_context)
         path = self._path(sig, target_context.codegen())
         try:
-            payload = read_cached(path)
+            payload = read_cached(path) or self._compile_elsewhere(sig, path)
             if payload is None:
                 return None
             return CompileResult._rebuild(target_context, *pickle.loads(payload))  # type: ignore[no-untyped-call]
         except Exception as error:
             log.warning("invalid compiled kernel %s: %s; compiling it again", path, error)
             return None
+
+    def _compile_elsewhere(self, sig: Any, path: Path) -> bytes | None:
+        """Let another process compile, if there is one; None if it cannot, so that this one does."""
+        if _other_process is None:
+            return None
+        module = sys.modules[self._module]
+        try:
+            _other_process(partial(_compile, getattr(module, DEFINE, None), self._module, self._function, sig))
+        except ValueError as error:
+            log.warning("%s is compiled in this process: %s", self._name, error)
+        return read_cached(path)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Store the code if possible."""
@@ -90,6 +121,13 @@ class KernelCache(_Cache):
         """Named after argument types, processor, source and versions, so that the content of a file never changes."""
         key = repr((signature, codegen.magic_tuple(), self._source, _versions()))
         return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
+
+
+def _compile(define: Callable[[], object] | None, module: str, function: str, signature: Any) -> None:
+    """Compile a function and store the code; in the other process."""
+    if define is not None:
+        define()
+    getattr(import_module(module), function).compile(signature)
 
 
 @functools.cache

@@ -61,8 +61,8 @@ _OPTIONS: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wra
 _RUNTIME_NAMES = "|".join(re.findall(r"@(NRT_\w+)", _RUNTIME))
 
 
-def lower_kernels(kernels: Mapping[str, tuple[Any, Signature]]) -> bytes:
-    """A module with kernels for arguments of some types, by the names of its functions.
+def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
+    """A module with kernels for arguments of some types; its functions have their names.
 
     Each array is passed as its address and its shape, a tuple as its elements, an integer or a boolean as 32 bits. The module
     imports ``env.__linear_memory``, ``env.__stack_pointer``, ``env.__indirect_function_table`` for the functions whose addresses
@@ -70,13 +70,14 @@ def lower_kernels(kernels: Mapping[str, tuple[Any, Signature]]) -> bytes:
     """
     machine = target_machine()
     module = _parse(_RUNTIME, machine)
-    for name, (kernel, signature) in kernels.items():
+    names = {kernel: kernel.py_func.__name__ for kernel in kernels}
+    for kernel, signature in kernels.items():
         compiled = njit(**_OPTIONS)(kernel.py_func)
         compiled.compile(signature)
         symbol = compiled.overloads[signature.args].fndesc.llvm_func_name
         module.link_in(_parse(_without_runtime(compiled.inspect_llvm(signature.args)), machine))
-        module.link_in(_parse(str(_wrapper(name, symbol, signature)), machine))
-    _hide(module, exported=set(kernels))
+        module.link_in(_parse(str(_wrapper(names[kernel], symbol, signature)), machine))
+    _hide(module, exported=set(names.values()))
     return compile_module(module, machine, level=3)
 
 
@@ -118,8 +119,13 @@ def _wrapper(name: str, symbol: str, signature: Signature) -> ir.Module:
     if not result:
         builder.ret_void()
     else:
-        builder.ret(value if result == [_DOUBLE] else builder.trunc(value, _SIZE))
+        builder.ret(value if result == [_DOUBLE] else _as_size(builder, value))
     return module
+
+
+def _as_size(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
+    """An integer or a boolean in 32 bits."""
+    return builder.trunc(value, _SIZE) if value.type.width > _SIZE.width else builder.zext(value, _SIZE)
 
 
 def _passed_types(kind: Any) -> list[ir.Type]:

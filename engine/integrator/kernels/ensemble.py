@@ -110,6 +110,64 @@ def place_ensemble(time, ensemble, places, channels):
             places[axis, orbit] = np.nan if is_far else series_value(ensemble.jets[axis], orbit, tau)
 
 
+@kernel
+def begin_ensemble(starts, ensemble, places, channels):
+    """Put orbits at their starts (n, 4), and `places` (2, n) and `channels` (n,) with them."""
+    ensemble.ends[:] = 0.0
+    ensemble.begin[:] = 0.0
+    ensemble.leaving[:] = 0
+    ensemble.escape_time[:] = np.inf
+    ensemble.last[:] = np.inf
+    ensemble.section[:] = np.nan
+    channels[:] = 0
+    for orbit in range(starts.shape[0]):
+        for row in range(4):
+            ensemble.ends[row, orbit] = starts[orbit, row]
+        for axis in range(2):
+            places[axis, orbit] = starts[orbit, axis]
+
+
+@kernel
+def reverse_ensemble(time, ensemble, channels, states):
+    """Set `states` (n, 4) to those of the orbits inside at a time, with reversed momenta, and return their number."""
+    count = 0
+    for orbit in range(channels.shape[0]):
+        if channels[orbit] != 0:
+            continue
+        tau = time - ensemble.begin[orbit]
+        for axis in range(2):
+            states[count, axis] = series_value(ensemble.jets[axis], orbit, tau)
+            states[count, axis + 2] = -series_slope(ensemble.jets[axis], orbit, tau)
+        count += 1
+    return count
+
+
+@kernel
+def measure_spread(starts, places, channels):
+    """How many times as wide as at their starts (n, 4) the orbits are spread that are still inside; places (2, n)."""
+    before = _variance(starts[:, 0], channels) + _variance(starts[:, 1], channels)
+    now = _variance(places[0], channels) + _variance(places[1], channels)
+    return np.sqrt(now / before)
+
+
+@subroutine
+def _variance(values, channels):
+    """The variance of the values (n,) of orbits inside."""
+    count, total, squares, origin = 0, 0.0, 0.0, 0.0
+    for orbit in range(channels.shape[0]):
+        if channels[orbit] != 0:
+            continue
+        # Relative to the first one: those of a small disc differ in their last digits only.
+        if count == 0:
+            origin = values[orbit]
+        difference = values[orbit] - origin
+        count += 1
+        total += difference
+        squares += difference * difference
+    mean = total / count if count > 0 else np.nan
+    return max(squares / count - mean * mean, 0.0) if count > 0 else np.nan
+
+
 @subroutine
 def _is_late(ensemble, orbit, time):
     """Whether the step of an orbit that is followed ends before a time; the time of one that has broken down is NaN."""

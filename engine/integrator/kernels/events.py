@@ -28,8 +28,8 @@ MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 # Values of the column SHAPE; orbits cannot return from a CURVE.
 CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
 
-# Fates of an orbit other than the number, 1 or more, of the channel through which it escaped.
-BOUNDED, NOT_COMPUTED, FAILED = 0, -3, -4
+# Fates of an orbit, or of a start without one, other than the number, 1 or more, of the channel through which it escaped.
+BOUNDED, FORBIDDEN, OUTSIDE, NOT_COMPUTED, FAILED = 0, -1, -2, -3, -4
 
 # Degree of the polynomial f, a sum of Chebyshev polynomials.
 CURVE_DEGREE = 40

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.integrator.jit.decorator import kernel
+from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.kernels.events import (
     CLOSED,
     DISC,
@@ -23,13 +23,12 @@ from engine.integrator.kernels.events import (
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 
-@kernel
-def interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
-    """Set an exit (columns,) over a saddle, and its gate (3,), from a table; both are zeros before.
+@subroutine
+def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
+    """Set an exit (columns,), and its gate (3,), from a table; both are zeros before.
 
-    nodes (n,): √(h − energy of the saddle), rising Chebyshev nodes of the first kind; rows (n, columns); place: between the
-    nodes, 0.0 or less for a closed channel; shape: CURVE or LINE. By the barycentric formula (Berrut & Trefethen 2004, SIAM
-    Review 46, 501). The reach is not smooth: the smaller one of two neighbours is taken.
+    place: between the nodes, 0.0 or less for a closed channel. By the barycentric formula (Berrut & Trefethen 2004, SIAM Review
+    46, 501). The reach is not smooth: the smaller one of two neighbours is taken.
     """
     count = nodes.shape[0]
     exit_curve[OUTWARD_X] = 1.0
@@ -75,16 +74,39 @@ def interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
     gate[1] = exit_curve[OUTWARD_Y]
 
 
+@subroutine
+def exit_point(exit_curve, s):
+    """x and y of the point of an exit at s, from −1 to 1; around a circle s goes from −1 to 1, too."""
+    if exit_curve[SHAPE] >= DISC:
+        x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
+        y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)
+    else:
+        u = exit_height(s, exit_curve)
+        q = exit_curve[MIDDLE] + exit_curve[HALF_WIDTH] * s
+        x = exit_curve[ORIGIN_X] + u * exit_curve[OUTWARD_X] - q * exit_curve[OUTWARD_Y]
+        y = exit_curve[ORIGIN_Y] + u * exit_curve[OUTWARD_Y] + q * exit_curve[OUTWARD_X]
+    return x, y
+
+
 @kernel
 def exit_points(exit_curve, positions, points):
-    """Set `points` (2, n) to those of an exit at s (n,) from −1 to 1; around a circle s goes from −1 to 1, too."""
+    """Set `points` (2, n) to those of an exit at s (n,), see `exit_point`."""
     for i in range(positions.shape[0]):
-        s = positions[i]
-        if exit_curve[SHAPE] >= DISC:
-            points[0, i] = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
-            points[1, i] = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)
-        else:
-            u = exit_height(s, exit_curve)
-            q = exit_curve[MIDDLE] + exit_curve[HALF_WIDTH] * s
-            points[0, i] = exit_curve[ORIGIN_X] + u * exit_curve[OUTWARD_X] - q * exit_curve[OUTWARD_Y]
-            points[1, i] = exit_curve[ORIGIN_Y] + u * exit_curve[OUTWARD_Y] + q * exit_curve[OUTWARD_X]
+        points[0, i], points[1, i] = exit_point(exit_curve, positions[i])
+
+
+@kernel
+def interpolate_exit(nodes, rows, saddle, shape, energies, number, curves, gates):
+    """Set the exit of a number at energies (n,) in `curves` (n, exits, columns), and its gate in `gates` (exits, 3), from zeros.
+
+    nodes (m,): √(h − saddle), rising Chebyshev nodes of the first kind, where `saddle` is the energy at which the channel opens;
+    rows (m, columns): the exit there; shape: CURVE or LINE. The gate is that of the lowest value, inside all of these exits.
+    """
+    gate = np.zeros(3)
+    for i in range(energies.shape[0]):
+        gate[:] = 0.0
+        place = np.sqrt(max(energies[i] - saddle, 0.0))
+        _interpolate_exit(nodes, rows, place, shape, curves[i, number], gate)
+        if i == 0 or gate[2] < gates[number, 2]:
+            for k in range(3):
+                gates[number, k] = gate[k]

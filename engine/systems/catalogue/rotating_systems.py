@@ -28,7 +28,7 @@ ROTATING_ENTRIES = (
     CatalogueEntry(
         "Earth-Moon",
         "Earth–Moon system, at the Moon",
-        "−(1 − m)/√((x + 1)² + y²) − m/r − (1 − m)x; centre the Moon (0, 0) 1737.4/384400",
+        "−(1 − m)/√((x + 1)² + y²) − m/r − (1 − m)x; centre the Moon (0, 0) 1737.4/384400; exits L2, L1",
         "The restricted three-body problem seen from the Moon: a light body leaves through the neck at L1, towards the Earth at "
         "x = −1, or at L2, or collides with the Moon.",
         "S. C. de Assis & M. O. Terra, Celestial Mechanics and Dynamical Astronomy 120, 105 (2014)",
@@ -39,7 +39,7 @@ ROTATING_ENTRIES = (
     CatalogueEntry(
         "Hill",
         "Hill's problem",
-        "−1/r − x² + ½y²; centre the planet (0, 0) 0.001",
+        "−1/r − x² + ½y²; centre the planet (0, 0) 0.001; exits L2, L1",
         "A light body near a planet that goes around a distant star: exits at L1 and L2, and collisions with the planet.",
         "G. W. Hill, American Journal of Mathematics 1, 5 (1878); M. Hénon, Astronomy & Astrophysics 1, 223 (1969)",
         _UNIT_ROTATION,
@@ -49,7 +49,7 @@ ROTATING_ENTRIES = (
     CatalogueEntry(
         "Star cluster",
         "Star cluster in a tide",
-        "−1/√(r² + c²) − ½(3 − k²)x² + ½y²",
+        "−1/√(r² + c²) − ½(3 − k²)x² + ½y²; exits L2, L1",
         "A Plummer sphere of radius c on a circular orbit in a galaxy whose epicyclic frequency is k: stars leave at L1 and L2.",
         "A. Ernst, A. Just, R. Spurzem & O. Porth, MNRAS 383, 1619 (2008), for the form of the potential; the values are chosen "
         "here",

@@ -1,4 +1,4 @@
-"""The potentials included in the engine, each with a description and a reference; `docs/potentials.md` lists them too."""
+"""The potentials included in the engine, each with a description and a reference; `docs/systems.md` lists them too."""
 
 from __future__ import annotations
 

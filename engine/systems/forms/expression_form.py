@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.expressions.calculus import curvatures, derivative, replace_parts, slopes, substitute
 from engine.expressions.evaluation import evaluate, evaluate_at
-from engine.expressions.graph import Graph, make_graph
+from engine.expressions.graph import make_graph
 from engine.expressions.nodes import Expression, Sum, X, Y, as_terms, from_terms, linear_combination, multiply, number, power
 from engine.expressions.parity import EVEN, parity
 from engine.expressions.polynomials import Terms
@@ -108,11 +108,6 @@ class ExpressionForm:
     def _evaluate(x: Any, y: Any, *expressions: Expression) -> list[Any]:
         graph, numbers = make_graph(expressions)
         return [value[()] for value in evaluate(graph, numbers, x, y)]
-
-    @property
-    def slopes_graph(self) -> tuple[Graph, tuple[float, ...]]:
-        """The graph of V, V_x and V_y, and its numbers."""
-        return make_graph((self.expression, *slopes(self.expression)))
 
     def force(self, axis: int) -> ExpressionForm:
         """−∂V/∂x or −∂V/∂y."""

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
@@ -78,8 +79,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin but e, E and V, or
         Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py",
         "vx" and "vy" are refused. After it there may be what orbits end at: "; centre the Moon (0, 0) 0.0045", a body with a
-        name, its place and its radius of collision, "; escape 10", an escape radius, and "; well (1, 0)", a place near a minimum
-        to which the axes are moved, see `Potential.at_minimum`.
+        name, its place and its radius of collision, "; escape 10", an escape radius, "; well (1, 0)", a place near a minimum to
+        which the axes are moved, see `Potential.at_minimum`, and "; exits L2, L1", names of the exits in channel order.
     name
         Name of the potential; by default the formula as written by `write_formula`.
     parameters
@@ -126,7 +127,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     number_of = partial(_number_of, values=values)
     ends = [clause.evaluate(number_of) for clause in clauses.ends]
     found = Potential(name or write_formula(potential), potential.form, ends=ends)
-    return found if clauses.well is None else found.at_minimum(*map(number_of, clauses.well))
+    placed = found if clauses.well is None else found.at_minimum(*map(number_of, clauses.well))
+    return replace(placed, exit_names=clauses.exits) if clauses.exits else placed
 
 
 def formula_letters(text: str) -> tuple[str, ...]:

@@ -1,21 +1,22 @@
 """Clauses after a formula: "−1/r − x² + ½y²; centre the planet (0, 0) 0.001; escape 10", "x + x² + y² + x³; well (−0.2, 0)".
 
 A clause is that of an end, see `engine.systems.outcomes`: its word, a name, which can be left out, its place in brackets and its
-radius. Or it is ``well`` and a place: the axes are moved to the minimum nearest to it. Places and radii are formulas without x
-and y, with the letters of the potential.
+radius. Or it is ``well`` and a place: the axes are moved to the minimum nearest to it. Or it is ``exits`` and their names in
+channel order, "exits L2, L1". Places and radii are formulas without x and y, with the letters of the potential.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.outcomes import End, end_kinds
 
 SEPARATOR = ";"
+_EXITS = re.compile(r"\s*exits\s+(?P<names>\w[\w ]{0,20}(?:,\s*\w[\w ]{0,20}){0,11})$")
 _WELL = re.compile(r"\s*well\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 
 
@@ -44,11 +45,12 @@ class EndClause(NamedTuple):
 
 
 class Clauses(NamedTuple):
-    """The formula of V, the clauses of ends, and a place if there is one."""
+    """The formula of V, the clauses of ends, a place if there is one, and the names of exits."""
 
     formula: str
     ends: tuple[EndClause, ...]
     well: tuple[Part, Part] | None
+    exits: tuple[str, ...]
 
     @property
     def numbers(self) -> tuple[Part, ...]:
@@ -63,22 +65,26 @@ def split_clauses(text: str) -> Clauses:
     position = len(formula) + 1
     ends: list[EndClause] = []
     wells: list[tuple[Part, Part]] = []
+    exits: list[str] = []
     for clause in rest:
         well = _WELL.match(clause)
         if found := _end_clause(clause, position):
             ends.append(found)
         elif well and not wells:
             wells.append((_part(well, "x", position), _part(well, "y", position)))
+        elif (named := _EXITS.match(clause)) and not exits:
+            exits = [name.strip() for name in named["names"].split(",")]
         else:
             allowed = ", ".join(kind.syntax.format(kind.word) for kind in end_kinds())
-            raise FormulaError(position, f"{clause.strip()!r} is not understood; allowed are {allowed}, and one well (x, y)")
+            others = "one well (x, y), and once exits NAME, NAME"
+            raise FormulaError(position, f"{clause.strip()!r} is not understood; allowed are {allowed}, {others}")
         position += len(clause) + 1
     for kind, count in Counter(end.kind for end in ends).items():
         if count > kind.most:
             raise FormulaError(
                 len(formula), f"the formula has {count} clauses of {kind.word!r}; at most {kind.most} can be given"
             )
-    return Clauses(formula, tuple(ends), wells[0] if wells else None)
+    return Clauses(formula, tuple(ends), wells[0] if wells else None, tuple(exits))
 
 
 def _end_clause(clause: str, position: int) -> EndClause | None:
@@ -94,6 +100,7 @@ def _part(match: re.Match[str], key: str, position: int) -> Part:
     return Part(match[key], position + match.start(key))
 
 
-def write_clauses(ends: Iterable[End]) -> str:
+def write_clauses(ends: Iterable[End], exits: Sequence[str]) -> str:
     """The clauses as text, to be read back exactly."""
-    return "".join(f"{SEPARATOR} {end.text}" for end in ends)
+    names = [f"exits {', '.join(exits)}"] if exits else []
+    return "".join(f"{SEPARATOR} {clause}" for clause in (*(end.text for end in ends), *names))

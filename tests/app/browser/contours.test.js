@@ -2,13 +2,19 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {levelLines, sampleGrid} from "../../../app/browser/modules/contours.js"
+import {levelLines, SAMPLES} from "../../../app/browser/modules/engine/contours.js"
 
 const window = {xLow: -2, xHigh: 2, ordinateLow: -2, ordinateHigh: 2}
 
+/** @param {(x: number, y: number) => number} sample */
+function sampleGrid(sample) {
+  const places = Array.from({length: SAMPLES}, (_, k) => -2 + (4 * k) / (SAMPLES - 1))
+  return {window, values: Float64Array.from(places.flatMap(y => places.map(x => sample(x, y))))}
+}
+
 test("a circle is one closed line of points on it", () => {
   const lines = levelLines(
-    sampleGrid(window, (x, y) => x * x + y * y),
+    sampleGrid((x, y) => x * x + y * y),
     1,
   )
   assert.equal(lines.length, 1)
@@ -19,7 +25,7 @@ test("a circle is one closed line of points on it", () => {
 
 test("a hyperbola has two lines that end at the edges", () => {
   const lines = levelLines(
-    sampleGrid(window, (x, y) => x * y),
+    sampleGrid((x, y) => x * y),
     0.5,
   )
   assert.equal(lines.length, 2)
@@ -30,6 +36,6 @@ test("a hyperbola has two lines that end at the edges", () => {
 })
 
 test("a level that is not reached has no lines", () => {
-  const grid = sampleGrid(window, () => 1)
+  const grid = sampleGrid(() => 1)
   assert.deepEqual(levelLines(grid, 0), [])
 })

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {mock, test} from "node:test"
 
-import {Frames, LEAST_SIDE, Picture} from "../../../app/browser/modules/frames.js"
+import {Frames, LEAST_SIDE, mirroredAxes, Picture} from "../../../app/browser/modules/workers/frames.js"
 import {X_PX as slice} from "./x_px.js"
 
 const window = {xLow: -1, xHigh: 1, ordinateLow: -1, ordinateHigh: 1}
@@ -91,4 +91,12 @@ test("a preview has no more pixels than the map", () => {
   assert.ok(asked.every(({view: {columns}}) => columns <= 112))
   frames.stop()
   mock.timers.reset()
+})
+
+test("a symmetric view is mirrored in the axes that change sign", () => {
+  assert.deepEqual(mirroredAxes(system, slice, window), [true, true])
+  assert.deepEqual(mirroredAxes(system, {mirrored: [true, false]}, {...window, ordinateHigh: 2}), [true, false])
+  assert.equal(mirroredAxes(system, slice, {...window, xHigh: 2}), null)
+  assert.equal(mirroredAxes(/** @type {any} */ ({mirror: null}), slice, window), null)
+  assert.equal(mirroredAxes(system, {mirrored: null}, window), null)
 })

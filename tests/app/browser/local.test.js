@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {Local} from "../../../app/browser/modules/local.js"
+import {Local} from "../../../app/browser/modules/painting/local.js"
 
 /** A model of Bokeh with one property. */
 class Model {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict"
 import {mock, test} from "node:test"
 
-import {Player} from "../../../app/browser/modules/player.js"
+import {Player} from "../../../app/browser/modules/gestures/player.js"
 
 /** @type {((now: number) => void) | null} */
 let callback = null

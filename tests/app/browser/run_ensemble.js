@@ -1,10 +1,9 @@
 // @ts-check
 /** Places, exits and passages of an ensemble at rising times, and its outcomes; or the starts that a request draws. */
 
-import {Outcomes} from "../../../app/browser/modules/outcomes.js"
-import {Ensemble} from "../../../app/browser/modules/ensemble.js"
-import {drawStarts} from "../../../app/browser/modules/ensemble_starts.js"
-import {Integrator} from "../../../app/browser/modules/integrator.js"
+import {Ensemble, Outcomes} from "../../../app/browser/modules/engine/ensemble.js"
+import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
+import {drawStarts} from "../../../app/browser/modules/engine/random_starts.js"
 import {input, modules} from "./read_input.js"
 
 const {system, requests, scene, energy, states, times} = input

@@ -1,11 +1,10 @@
 // @ts-check
 /** Points of the exits at some energies, the lines that the page draws there, and starts on the exits. */
 
-import {exitLines} from "../../../app/browser/modules/curves.js"
-import {randomNumbers} from "../../../app/browser/modules/ensemble_starts.js"
-import {drawEntrances} from "../../../app/browser/modules/exit_starts.js"
-import {Exits} from "../../../app/browser/modules/exits.js"
-import {Integrator} from "../../../app/browser/modules/integrator.js"
+import {exitLines} from "../../../app/browser/modules/engine/curves.js"
+import {Exits} from "../../../app/browser/modules/engine/exits.js"
+import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
+import {drawStarts} from "../../../app/browser/modules/engine/random_starts.js"
 import {input, modules} from "./read_input.js"
 
 const {system, energies, positions} = input
@@ -19,13 +18,13 @@ const pointsOf = exits =>
     return xs.map((x, k) => [x, ys[k]])
   })
 
-const found = energies.map((/** @type {number} */ energy) => {
-  const exits = new Exits(integrator, [energy])
-  const entrances = drawEntrances(50, integrator, exits, energy, randomNumbers(1))
+const found = energies.map((/** @type {number} */ each) => {
+  const energy = each * system.units.energy
+  const request = /** @type {any} */ ({where: "exits", count: 50, seed: 1})
   return {
-    points: pointsOf(exits),
-    lines: exitLines(integrator, energy * (system.units.length / system.units.time) ** 2),
-    entrances: [...entrances],
+    points: pointsOf(new Exits(integrator, [each])),
+    lines: exitLines(integrator, energy),
+    entrances: [...drawStarts(request, /** @type {any} */ ({energy}), integrator)],
   }
 })
 console.log(JSON.stringify(found))

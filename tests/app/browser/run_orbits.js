@@ -1,37 +1,36 @@
 // @ts-check
 /** Ends of orbits as the previews, the card and the player of ensembles find them, in units of the well. */
 
-import {Ensemble} from "../../../app/browser/modules/ensemble.js"
-import {Exits} from "../../../app/browser/modules/exits.js"
-import {Integrator} from "../../../app/browser/modules/integrator.js"
-import {propagate} from "../../../app/browser/modules/propagate.js"
-import {reversedInTime} from "../../../app/browser/modules/system.js"
-import {traceOrbit} from "../../../app/browser/modules/trace.js"
+import {Ensemble} from "../../../app/browser/modules/engine/ensemble.js"
+import {Exits} from "../../../app/browser/modules/engine/exits.js"
+import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
+import {findAllEnds} from "../../../app/browser/modules/engine/orbits.js"
+import {follow} from "../../../app/browser/modules/engine/path.js"
+import {reversedInTime} from "../../../app/browser/modules/engine/system.js"
 import {input, modules} from "./read_input.js"
 
 const {energy, states, horizon, isBackward} = input
 const system = isBackward ? reversedInTime(input.system) : input.system
 const integrator = new Integrator(system, modules)
-const {layout} = system
+const {tolerance} = system.layout
+const exits = new Exits(integrator, [energy])
 
 function preview() {
-  const exits = new Exits(integrator, [energy])
-  const ends = propagate(integrator, Float64Array.from(states.flat()), exits, [], horizon, layout.tolerance)
-  const {fate, time, crossings} = ends
+  const {fate, time, crossings} = findAllEnds(integrator, states.flat(), exits, {horizon, tolerance})
   return {fate: [...fate], time: [...time], crossings: [...crossings]}
 }
 
 function card() {
-  const traces = states.map((/** @type {number[]} */ [x, y, px, py]) =>
-    traceOrbit(integrator, {x, y, px, py, h: energy}, horizon),
+  const paths = states.map((/** @type {number[]} */ state) =>
+    integrator.temporarily(() => follow(integrator, integrator.array("float64", [1, 4], state), exits, energy, horizon)),
   )
   const all = (/** @type {"channel" | "time" | "crossings"} */ name) =>
-    traces.map((/** @type {import("../../../app/browser/modules/trace.js").Trace} */ trace) => trace[name])
+    paths.map((/** @type {import("../../../app/browser/modules/engine/path.js").Path} */ path) => path[name])
   return {fate: all("channel"), time: all("time"), crossings: all("crossings")}
 }
 
 function player() {
-  const ensemble = new Ensemble(integrator, energy, Float64Array.from(states.flat()))
+  const ensemble = new Ensemble(integrator, energy, states.flat())
   ensemble.advance(horizon)
   return {fate: [...ensemble.channel], time: [...ensemble.escapeTime], x: [...ensemble.x]}
 }

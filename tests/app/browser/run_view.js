@@ -1,14 +1,14 @@
 // @ts-check
 /** The pixels of views, computed as the page does it, in one part and with mirror images. */
 
-import {Picture} from "../../../app/browser/modules/frames.js"
-import {Integrator} from "../../../app/browser/modules/integrator.js"
-import {computePixels} from "../../../app/browser/modules/pixels.js"
+import {Picture} from "../../../app/browser/modules/workers/frames.js"
+import {Integrator} from "../../../app/browser/modules/engine/integrator.js"
+import {computePixels} from "../../../app/browser/modules/engine/pixels.js"
 import {input, modules} from "./read_input.js"
 
 const {system, views} = input
 const integrator = new Integrator(system, modules)
-const pictures = views.map((/** @type {import("../../../app/browser/modules/pixels.js").View} */ view) => {
+const pictures = views.map((/** @type {import("../../../app/browser/modules/engine/pixels.js").View} */ view) => {
   const picture = new Picture(system, view)
   for (const part of picture.deal(3)) picture.add(part, computePixels(integrator, view, part))
   const {fate, time, crossings} = picture.finish()

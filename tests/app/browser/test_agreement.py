@@ -24,8 +24,8 @@ from engine import (
     compute_map,
     compute_trust,
 )
-from engine.propagation.portable_system import make_portable_system
 from engine.slices.default_window import default_window
+from engine.slices.portable_system import make_portable_system
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from tests.node import needs_node, run_node

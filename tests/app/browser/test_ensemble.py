@@ -23,15 +23,14 @@ from engine import (
     sample_starts,
 )
 from engine.exits.interior import find_outside_channels
-from engine.propagation.portable_system import make_portable_system
+from engine.integrator.kernels.random_starts import BEFORE_EXIT
 from engine.slices.default_window import default_window
+from engine.slices.portable_system import make_portable_system
 from engine.systems.review.potential_review import review_system
 from tests.node import needs_node, run_node
 from tests.peers.taylor_heyoka import equations
 
 COUNT, FRAMES, LONGEST = 200, 50, 40.0
-# As in app/browser/modules/exit_starts.js.
-TO_THE_EXIT = 9.0
 SYSTEMS = [("II", 0.22), ("III", 0.45)]
 # The browser paints places to a thousandth of a pixel; the steps are those of the server.
 PLACE_ERROR = 1e-8
@@ -219,9 +218,9 @@ def test_orbits_that_enter_stay_as_long_as_those_of_the_library(drawn: dict[str,
 def test_of_the_orbits_at_the_tubes_one_half_leaves_where_the_other_turns_back(drawn: dict[str, np.ndarray]) -> None:
     potential, states = System("III").potential, drawn["tubes"]
     outcomes = classify_orbits(potential, 0.45, states, 100.0)
-    leave = np.abs(outcomes.escape_time - TO_THE_EXIT) < 1.0
+    leave = np.abs(outcomes.escape_time - BEFORE_EXIT) < 1.0
     assert leave.mean() == pytest.approx(0.5, abs=0.03)
-    path = sample_orbits(potential, states[~leave], [TO_THE_EXIT])
+    path = sample_orbits(potential, states[~leave], [BEFORE_EXIT])
     exits = np.concatenate([orbit.half_path for orbit in find_lyapunov_orbits(potential, 0.45)])
     gaps = np.hypot(path.x - exits[:, 0], path.y - exits[:, 1]).min(axis=1)
     # The others are close to an exit then, some have left through another one before.

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine import CASES, Potential, find_lyapunov_orbits, parse_formula
-from engine.propagation.portable_system import make_portable_system
+from engine.slices.portable_system import make_portable_system
 from engine.systems.outcomes import Centre
 from tests.node import needs_node, run_node
 

@@ -14,7 +14,6 @@ from engine import (
     CASES,
     Fate,
     MapSpec,
-    Outcomes,
     Plane,
     Potential,
     Trust,
@@ -26,7 +25,8 @@ from engine import (
     sample_orbits,
 )
 from engine.exits.interior import find_outside_channels
-from engine.propagation.portable_system import make_portable_system
+from engine.results import Outcomes
+from engine.slices.portable_system import make_portable_system
 from engine.systems.outcomes import SMALLEST_RADIUS, Centre
 from tests.app.browser.test_agreement import HORIZON as VIEW_HORIZON
 from tests.app.browser.test_agreement import LEAST_SHARE, SIDE, as_view, expected_fate

@@ -11,8 +11,9 @@ import pytest
 
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.state.view_state import ViewState
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, RegularityMap, compute_map
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, compute_map
 from engine.jobs.manager import Jobs
+from engine.results import RegularityMap
 from plots.layers.regularity import REGULARITY
 
 ON = frozenset({REGULARITY.name})

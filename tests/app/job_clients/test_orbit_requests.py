@@ -1,21 +1,20 @@
-"""Requests for orbits, divergent starts, separations and indicators."""
+"""Requests for orbits, their digits, divergent starts and separations."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
 
 from app.job_clients.divergent_start_requests import DivergentStartRequests
-from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
-from engine import Separation, System, integrate_orbit
+from engine import System, integrate_orbit
 from engine.jobs.manager import Jobs
-from engine.trajectories.chaos_indicators import IndicatorVerdict, Verdict
+from engine.results import Separation
 from tests.engine.jobs.inbox import wait_until_idle
 
 
@@ -26,8 +25,6 @@ class Recorder:
         self.orbits: tuple[ChosenOrbit, ...] = ()
         self.messages: list[str] = []
         self.separations: list[tuple[tuple[int, int] | None, Separation | None]] = []
-        self.judged: tuple[ChosenOrbit, ...] = ()
-        self.verdicts: list[tuple[IndicatorVerdict, ...]] = []
         self.changed = threading.Condition()
 
     def record(self, act: Callable[[], None]) -> None:
@@ -43,10 +40,6 @@ class Recorder:
 
     def show_separation(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
         self.record(lambda: self.separations.append((pair, separation)))
-
-    def show_verdicts(self, orbits: Sequence[ChosenOrbit], verdicts: Sequence[IndicatorVerdict]) -> None:
-        self.judged = tuple(orbits)
-        self.record(lambda: self.verdicts.append(tuple(verdicts)))
 
     def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
@@ -66,7 +59,7 @@ def unlocked(function: Callable[..., None]) -> Callable[..., None]:
 @pytest.fixture
 def session() -> Iterator[Session]:
     state, recorder, jobs = ViewState(system=System("I"), energy=0.25, t_max=1e3), Recorder(), Jobs()
-    requests = OrbitRequests(state, jobs, recorder.show, unlocked)
+    requests = OrbitRequests(state, jobs, recorder.show, recorder.notify, unlocked)
     yield state, requests, recorder, jobs
     requests.close()
 
@@ -173,49 +166,30 @@ def test_the_last_two_orbits_are_compared(session: Session) -> None:
     assert found.distance[0] == pytest.approx(np.hypot(1e-4, 0.0), rel=0.1)
 
 
-def test_a_bounded_orbit_gets_four_verdicts(session: Session) -> None:
-    state, _, recorder, jobs = session
-    indicators = IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked)
-    state.param.update(energy=0.1, t_max=1e4)
-    state.add_start((0.1, 0.05))
-    recorder.wait_for(lambda: recorder.all_computed(1))
-    indicators.follow(recorder.orbits)
-    recorder.wait_for(lambda: len(recorder.verdicts) == 2)
-    assert [len(verdicts) for verdicts in recorder.verdicts] == [3, 4]
-    assert {verdict.conclusion for verdict in recorder.verdicts[-1]} == {Verdict.CHAOTIC, Verdict.UNDECIDED}
-
-
-def test_an_escaping_orbit_gets_no_conclusion(session: Session) -> None:
-    state, _, recorder, jobs = session
-    state.add_start((0.1, 0.05))
-    recorder.wait_for(lambda: recorder.all_computed(1))
-    IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked).follow(recorder.orbits)
-    assert [verdict.conclusion for verdict in recorder.verdicts[-1]] == [None, None]
-    assert jobs.in_flight == 0
-    IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked).follow(())
-    assert recorder.verdicts[-1] == ()
-
-
-def test_all_bounded_orbits_get_their_evidence_and_keep_it(session: Session) -> None:
-    state, _, recorder, jobs = session
-    indicators = IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked)
+def test_all_bounded_orbits_get_their_digits_as_evidence(session: Session) -> None:
+    state, requests, recorder, jobs = session
     state.param.update(energy=0.14, t_max=1e4)
     for x in (-0.3, -0.305):
         state.add_start((x, 0.0))
-    recorder.wait_for(lambda: recorder.all_computed(2))
-    indicators.follow(recorder.orbits)
-    recorder.wait_for(lambda: all(one.digits is not None for one in recorder.judged))
-    assert all("and probably for ever (evidence: its averages converge as on a" in one.describe() for one in recorder.judged)
-    indicators.follow(recorder.orbits)
-    assert all(one.digits is not None for one in recorder.judged)
+    recorder.wait_for(lambda: len(recorder.orbits) == 2 and all(one.digits is not None for one in recorder.orbits))
+    assert all("and probably for ever (evidence: its averages converge as on a" in one.describe() for one in recorder.orbits)
+    requests.follow()
+    assert all(one.digits is not None for one in recorder.orbits)
+    assert jobs.in_flight == 0
+
+
+def test_an_escaping_orbit_gets_no_digits(session: Session) -> None:
+    state, _, recorder, jobs = session
+    state.add_start((0.1, 0.05))
+    recorder.wait_for(lambda: recorder.all_computed(1))
+    assert recorder.orbits[0].digits is None
+    assert jobs.in_flight == 0
 
 
 def test_closing_cancels_the_requests_for_digits(session: Session) -> None:
-    state, _, recorder, jobs = session
+    state, requests, recorder, jobs = session
     state.param.update(energy=0.1, t_max=1e4)
     state.add_start((0.1, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(1))
-    indicators = IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked)
-    indicators.follow(recorder.orbits)
-    indicators.close()
+    requests.close()
     assert jobs.in_flight == 0

@@ -18,15 +18,20 @@ def fill(state: ProcessState) -> None:
     state.sessions = lambda: [object()] * 2
 
 
-def overload(state: ProcessState) -> None:
-    state.overload.add(1000.0)
+def crowd(state: ProcessState) -> None:
+    state.capacity.cores = 0.01
     state.sockets[ELSEWHERE] += 1
 
 
-def overload_by_oneself(state: ProcessState) -> None:
-    state.overload.add(1000.0)
+def crowd_alone(state: ProcessState) -> None:
+    state.capacity.cores = 0.01
     # The connection of the page before a reload, for example.
     state.sockets[HERE] += 1
+
+
+def crowd_with_several_pages(state: ProcessState) -> None:
+    state.capacity.cores = 0.01
+    state.sockets[HERE] += 2
 
 
 def fail_to_compile(state: ProcessState) -> None:
@@ -46,13 +51,14 @@ def compile_potentials(state: ProcessState) -> None:
         (lambda state: state.kernels_ready.clear(), "The integrators are being compiled.", ""),
         (fail_to_compile, "could not be compiled", ""),
         (fill, "All 2 places are taken.", "All 2 places are taken."),
-        (overload, "The server is busy", "The server is busy"),
-        (overload_by_oneself, "The server is busy", ""),
+        (crowd, "The server is busy", "The server is busy"),
+        (crowd_alone, "The server is busy", ""),
+        (crowd_with_several_pages, "The server is busy", "The server is busy"),
         (lambda state: state.stopping.set(), "The server is stopping.", "The server is stopping."),
         # The catalogue is served as before.
         (compile_potentials, "ESCAPE_EXPLORER_COMPILED_OPERATIONS=250000. Restart the server.", ""),
     ],
-    ids=["ready", "compiling", "failed", "full", "busy", "busy with this visitor", "stopping", "code"],
+    ids=["ready", "compiling", "failed", "full", "busy", "busy with this page", "busy with this visitor", "stopping", "code"],
 )
 def test_a_server_says_why_it_is_not_ready_and_whom_it_refuses(
     change: Callable[[ProcessState], None], not_ready: str, refusal: str
@@ -63,6 +69,13 @@ def test_a_server_says_why_it_is_not_ready_and_whom_it_refuses(
     for expected, reason in ((not_ready, not_ready_reason(state)), (refusal, refusal_reason(state, HERE))):
         assert (reason is None) == (not expected)
         assert expected in (reason or "")
+
+
+def test_nobody_is_refused_on_this_machine() -> None:
+    state = ProcessState(Settings())
+    crowd_with_several_pages(state)
+    assert refusal_reason(state, "127.0.0.1") is None
+    assert refusal_reason(state, "::1") is None
 
 
 def test_a_server_above_its_memory_ceiling_is_not_ready() -> None:

@@ -13,7 +13,7 @@ import pytest
 from app.runtime.load_monitor import TICK_SECONDS, LoadMonitor
 from app.runtime.loop_watch import SLOW_SECONDS, WAITING, LoopWatch, find_cause
 from app.runtime.metrics import ServerMetrics
-from app.state.history import History
+from app.session.history import History
 from tests.app.clock import Clock
 
 
@@ -96,4 +96,4 @@ def test_the_thread_names_the_function_that_delays_the_tick() -> None:
     watch.tick()
     stopping.set()
     watcher.join()
-    assert "state/history: History.move_to" in counted(metrics)
+    assert "session/history: History.move_to" in counted(metrics)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import pytest
-
+from app.runtime.capacity import Capacity, ProcessorTimes
 from app.runtime.process_state import ProcessState, process_state
 from app.runtime.settings import Settings
 from engine.jobs.manager import Jobs
+from tests.app.clock import Clock
 
 
 def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., ProcessState]) -> None:
@@ -18,26 +18,24 @@ def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., Proce
     assert (stats.cache_limit, stats.orbits_limit, stats.threads) == (1000, 2000, 3)
 
 
-class LateJobs(Jobs):
-    """Jobs whose first frames wait for given times, one for each look at the load."""
+class SparedJobs(Jobs):
+    """Jobs that record whether first frames are spared."""
 
-    def __init__(self, *waits: float) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.waits, self.spared = list(waits), list[bool]()
-
-    def take_first_frame_wait(self) -> float:
-        return self.waits.pop(0)
+        self.spared = list[bool]()
 
     def spare_first_frames(self, spared: bool) -> None:
         self.spared.append(spared)
 
 
-def test_one_thread_is_kept_for_first_frames_as_soon_as_one_is_late_by_waits_and_delays_of_the_loop() -> None:
-    state, jobs = ProcessState(Settings(longest_delay=0.5)), LateJobs(0.1, 0.4, 0.1)
-    state.jobs = jobs
-    for delay in (0.0, 0.3, 0.0):
-        state.load.delay = delay
+def test_work_is_put_off_while_the_pages_may_take_more_than_the_processors_have() -> None:
+    clock, loop = Clock(), iter((0.0, 0.9, 0.9))
+    state = ProcessState(Settings())
+    state.jobs = jobs = SparedJobs()
+    state.capacity = Capacity(0.02, 1, lambda: ProcessorTimes(clock.now, 0.0, 0.0, next(loop)), clock.monotonic, cores=2)
+    for seconds in (0.0, 1.0, 1.0):
+        clock.now += seconds
         state.adapt_to_load()
-    assert state.overload.delay == pytest.approx(0.7)
-    assert jobs.spared == [False, True, True]
-    assert not state.overload.is_overloaded()
+    assert jobs.spared == [False, True, False]
+    assert not state.is_crowded()

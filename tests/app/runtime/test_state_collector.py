@@ -13,9 +13,9 @@ def test_gauges_show_the_current_state() -> None:
     read = state.metrics.registry.get_sample_value
     assert read("escape_explorer_cache_limit_bytes") == 1234
     assert read("escape_explorer_kernels_ready") == 0
-    assert read("escape_explorer_overloaded") == read("escape_explorer_delay_seconds") == 0
-    state.overload.add(1000.0)
-    assert read("escape_explorer_overloaded") == 1
-    assert read("escape_explorer_delay_seconds") == 1000
+    state.capacity.cores, state.capacity.loop = 0.5, 0.3
+    assert read("escape_explorer_cores") == 0.5
+    assert read("escape_explorer_capacity_taken") == 0.3
+    assert read("escape_explorer_crowded") == 0
     state.kernels_ready.set()
     assert read("escape_explorer_kernels_ready") == read("escape_explorer_ready") == 1

@@ -28,9 +28,15 @@ def state(start_state: Callable[..., ProcessState]) -> ProcessState:
     return start_state(most_sessions=3, pages_per_address=2)
 
 
+class OpenedDocument:
+    """The part of a document that tells whose it is."""
+
+    def __init__(self, address: str) -> None:
+        self.session_context = SimpleNamespace(request=SimpleNamespace(remote_ip=address))
+
+
 def session_of(address: str) -> Any:
-    context = SimpleNamespace(request=SimpleNamespace(remote_ip=address))
-    return SimpleNamespace(document=SimpleNamespace(session_context=context))
+    return SimpleNamespace(document=OpenedDocument(address), connection_count=1)
 
 
 def ask(address: str, uri: str = "/app") -> tuple[int, str]:
@@ -56,7 +62,7 @@ def test_websockets_are_not_pages(state: ProcessState) -> None:
 
 
 def test_the_only_visitor_of_a_busy_server_may_reload_the_page(state: ProcessState) -> None:
-    state.overload.add(1000.0)
+    state.capacity.cores = 0.01
     state.sessions = lambda: [session_of("192.0.2.1")]
     count_socket("192.0.2.1")
     assert ask("192.0.2.1")[0] == 200

@@ -26,7 +26,7 @@ def application() -> BokehTornado:
 
 
 def documented() -> list[str]:
-    table = (ROOT / "docs" / "routes.md").read_text()
+    table = (ROOT / "docs" / "operation.md").read_text()
     return re.findall(r"^\| `(/[^`]*)` \|", table, re.MULTILINE)
 
 

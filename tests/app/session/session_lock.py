@@ -7,8 +7,10 @@ from collections.abc import Callable
 from typing import Any
 
 from app.job_clients.latest_request import Locked
+from app.job_clients.shown_results import ShownResults
 from app.session.context import SessionContext
 from app.state.view_state import ViewState
+from app.views.components.notice import Notice
 from engine import System
 from engine.jobs.client import JobSubmitter
 
@@ -35,4 +37,4 @@ def context_of(
 ) -> SessionContext:
     """What presenters share in a session with this lock, whose page copies nothing."""
     locked = locked_by(changed)
-    return SessionContext(state, jobs, locked, locked, lambda text: None, open_view)
+    return SessionContext(state, ShownResults(), jobs, Notice(), locked, locked, lambda text: None, open_view)

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.job_clients.follow_up_requests import FollowUpRequests
 from app.session.analysis_presenter import AnalysisPresenter
 from app.state.view import Analysis, default_settings
 from app.state.view_state import ViewState
@@ -21,7 +20,7 @@ from plots.layers.map_analyses import MapAnalyses
 from plots.layers.table import LAYERS
 from plots.pictures.palette import CLEAR
 from tests.app.map_actions import make_maps
-from tests.app.session.session_lock import context_of, locked_by
+from tests.app.session.session_lock import context_of
 
 
 class Session:
@@ -29,31 +28,26 @@ class Session:
 
     def __init__(self, jobs: Jobs, **chosen: Any) -> None:
         self.changed = threading.Condition()
-        self.analyses = MapAnalyses()
-        self.problems: list[str] = []
         self.state, self.jobs = ViewState(system=System("II"), energy=0.25, resolution=112, t_max=1e3, **chosen), jobs
         self.maps = make_maps()
-        self.presenter = AnalysisPresenter(
-            context_of(self.state, self.jobs, self.changed, self.open_view), self.maps, self.set_analyses, lambda curves: None
-        )
-        self.follow_ups = FollowUpRequests(
-            self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, locked_by(self.changed)
-        )
+        self.context = context_of(self.state, self.jobs, self.changed, self.open_view)
+        self.presenter = AnalysisPresenter(self.context, self.maps)
 
     def open_view(self, system: System, values: dict[str, Any]) -> None:
         self.opened = system, values
 
-    def set_analyses(self, analyses: MapAnalyses) -> None:
-        self.analyses = analyses
+    @property
+    def analyses(self) -> MapAnalyses:
+        found: MapAnalyses = self.context.results.analyses
+        return found
 
     def show(self, frame: EscapeMap) -> None:
-        self.presenter.begin(frame.spec)
-        self.follow_ups.follow(frame)
+        self.context.results.frame = frame
 
     def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
             assert self.changed.wait_for(true, 60), (
-                self.problems,
+                self.context.notice.layout().object,
                 self.presenter.notes.object,
                 self.presenter.measures.text.object,
             )
@@ -62,6 +56,11 @@ class Session:
 @pytest.fixture(scope="module")
 def frame() -> EscapeMap:
     return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (112, 112), t_max=1e3))
+
+
+def unfinished(frame: EscapeMap, energy: float) -> EscapeMap:
+    """A frame of a map of another energy."""
+    return replace(frame, spec=replace(frame.spec, energy=energy), complete=False)
 
 
 @pytest.fixture(autouse=True)
@@ -75,7 +74,6 @@ def open_sessions() -> Iterator[list[Session]]:
     sessions: list[Session] = []
     yield sessions
     for session in sessions:
-        session.follow_ups.follow(None)
         session.presenter.close()
 
 
@@ -106,7 +104,7 @@ def test_doubtful_pixels_are_marked_until_they_are_switched_off_or_the_map_is_an
     marks = np.array(over.pixel_colours)[session.maps.source.data["trust"][0]]
     np.testing.assert_array_equal(marks != CLEAR, session.analyses["trust"].trust == Trust.DOUBTFUL)
     assert "doubtful" in session.presenter.notes.object
-    session.presenter.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (112, 112), t_max=1e3))
+    session.show(unfinished(frame, 0.26))
     assert session.analyses == MapAnalyses()
     session.show(frame)
     session.wait_for(lambda: "trust" in session.analyses)
@@ -146,21 +144,21 @@ def test_origins_and_regularity_have_pictures_while_they_are_switched_on(begin: 
     assert session.analyses == MapAnalyses()
 
 
-def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Callable[..., Session]) -> None:
     session = begin(layers=frozenset({"origins", "trust"}))
+    # No other test has the results of this map.
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (48, 48), t_max=1e3))
     session.maps.show(frame, {**session.maps.source.data})
-    session.presenter.begin(frame.spec)
 
     def notes() -> list[str]:
         return [session.maps.figures[name].elements[0].html.partition("role='status'>")[2].partition("<")[0] for name in shown]
 
     shown = ("origins", "basins", "times")
-    assert notes() == ["computing …", "computing pixels to trust …", ""]
-    session.show(frame)
+    # Results arrive under the lock.
+    with session.changed:
+        session.show(frame)
+        assert notes() == ["computing …", "computing pixels to trust …", ""]
     session.wait_for(lambda: {*session.analyses} == {"origins", "trust"})
-    assert notes() == ["", "", ""]
-    session.presenter.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (112, 112), t_max=1e3))
-    session.presenter.end_computing()
     assert notes() == ["", "", ""]
 
 
@@ -192,13 +190,12 @@ def test_basins_are_measured_and_laws_are_fitted_in_the_box(begin: Callable[...,
     )
 
 
-@pytest.mark.usefixtures("frame")
-def test_another_map_cancels_a_slow_measure(begin: Callable[..., Session]) -> None:
+def test_another_map_cancels_a_slow_measure(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(analysis=Analysis.MEASURES)
     session.wait_for(lambda: session.jobs.in_flight == 0)
     session.presenter.measures.buttons["chaotic_share"].clicks += 1
     assert session.jobs.in_flight == 1
-    session.presenter.begin(replace(session.state.map_spec(), energy=0.3))
+    session.show(unfinished(frame, 0.3))
     assert session.jobs.in_flight == 0
 
 

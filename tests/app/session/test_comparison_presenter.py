@@ -33,13 +33,12 @@ class Session:
         self.changed = threading.Condition()
         self.said, self.refused = [""], [""]
         self.state, self.maps = ViewState(system=System("I"), energy=0.2, t_max=100.0), make_maps()
-        self.presenter = ComparisonPresenter(
-            context_of(self.state, jobs, self.changed), self.maps, self.said.append, self.refused.append
-        )
+        self.context = context_of(self.state, jobs, self.changed)
+        self.presenter = ComparisonPresenter(self.context, self.maps, self.said.append, self.refused.append)
 
     def show(self, frame: EscapeMap) -> None:
         self.maps.show(frame, map_columns(frame))
-        self.presenter.follow(frame)
+        self.context.results.frame = frame
 
     def wait_for(self, text: str) -> None:
         with self.changed:

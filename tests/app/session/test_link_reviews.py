@@ -67,7 +67,7 @@ async def wait_until_said(explorer: Explorer, text: str) -> None:
 
 def test_a_circular_potential_in_a_link_is_refused_in_another_process(called: list[str]) -> None:
     async def check(explorer: Explorer) -> None:
-        assert "Reviewing" in explorer.progress.text.object
+        assert "Reviewing" in explorer.maps.progress.text.object
         await wait_until_said(explorer, "Ignored the potential in the link")
         assert "circular potential" in said(explorer)
         assert (explorer.state.system.case, explorer.state.t_max) == ("I", 1e3)
@@ -104,10 +104,10 @@ def test_a_view_to_compare_with_that_is_refused_is_told_beside_other_problems() 
 def test_entries_of_the_browsers_history_are_reviewed_in_another_process(called: list[str]) -> None:
     async def check(explorer: Explorer) -> None:
         explorer.links.navigate("?" + urlencode(CIRCULAR | {"h": "0.5", "resolution": "112"}), 0, 0)
-        assert "Reviewing" in explorer.progress.text.object
+        assert "Reviewing" in explorer.maps.progress.text.object
         await wait_until_said(explorer, "Ignored the potential in the link")
         assert (explorer.state.system.case, explorer.state.energy, explorer.state.resolution) == ("I", 0.19, 224)
-        assert "Reviewing" not in explorer.progress.text.object
+        assert "Reviewing" not in explorer.maps.progress.text.object
         explorer.links.navigate("?" + urlencode(LEGAL | {"h": "0.5"}), 0, 0)
         await wait_for(explorer.state, "system", lambda system: system.case == TYPED)
         assert explorer.state.energy == 0.5

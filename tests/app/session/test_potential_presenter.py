@@ -8,8 +8,8 @@ from html import escape
 
 import pytest
 
+from app.session.history import History
 from app.session.potential_presenter import PotentialPresenter
-from app.state.history import History
 from app.state.view_state import ViewState
 from engine import CASES, System
 from engine.jobs.manager import Jobs

@@ -37,7 +37,7 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     ),
     # As the tabs do.
     *(lambda explorer, analysis=analysis: explorer.state.param.update(analysis=analysis) for analysis in Analysis),
-    *(lambda explorer, drag=drag: explorer.toolbar.drag.param.update(value=drag) for drag in (Drag.ZOOM, Drag.COUNT)),
+    *(lambda explorer, drag=drag: explorer.maps.toolbar.drag.param.update(value=drag) for drag in (Drag.ZOOM, Drag.COUNT)),
     *(lambda explorer, name=name: explorer.drawers.buttons.param.update(value=[name]) for name in ("gallery", "share", "help")),
     lambda explorer: explorer.set_dark(True),
 ]

@@ -19,6 +19,7 @@ from engine.jobs.manager import Jobs
 from engine.maps.warmup import prepare_for_maps
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
+from tests.disc import disc_map
 
 
 class Session:
@@ -27,7 +28,8 @@ class Session:
     def __init__(self, jobs: Jobs, **chosen: Any) -> None:
         self.changed = threading.Condition()
         self.state = ViewState(system=System("III"), energy=0.45, analysis=Analysis.WATCH, **chosen)
-        self.presenter = WatchPresenter(context_of(self.state, jobs, self.changed))
+        self.context = context_of(self.state, jobs, self.changed)
+        self.presenter = WatchPresenter(self.context)
         _, player = self.presenter.build()
         assert isinstance(player, EnsemblePlayer)
         self.player = player
@@ -80,7 +82,7 @@ def test_the_player_gets_the_rate_of_mixed_motion(session: Session) -> None:
     prepare_for_maps(CASES["III"])
     expected = compute_flux(CASES["III"], 0.45).decay_rate
     with session.changed:
-        session.presenter.request_rate()
+        session.context.results.frame = disc_map()
         assert session.changed.wait_for(lambda: session.player.rate == expected, 60)
     session.state.plane = Plane.X_H
     assert session.player.rate == 0.0

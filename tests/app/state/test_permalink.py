@@ -107,6 +107,14 @@ def test_an_energy_that_the_system_does_not_have_is_named_with_what_is_legal() -
     assert open_link({"case": "III", "h": "-5"})[1] == ["Ignored h=-5: choose an energy above 0, such as 0.35."]
 
 
+def test_a_jacobi_constant_stands_for_the_energy_of_a_rotating_system() -> None:
+    state, problems = open_link({"case": "Hill", "C": "4"})
+    assert (state.energy, problems) == (-2.0, [])
+    state, problems = open_link({"case": "II", "C": "4"})
+    assert state.energy == state.energies.first
+    assert problems == ["Ignored C=4: the frame of this system does not rotate."]
+
+
 @pytest.mark.parametrize("text", ["100000", "1e5", "1E+5", "100000.0", "100 000", "100,000", "100\u202f000"])
 def test_any_usual_format_of_a_number_is_read(text: str) -> None:
     assert read_link({"t_max": text}) == ({"t_max": 1e5}, [])

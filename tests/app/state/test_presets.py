@@ -83,6 +83,7 @@ def test_all_groups_cases_planes_and_pictures_occur() -> None:
 
 @each_preset
 def test_a_preset_is_a_valid_view_with_a_link_and_a_small_picture(preset: Preset) -> None:
+    assert read_link(dict(parse_qsl(preset.link, strict_parsing=True)))[1] == []
     state = ViewState(**preset.view.values())
     assert state.map_spec() == spec_of(preset.view)
     values, problems = read_link(dict(parse_qsl(write_link(state)[1:], strict_parsing=True)))

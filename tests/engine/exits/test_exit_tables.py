@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from engine import CASES, POTENTIALS, Potential, find_lyapunov_orbits, parse_formula
 from engine.exits.exit_tables import LARGEST_ERROR, tabulate_exits
-from engine.propagation.portable_system import make_portable_system
+from engine.slices.portable_system import make_portable_system
 from tests.node import needs_node, run_node
 
 HIGHEST = {"I": 0.5, "II": 0.5, "III": 1.0, "C5": 1.2, "HH": 0.6}

@@ -27,7 +27,7 @@ from engine import (
 from engine.foundations.execution import Execution
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.jobs.orbit_semaphore import SMALL_JOB
+from engine.jobs.map_priority import CROWDED_REST_SECONDS
 from engine.sweeps.map_jobs import map_job
 from tests.app.clock import Clock
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
@@ -242,67 +242,27 @@ def test_cancelled_map_ends_while_background_is_paused(paused: Jobs) -> None:
     assert jobs.stats().calls_waiting == 0
 
 
-def show_a_frame(clock: Clock, waits: int, *, execution: Execution, on_frame: Callable[[Any], None]) -> str:
-    """A map that needs 2 s of a processor until its first frame, has to wait for it, and takes long afterwards."""
-    clock.compute(1)
-    assert execution.executor is not None
-    execution.executor.submit(clock.compute, 1).result()
-    clock.now += waits
+def show_two_frames(clock: Clock, shown: threading.Event, *, execution: Execution, on_frame: Callable[[Any], None]) -> str:
+    """A map whose second frame needs 2 s of a processor."""
     on_frame(SimpleNamespace(complete=False, horizon=1.0))
-    clock.now += 100.0
+    assert execution.executor is not None
+    second = execution.executor.submit(clock.compute, 2)
+    shown.set()
+    second.result()
     return "map"
 
 
-def test_the_wait_for_a_first_frame_is_measured_without_its_own_computation() -> None:
-    clock = Clock()
-    jobs, inbox = Jobs(threads=1, clock=clock), Inbox()
-    jobs.request(Job(show_a_frame, (clock, 3), queue=Queue.FIRST_FRAME), inbox.result, inbox.error)
+def test_all_but_the_first_frame_is_put_off_while_the_process_is_crowded() -> None:
+    clock, shown, inbox = Clock(), threading.Event(), Inbox()
+    jobs = Jobs(threads=1, clock=clock)
+    jobs.spare_first_frames(True)
+    jobs.request(Job(show_two_frames, (clock, shown), queue=Queue.FIRST_FRAME), inbox.result, inbox.error)
+    assert shown.wait(30)
+    assert (jobs.stats().calls_waiting, jobs.stats().computed) == (1, 0.0)
+    clock.now += CROWDED_REST_SECONDS
+    jobs.spare_first_frames(True)
     assert inbox.done.wait(30)
-    wait_until_idle(jobs)
-    assert (inbox.errors, jobs.take_first_frame_wait()) == ([], 3.0)
-    assert jobs.take_first_frame_wait() == 0.0
-
-
-def test_only_maps_have_a_first_frame() -> None:
-    clock = Clock()
-    jobs, inbox = Jobs(threads=1, clock=clock), Inbox()
-    jobs.request(Job(show_a_frame, (clock, 3)), inbox.result, inbox.error)
-    assert inbox.done.wait(30)
-    wait_until_idle(jobs)
-    assert (inbox.errors, jobs.take_first_frame_wait()) == ([], 0.0)
-
-
-def test_maps_that_wait_for_a_thread_count() -> None:
-    clock = Clock()
-    jobs, begun, end, inbox = Jobs(threads=1, clock=clock), threading.Event(), threading.Event(), Inbox()
-    jobs.request(Job(wait_for, (begun, end), queue=Queue.LONG_CALL), Inbox().result, Inbox().error)
-    assert begun.wait(30)
-    jobs.request(map_job(QUICK), inbox.result, inbox.error)
-    clock.now += 3.0
-    assert jobs.take_first_frame_wait() == 3.0
-    clock.now += 1.0
-    end.set()
-    assert inbox.done.wait(30)
-    assert jobs.take_first_frame_wait() == 4.0
-
-
-def test_large_maps_that_wait_for_each_other_do_not_count() -> None:
-    clock = Clock()
-    jobs, begun, end, inbox = (
-        Jobs(threads=1, most_orbits=2 * SMALL_JOB, clock=clock),
-        threading.Event(),
-        threading.Event(),
-        Inbox(),
-    )
-    jobs.request(Job(wait_for, (begun, end), orbits=2 * SMALL_JOB), Inbox().result, Inbox().error)
-    assert begun.wait(30)
-    jobs.request(Job(show_a_frame, (clock, 3), queue=Queue.FIRST_FRAME, orbits=2 * SMALL_JOB), inbox.result, inbox.error)
-    clock.now += 3.0
-    waiting = jobs.take_first_frame_wait()
-    end.set()
-    assert inbox.done.wait(30)
-    wait_until_idle(jobs)
-    assert (waiting, jobs.take_first_frame_wait()) == (0.0, 0.0)
+    wait_until(lambda: jobs.stats().computed == 2.0)
 
 
 def test_finished_job_leaves_no_reference_cycles() -> None:

@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, MapSpec, OriginFateMap, Plane, classify_orbits, compute_map, compute_origin_fates, start_states
+from engine import CASES, MapSpec, Plane, classify_orbits, compute_map, compute_origin_fates, start_states
 from engine.foundations.execution import Execution
 from engine.maps.origin_fates import join_origin_fates
+from engine.results import OriginFateMap
 
 # Channel numbers under y → −y; 0 is bounded.
 MIRRORED_IN_Y = {"I": [0, 2, 1], "II": [0, 1, 3, 2], "III": [0, 4, 3, 2, 1]}

@@ -15,7 +15,6 @@ from engine import (
     MapSpec,
     Plane,
     Regularity,
-    RegularityMap,
     Slice,
     compute_map,
     compute_regularity,
@@ -24,6 +23,7 @@ from engine import (
 )
 from engine.foundations.execution import Execution
 from engine.propagation.fates import CHAOS_THRESHOLD, is_chaotic
+from engine.results import RegularityMap
 
 
 def map_and_regularity(name: str, energy: float, side: int = 9, t_max: float = 1e4) -> tuple[EscapeMap, RegularityMap]:

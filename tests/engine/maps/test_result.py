@@ -6,19 +6,9 @@ import threading
 import numpy as np
 import pytest
 
-from engine import (
-    CASES,
-    EscapeMap,
-    Evidence,
-    Fate,
-    MapSpec,
-    Outcomes,
-    Plane,
-    classify_orbits,
-    compute_map,
-    start_states,
-)
+from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, classify_orbits, compute_map, start_states
 from engine.foundations.execution import Execution
+from engine.results import Outcomes
 
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
 # Has bounded, escaping, forbidden and outside pixels, and more pixels than the first frame.

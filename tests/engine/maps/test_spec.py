@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, Coordinate, MapSpec, Plane, Potential, Slice
+from engine.slices.axes import Energy
 from engine.slices.default_window import default_window
-from engine.slices.energies import Energy
 
 I = CASES["I"]  # noqa: E741  # named like the case
 WINDOW = (-1.0, 1.0, -1.0, 1.0)

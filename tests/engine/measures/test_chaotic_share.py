@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from engine import Regularity, compute_chaotic_share
-from engine.foundations.proportions import wilson_interval
+from engine import POTENTIALS, Regularity, compute_chaotic_share
+from engine.measures.starts import wilson_interval
 
 
 def test_orbits_that_escape_or_are_not_judged_do_not_count() -> None:
@@ -19,3 +20,8 @@ def test_without_bounded_orbits_there_is_no_share() -> None:
     found = compute_chaotic_share(np.array([[Regularity.NOT_APPLICABLE]]))
     assert np.isnan([found.share, found.low, found.high]).all()
     assert found.describe() == "No orbit is bounded."
+
+
+def test_a_map_without_codes_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"character=.*: must be a RegularityMap, or an array of codes of Regularity"):
+        compute_chaotic_share(POTENTIALS["I"])

@@ -9,7 +9,6 @@ import pytest
 from engine import (
     CASES,
     EscapeMap,
-    EscapeStatistics,
     Fate,
     MapSpec,
     Plane,
@@ -21,6 +20,7 @@ from engine import (
     sample_starts,
 )
 from engine.measures.escape_statistics import compute_survival
+from engine.results import EscapeStatistics
 
 SIDE = 60
 

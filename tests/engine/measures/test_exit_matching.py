@@ -5,17 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import (
-    ExitMatching,
-    Fate,
-    Potential,
-    classify_orbits,
-    compute_exit_matching,
-    sample_entrances,
-    sample_entrances_by_exit,
-)
-from engine.foundations.proportions import wilson_interval
-from engine.measures.starts import Starts
+from engine import Fate, Potential, classify_orbits, compute_exit_matching, sample_entrances, sample_entrances_by_exit
+from engine.measures.starts import Starts, wilson_interval
+from engine.results import ExitMatching
 
 UNEQUAL = Potential("unequal", ((2, 0, 0.5), (0, 2, 0.6), (1, 2, -1.0), (3, 0, 0.3)))
 ENERGY = 1.2 * UNEQUAL.escape_energy
@@ -53,7 +45,8 @@ def test_as_many_orbits_pass_from_one_exit_to_another_as_back() -> None:
     counts = compute_exit_matching(entrances, classify_orbits(UNEQUAL, ENERGY, states, 1e4)).counts[:, 1:]
     assert counts.shape[0] == counts.shape[1] > 1
     assert counts.min() > 10
-    assert np.all(np.abs(counts - counts.T) <= 4.0 * np.sqrt(counts + counts.T))
+    # The difference of each of a few pairs is normal; the probability of a false alarm is 4e-8.
+    assert np.all(np.abs(counts - counts.T) <= 5.5 * np.sqrt(counts + counts.T))
     # They remember how they entered.
     assert np.ptp(counts / counts.sum(axis=1, keepdims=True), axis=0).max() > 0.1
 

@@ -27,8 +27,10 @@ def test_the_error_is_the_scatter_of_the_area_over_shifted_grids(across: float, 
         along, other = c * (x - dx) + s * (y - dy), c * (y - dy) - s * (x - dx)
         found.append(measure((along / across) ** 2 + (other / up) ** 2 <= 1.0))
     areas, errors = np.array([(one.area, one.area_error) for one in found]).T
+    # More than 6 standard errors of the mean of 1000 areas.
     assert areas.mean() == pytest.approx(np.pi * across * up, rel=2e-3)
-    assert np.sqrt(np.mean((areas - np.pi * across * up) ** 2)) == pytest.approx(errors.mean(), rel=0.12)
+    # 5.5 standard errors, of 2.2 % each, and what the formula neglects: up to 16 % for circles.
+    assert np.sqrt(np.mean((areas - np.pi * across * up) ** 2)) == pytest.approx(errors.mean(), rel=0.28)
 
 
 def test_parts_that_share_a_corner_are_one_island_and_small_ones_do_not_count() -> None:

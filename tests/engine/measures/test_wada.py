@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.measures.labels import exit_labels
+from engine.measures.starts import exit_labels
 from engine.measures.wada import COUNTS_BOUNDED, WadaTest, compute_wada_test
 
 

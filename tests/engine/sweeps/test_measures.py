@@ -24,6 +24,7 @@ from engine import (
 from engine.sweeps.measured_map import MeasuredMap, SweepPoint
 from engine.sweeps.measures import CURVES
 from engine.sweeps.points import compute_point, measure_map
+from tests.extending import run_example
 
 ROOT = Path(__file__).parents[3]
 
@@ -36,11 +37,8 @@ def sea() -> EscapeMap:
 
 @pytest.fixture(scope="module")
 def example() -> Measure:
-    """The entry of the example in CONTRIBUTING.md."""
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Example: add a measure\n")[2]
-    code, found = text.partition("```python\n")[2].partition("```")[0], {}
-    exec(code, found)
-    return found["BOUNDARY"]
+    """The entry of the example in docs/extending.md."""
+    return run_example("Example: add a measure", {"__name__": __name__})["BOUNDARY"]
 
 
 def test_the_example_of_the_guide_is_measured_like_any_other(
@@ -58,7 +56,7 @@ def test_the_example_of_the_guide_is_measured_like_any_other(
 
 
 def test_documents_list_all_measures() -> None:
-    text = (ROOT / "docs" / "curves.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
     assert [name for name in MEASURES if f"| `{name}` |" not in text] == []
 
 

@@ -29,7 +29,6 @@ from engine import (
     Regularity,
     Result,
     Slice,
-    Sweep,
     SweepSpec,
     System,
     classify_orbits,
@@ -55,6 +54,7 @@ from engine import (
     sample_orbits,
     sample_starts,
 )
+from engine.results import Sweep
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from tests.results import result_of
 

@@ -24,7 +24,6 @@ from engine import (
     Plane,
     Potential,
     Slice,
-    Sweep,
     SweepSpec,
     System,
     compute_basin_entropy,
@@ -34,6 +33,7 @@ from engine import (
     compute_wada_test,
     fit_decay_laws,
 )
+from engine.results import Sweep
 from engine.slices.default_window import default_window
 from engine.sweeps.measured_map import SweepPoint
 from engine.sweeps.measures import QUICK_CURVES

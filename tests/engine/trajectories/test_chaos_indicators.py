@@ -16,7 +16,7 @@ from engine.foundations.wording import format_time
 from engine.trajectories import chaos_indicators
 from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
 from engine.trajectories.chaos_indicators import Verdict, evaluate_indicators
-from tests.contributing import run_example
+from tests.extending import run_example
 
 # Hénon & Heiles at or below E = 1/8, with their y as x: an orbit in an island and one in the chaotic sea.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]
@@ -155,7 +155,7 @@ def test_digits_are_judged_at_the_longest_window(island: Orbit, window: float, d
     assert conclusions(island, found)[3] is expected
 
 
-def test_the_indicator_that_contributing_adds_tells_the_sea_from_an_island(island: Orbit) -> None:
-    indicator = run_example("Example: add a chaos indicator", chaos_indicators)["FLI"]
+def test_the_indicator_of_the_guide_tells_the_sea_from_an_island(island: Orbit) -> None:
+    indicator = run_example("Example: add a chaos indicator", vars(chaos_indicators))["FLI"]
     assert indicator.judge(integrate_orbit(CASES["II"], SEA, 8000.0), None)[0] is Verdict.CHAOTIC
     assert indicator.judge(island, None)[0] is Verdict.UNDECIDED

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import CASES, DivergentStart, Fate, Plane, classify_orbits, find_divergent_start, integrate_orbit, start_states
+from engine import CASES, Fate, Plane, classify_orbits, find_divergent_start, integrate_orbit, start_states
 from engine.foundations.execution import Execution, SerialExecutor
+from engine.results import DivergentStart
 
 T_MAX = 2000.0
 # Potential, plane, energy, x, ordinate, at different distances from the basin boundary; the second one is bounded.

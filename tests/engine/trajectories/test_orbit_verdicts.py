@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, BirkhoffDigits, Evidence, Orbit, Plane, integrate_orbit, judge_orbit, start_states
+from engine import CASES, Evidence, Orbit, Plane, integrate_orbit, judge_orbit, start_states
+from engine.results import BirkhoffDigits
 from engine.trajectories.chaos_indicators import Verdict
 from tests.disc import DISC
 

@@ -1,8 +1,7 @@
-"""The layer of the example in CONTRIBUTING is drawn, explained and stored like those of the page."""
+"""The layer of the example in docs/extending.md is drawn, explained and stored like those of the page."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
@@ -21,8 +20,8 @@ from plots.layers.map_analyses import MapAnalyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ShownMap
 from plots.pictures.palette import CLEAR, PAPER, rgba
+from tests.extending import run_example
 
-CONTRIBUTING = Path(__file__).parents[3] / "CONTRIBUTING.md"
 GIVEN: dict[str, Any] = {
     **{name: getattr(layer, name) for name in ("Code", "Layer", "Over", "Pixels", "occurring_entries")},
     **{one.__name__: one for one in (EscapeMap, IntEnum, Job, PixelAnalysis, dataclass, map_job, read_only)},
@@ -33,10 +32,7 @@ GIVEN: dict[str, Any] = {
 @pytest.fixture
 def late(monkeypatch: pytest.MonkeyPatch) -> Any:
     """The entry of the example, listed as the last layer."""
-    section = CONTRIBUTING.read_text(encoding="utf-8").partition("## Example: add a layer")[2].partition("\n## ")[0]
-    names = dict(GIVEN)
-    exec("\n".join(re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)), names)
-    entry = names["LATE"]
+    entry = run_example("Example: add a layer", GIVEN)["LATE"]
     for module in (map_analyses, map_images, table):
         monkeypatch.setattr(module, "LAYERS", {**table.LAYERS, entry.name: entry})
     yield entry

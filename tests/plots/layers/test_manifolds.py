@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, StableManifolds, find_stable_manifolds
+from engine import CASES, find_stable_manifolds
+from engine.results import StableManifolds
 from plots.layers.manifolds import manifold_strokes
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, Regularity, RegularityMap, compute_map, compute_regularity
+from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, Regularity, compute_map, compute_regularity
+from engine.results import RegularityMap
 from plots.layers.map_images import layer_columns, result_columns
 from plots.layers.regularity import CODES, REGULARITY
 from plots.pictures.palette import PAPER

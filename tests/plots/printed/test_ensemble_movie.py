@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from engine import CASES, SampledOrbits, sample_orbits, sample_starts
+from engine import CASES, sample_orbits, sample_starts
+from engine.results import SampledOrbits
 from plots.pictures.palette import PAPER
 from plots.printed.ensemble_movie import FRAMES_PER_SECOND, MovieFormat, ensemble_movie_bytes
 from plots.printed.figure_style import FigureStyle

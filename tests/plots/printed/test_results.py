@@ -9,7 +9,8 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from engine import Result, SampledOrbits
+from engine import Result
+from engine.results import SampledOrbits
 from plots.pictures.palette import PALETTES
 from tests.results import POTENTIAL, RESULTS, SPEC, result_of
 

@@ -20,7 +20,7 @@ from reproduction.rotating.paper_maps import BODY_RADII, LONG_MAP, PAPER_MAPS, P
 from reproduction.rotating.tables import COLUMNS, make_table
 
 SIDE = 12
-PAGE = Path(__file__).parents[3] / "docs" / "rotating-papers.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reproduction.md"
 
 BOUNDED = int(Fate.BOUNDED)
 # The system whose table is computed often.

@@ -7,7 +7,8 @@ from bokeh.models import HoverTool
 
 from app.views.analysis.curves import CurvesView
 from app.views.components.plots import FigurePane
-from engine import CASES, Plane, Sweep, SweepSpec, compute_sweep
+from engine import CASES, Plane, SweepSpec, compute_sweep
+from engine.results import Sweep
 from engine.sweeps.measures import CURVES
 from plots.pictures.sweep_panels import CURVE_PANELS
 

@@ -6,6 +6,9 @@ import panel as pn
 import pytest
 from bokeh.plotting import figure
 
+from app.job_clients.shown_results import ShownResults
+from app.state.view import Analysis
+from app.state.view_state import ViewState
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
@@ -21,9 +24,19 @@ def frame() -> EscapeMap:
 
 
 @pytest.fixture
-def view(frame: EscapeMap) -> StatisticsView:
-    view = StatisticsView(lambda: None, COPIED.append)
-    view.show(frame)
+def state() -> ViewState:
+    return ViewState()
+
+
+@pytest.fixture
+def results() -> ShownResults:
+    return ShownResults()
+
+
+@pytest.fixture
+def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> StatisticsView:
+    view = StatisticsView(state, results, COPIED.append)
+    results.frame = frame
     return view
 
 
@@ -33,10 +46,10 @@ def charts(view: StatisticsView) -> list[figure]:
     return [part.object for part in view.build() if isinstance(part, pn.pane.Bokeh)]
 
 
-def test_the_charts_count_every_escape(view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
+def test_the_charts_count_every_escape(state: ViewState, view: StatisticsView, charts: list[figure], frame: EscapeMap) -> None:
     # Nothing is counted before it is shown.
     assert view.table.object == ""
-    view.activate(True)
+    state.analysis = Analysis.STATISTICS
     statistics = compute_statistics(frame)
     times, probabilities = (chart.renderers[0].data_source.data for chart in charts)
     assert times["top"].sum() == statistics.escaped
@@ -44,9 +57,10 @@ def test_the_charts_count_every_escape(view: StatisticsView, charts: list[figure
 
 
 @pytest.mark.parametrize("box", [None, BOX])
-def test_the_table_is_copied_with_shares_at_full_precision(view: StatisticsView, frame: EscapeMap, box: Window | None) -> None:
-    view.activate(True)
-    view.show_box(box)
+def test_the_table_is_copied_with_shares_at_full_precision(
+    state: ViewState, view: StatisticsView, frame: EscapeMap, box: Window | None
+) -> None:
+    state.param.update(analysis=Analysis.STATISTICS, box=box)
     view.copy.clicks += 1
     rows = [line.split("\t") for line in COPIED[-1].splitlines()]
     statistics = compute_statistics(frame, box)
@@ -54,7 +68,7 @@ def test_the_table_is_copied_with_shares_at_full_precision(view: StatisticsView,
     assert [float(value) for value in rows[1][1:]] == [statistics.shares[1], *statistics.share_intervals[1]]
 
 
-def test_a_collision_has_its_row(view: StatisticsView) -> None:
-    view.activate(True)
-    view.show(frame := disc_map())
+def test_a_collision_has_its_row(state: ViewState, results: ShownResults, view: StatisticsView) -> None:
+    state.analysis = Analysis.STATISTICS
+    results.frame = frame = disc_map()
     assert f"collision with a disc</span></td><td>{percent(frame.fractions()[3], 2)}" in view.table.object

@@ -1,12 +1,8 @@
-"""Numbers as the page writes them."""
+"""Percentages as the page writes them."""
 
 from __future__ import annotations
 
-from app.views.components.numbers import grouped, percent, percent_range
-
-
-def test_groups_of_three_digits() -> None:
-    assert [grouped(value) for value in (7, 1000.0, 1e6)] == ["7", "1 000", "1 000 000"]
+from app.views.components.numbers import percent, percent_range
 
 
 def test_percentages() -> None:

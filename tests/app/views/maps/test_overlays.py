@@ -8,7 +8,8 @@ from bokeh.models import ColumnDataSource, Image
 from app.views.components.plots import map_figure
 from app.views.maps.map_ranges import MapRanges
 from app.views.maps.overlays import Overlays
-from engine import CASES, StableManifolds, find_stable_manifolds
+from engine import CASES, find_stable_manifolds
+from engine.results import StableManifolds
 from plots.layers.table import LAYERS, PICTURES
 from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER
 

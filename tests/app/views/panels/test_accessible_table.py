@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.panels.accessible_table import AccessibleTable
 from engine import CASES, MapSpec, Plane, System, compute_map
@@ -9,31 +11,34 @@ from tests.disc import disc_map
 
 
 def test_the_table_is_written_while_it_is_open() -> None:
-    table = AccessibleTable(ViewState(system=System("I"), energy=0.19))
-    table.show_orbits([])
+    results = ShownResults()
+    table = AccessibleTable(ViewState(system=System("I"), energy=0.19), results)
+    results.orbits = (ChosenOrbit((0.1, 0.1)),)
     assert table.text.object == ""
     table.fold.button.clicks += 1
     assert "Case I" in table.text.object
     assert "exit 1" not in table.text.object
-    table.show_map(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (15, 15), t_max=100.0)))
+    results.frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (15, 15), t_max=100.0))
     assert "escape through exit 1" in table.text.object
     table.fold.button.clicks += 1
-    table.show_map(compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (15, 15), t_max=100.0)))
+    results.frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (15, 15), t_max=100.0))
     assert "exit 3" not in table.text.object
     table.fold.button.clicks += 1
     assert "escape through exit 3" in table.text.object
 
 
 def test_a_map_without_escapes_has_no_times() -> None:
-    table = AccessibleTable(ViewState(system=System("I"), energy=0.1))
+    results = ShownResults()
+    table = AccessibleTable(ViewState(system=System("I"), energy=0.1), results)
     table.fold.button.clicks += 1
-    table.show_map(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.1, (15, 15), t_max=100.0)))
+    results.frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.1, (15, 15), t_max=100.0))
     assert "nothing escaped" in table.text.object
     assert "nan" not in table.text.object
 
 
 def test_collisions_have_a_row() -> None:
-    table = AccessibleTable(ViewState(system=System("I"), energy=0.19))
+    results = ShownResults()
+    table = AccessibleTable(ViewState(system=System("I"), energy=0.19), results)
     table.fold.button.clicks += 1
-    table.show_map(disc_map())
+    results.frame = disc_map()
     assert "<th scope=row>collide with a disc</th>" in table.text.object

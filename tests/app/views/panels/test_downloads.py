@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.shown_results import ShownResults
 from app.runtime.process_state import ProcessState
 from app.state.view_state import ViewState
 from app.views.panels.downloads import Downloads
@@ -28,13 +29,16 @@ def escape_map() -> EscapeMap:
 
 
 @pytest.fixture
-def downloads_view(escape_map: EscapeMap) -> Downloads:
-    """With a complete map and one orbit."""
-    shown = Downloads(ViewState(system=System("I"), energy=0.19), lambda: None, lambda: None, lambda copied: None)
-    shown.show_map(escape_map)
+def results(escape_map: EscapeMap) -> ShownResults:
     orbit = integrate_orbit(CASES["I"], STATE, 50.0)
-    shown.show_orbits([ChosenOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit))])
-    return shown
+    return ShownResults(frame=escape_map, orbits=(ChosenOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit)),))
+
+
+@pytest.fixture
+def downloads_view(results: ShownResults) -> Downloads:
+    """With a complete map and one orbit."""
+    state = ViewState(system=System("I"), energy=0.19)
+    return Downloads(state, results, lambda: None, lambda: None, lambda copied: None)
 
 
 @pytest.mark.parametrize("ancestors", [(), ("https://a.example",)])
@@ -42,7 +46,7 @@ def test_code_that_embeds_the_page_is_offered_where_pages_may_embed_it(
     start_state: Callable[..., ProcessState], ancestors: tuple[str, ...]
 ) -> None:
     start_state(frame_ancestors=ancestors)
-    offered = Downloads(ViewState(), lambda: None, lambda: None, lambda copied: None)
+    offered = Downloads(ViewState(), ShownResults(), lambda: None, lambda: None, lambda copied: None)
     assert offered.embed.disabled == (not ancestors)
 
 
@@ -60,10 +64,11 @@ def test_the_event_loop_runs_while_a_file_is_made(downloads_view: Downloads) -> 
     run_on_new_loop(save)
 
 
-def test_a_file_holds_what_is_shown_at_the_moment_of_the_click(downloads_view: Downloads, escape_map: EscapeMap) -> None:
+def test_a_file_holds_what_is_shown_at_the_moment_of_the_click(
+    downloads_view: Downloads, results: ShownResults, escape_map: EscapeMap
+) -> None:
     (name, make), (_, make_table) = downloads_view.netcdf_file(), downloads_view.csv_file()
-    downloads_view.show_map(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (3, 3), t_max=10.0)))
-    downloads_view.show_orbits([])
+    results.param.update(frame=compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (3, 3), t_max=10.0)), orbits=())
     assert name == "escapes-I-x_px-h0.19-t100.nc"
     with xr.open_dataset(BytesIO(make()), engine="h5netcdf") as dataset:
         np.testing.assert_array_equal(dataset["fate"], escape_map.fate)

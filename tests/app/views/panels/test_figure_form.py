@@ -10,8 +10,9 @@ import pytest
 
 from app.browser.components.file_saver import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
+from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
-from app.views.panels.figure_choices import ALL_MAPS, FIGURES, ShownResults, figure_choices
+from app.views.panels.figure_choices import ALL_MAPS, FIGURES, figure_choices
 from app.views.panels.figure_form import FigureForm
 from engine import (
     CASES,
@@ -43,7 +44,7 @@ def shown(escape_map: EscapeMap) -> ShownResults:
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
     analyses = MapAnalyses({"judge": compute_regularity(escape_map)})
-    return ShownResults(escape_map, analyses, [ChosenOrbit((0.1, 0.05), orbit)], curves)
+    return ShownResults(frame=escape_map, analyses=analyses, orbits=(ChosenOrbit((0.1, 0.05), orbit),), curves=curves)
 
 
 class KeptFiles(FileSaver):
@@ -63,17 +64,22 @@ def saved() -> KeptFiles:
 
 
 @pytest.fixture
-def form(shown: ShownResults, saved: KeptFiles) -> FigureForm:
-    made = FigureForm(ViewState(system=System("I"), energy=0.19), saved, lambda ending: f"escapes{ending}", lambda copied: None)
-    made.show(shown)
-    return made
+def results(shown: ShownResults) -> ShownResults:
+    """The same for a test that changes it."""
+    return ShownResults(frame=shown.frame, analyses=shown.analyses, orbits=shown.orbits, curves=shown.curves)
+
+
+@pytest.fixture
+def form(results: ShownResults, saved: KeptFiles) -> FigureForm:
+    state = ViewState(system=System("I"), energy=0.19)
+    return FigureForm(state, results, saved, lambda ending: f"escapes{ending}", lambda copied: None)
 
 
 def test_what_is_shown_can_be_drawn(shown: ShownResults) -> None:
     state = ViewState(system=System("I"), energy=0.19)
     assert list(figure_choices(ShownResults(), state)) == []
     maps = [ALL_MAPS, "Basins of escape", "Escape time", "Crossings of y = 0"]
-    assert list(figure_choices(ShownResults(shown.frame), state)) == [*maps, "The well in (x, y)", "Statistics"]
+    assert list(figure_choices(ShownResults(frame=shown.frame), state)) == [*maps, "The well in (x, y)", "Statistics"]
     others = ["Regular or chaotic", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"]
     assert list(figure_choices(shown, state)) == [*maps, *others]
 
@@ -100,16 +106,18 @@ def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
     assert sent == [b"figure"]
 
 
-def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, shown: ShownResults, saved: KeptFiles) -> None:
+def test_a_choice_stays_while_the_next_map_is_computed(
+    form: FigureForm, results: ShownResults, shown: ShownResults, saved: KeptFiles
+) -> None:
     assert form.figure()[0] == ""
     form.what.value = "Regular or chaotic"
     assert form.figure()[0] == "-regular-or-chaotic"
-    form.show(ShownResults())
+    results.param.update(frame=None, orbits=(), curves=None)
     assert (form.what.options, form.what.value) == ([ALL_MAPS, "Regular or chaotic"], "Regular or chaotic")
     form.save.clicks += 1
     assert form.text.object == "Regular or chaotic: this is not computed yet."
     assert not saved.names
-    form.show(shown)
+    results.param.update(frame=shown.frame, orbits=shown.orbits, curves=shown.curves)
     assert set(FIGURES) - set(form.what.options) == {"Origin and exit", "Lagrangian descriptor"}
 
 

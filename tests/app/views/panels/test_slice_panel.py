@@ -22,7 +22,7 @@ class Drawer:
 
     def __init__(self) -> None:
         self.state = ViewState(system=System("I"), energy=0.19)
-        self.panel = SlicePanel(self.state, self.state.show_slice)
+        self.panel = SlicePanel(self.state)
 
     @property
     def boxes(self) -> dict[str, NumberBox]:

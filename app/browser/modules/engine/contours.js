@@ -1,0 +1,104 @@
+// @ts-check
+/** Level lines of a function on a rectangle, by marching squares. */
+
+/** Samples along a side; between them the function is taken to be linear. */
+export const SAMPLES = 101
+
+/**
+ * Values of a function on a grid over a window, from which the lines of any level follow.
+ *
+ * @typedef {object} Grid
+ * @property {import("./starts.js").Window} window
+ * @property {Float64Array} values  row by row
+ */
+
+/**
+ * The pieces of the line on which the function has a level.
+ *
+ * @param {Grid} grid
+ * @param {number} level
+ * @returns {{xs: number[], ys: number[]}[]}
+ */
+export function levelLines({window, values}, level) {
+  /** Neighbours on the line of each crossed edge: edges from a sample to the right have even numbers, upward ones odd numbers. */
+  const joined = /** @type {Map<number, number[]>} */ (new Map())
+  const join = (/** @type {number} */ one, /** @type {number} */ other) => {
+    for (const [from, to] of [
+      [one, other],
+      [other, one],
+    ])
+      joined.set(from, [...(joined.get(from) ?? []), to])
+  }
+  for (let row = 0; row < SAMPLES - 1; row++) {
+    for (let column = 0; column < SAMPLES - 1; column++) joinCell(values, level, row * SAMPLES + column, join)
+  }
+  const place = (/** @type {number} */ edge) => edgePoint(window, values, level, edge)
+  const lines = takeLines(joined).map(edges => edges.map(place))
+  return lines.map(line => ({xs: line.map(([x]) => x), ys: line.map(([, y]) => y)}))
+}
+
+/**
+ * Join the crossed edges of the cell above and to the right of a sample.
+ *
+ * @param {Float64Array} values
+ * @param {number} level
+ * @param {number} corner
+ * @param {(one: number, other: number) => void} join
+ */
+function joinCell(values, level, corner, join) {
+  const corners = [corner, corner + 1, corner + SAMPLES + 1, corner + SAMPLES]
+  const inside = corners.map(sample => values[sample] <= level)
+  if (inside.every(Boolean) || !inside.some(Boolean)) return
+  const sides = [2 * corner, 2 * (corner + 1) + 1, 2 * (corner + SAMPLES), 2 * corner + 1]
+  const crossed = sides.filter((_, k) => inside[k] !== inside[(k + 1) % 4])
+  // Two lines pass a saddle.
+  for (let k = 0; k < crossed.length; k += 2) join(crossed[k], crossed[k + 1])
+}
+
+/**
+ * @param {import("./starts.js").Window} window
+ * @param {Float64Array} values
+ * @param {number} level
+ * @param {number} edge
+ * @returns {[number, number]}
+ */
+function edgePoint(window, values, level, edge) {
+  const [from, upward] = [edge >> 1, edge & 1]
+  const to = from + (upward ? SAMPLES : 1)
+  const share = (level - values[from]) / (values[to] - values[from])
+  const column = (from % SAMPLES) + (upward ? 0 : share)
+  const row = Math.floor(from / SAMPLES) + (upward ? share : 0)
+  const scale = 1 / (SAMPLES - 1)
+  return [
+    window.xLow + (window.xHigh - window.xLow) * column * scale,
+    window.ordinateLow + (window.ordinateHigh - window.ordinateLow) * row * scale,
+  ]
+}
+
+/**
+ * Follow the lines: those with ends first, then closed ones.
+ *
+ * @param {Map<number, number[]>} joined  emptied
+ * @returns {number[][]}
+ */
+function takeLines(joined) {
+  const lines = []
+  const ends = [...joined.keys()].filter(edge => joined.get(edge)?.length === 1)
+  for (const first of [...ends, ...joined.keys()]) {
+    if (!joined.has(first)) continue
+    const line = [first]
+    const closed = joined.get(first)?.length === 2
+    /** @type {number | undefined} */
+    let edge = first
+    while (edge !== undefined) {
+      /** @type {number | undefined} */
+      const next = joined.get(edge)?.find(other => joined.has(other) && other !== line[line.length - 2])
+      joined.delete(edge)
+      if (next !== undefined) line.push(next)
+      edge = next
+    }
+    if (closed) line.push(first)
+    lines.push(line)
+  }
+  return lines
+}

@@ -1,0 +1,71 @@
+// @ts-check
+/** The lines over the pictures at an energy of a preview: the limiting curve, and the exits, circles included. */
+
+import {Exits} from "./exits.js"
+import {levelLines, SAMPLES} from "./contours.js"
+import {describeSlice, energyAxis, placeWindow} from "./starts.js"
+
+/** Points along an exit over a saddle, and along a circle. */
+const [EXIT_POINTS, CIRCLE_POINTS] = [41, 121]
+/** Place of the number of a channel, as a share of the distance of its exit. */
+const LABEL_SHARE = 0.86
+
+/** Traces limiting curves; those of one window need the values of V only once. */
+export class LimitingCurves {
+  /** @type {import("./contours.js").Grid | null} */
+  #grid = null
+  #key = ""
+
+  /**
+   * @param {import("./integrator.js").Integrator} integrator
+   * @param {Pick<import("./pixels.js").View, "slice" | "window" | "energy">} view
+   */
+  trace(integrator, {slice, window, energy}) {
+    const {system} = integrator
+    const key = JSON.stringify([system.key, slice, window])
+    if (key !== this.#key || !this.#grid) {
+      this.#grid = {window, values: requiredEnergies(integrator, slice, window)}
+      this.#key = key
+    }
+    return levelLines(this.#grid, energyAxis(slice) >= 0 ? 0 : energy / system.units.energy)
+  }
+}
+
+/**
+ * The lowest energies at which starts exist on a lattice of a window, row by row.
+ *
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {import("./system.js").Slice} slice
+ * @param {import("./starts.js").Window} window
+ */
+const requiredEnergies = (integrator, slice, window) =>
+  integrator.temporarily(() => {
+    const required = integrator.array("float64", [SAMPLES, SAMPLES])
+    const described = describeSlice(integrator, slice, 0)
+    integrator.call("find_required_energies", ...described, placeWindow(integrator, window, slice.units), required)
+    return Float64Array.from(required.values)
+  })
+
+/**
+ * The lines of the open exits in units of the page, with the places of their numbers; NaN for circles.
+ *
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {number} energy  in units of the page
+ * @returns {{channel: number, xs: number[], ys: number[], label: [number, number]}[]}
+ */
+export function exitLines(integrator, energy) {
+  const {units} = integrator.system
+  return integrator.temporarily(() => {
+    const exits = new Exits(integrator, [energy / units.energy])
+    const open = exits.list().filter(({isOpen}) => isOpen)
+    return open.map(exit => {
+      const count = exit.isCircle ? CIRCLE_POINTS : EXIT_POINTS
+      const positions = Array.from({length: count}, (_, i) => (2 * i) / (count - 1) - 1)
+      const [xs, ys] = exits.points(exit, positions).map(values => values.map(value => value * units.length))
+      const middle = count >> 1
+      const share = exit.isCircle ? NaN : LABEL_SHARE
+      const label = /** @type {[number, number]} */ ([share * xs[middle], share * ys[middle]])
+      return {channel: exit.number, xs, ys, label}
+    })
+  })
+}

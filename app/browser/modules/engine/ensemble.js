@@ -1,0 +1,162 @@
+// @ts-check
+/**
+ * Many orbits at the same time. Each keeps the series of its present step, so that its place at any time within the step costs two
+ * polynomials; see `engine/integrator/kernels/ensemble.py`. And the exits at which they will end.
+ */
+
+import {Exits} from "./exits.js"
+import {Integrator} from "./integrator.js"
+import {findAllEnds} from "./orbits.js"
+
+/** Orbits are followed for this long beyond an exit that is no disc, in units of the well. */
+export const FOLLOWED_BEYOND = 1.5
+/** Orbits whose outcomes are found at a time. */
+const PORTION = 256
+
+export class Ensemble {
+  /**
+   * @param {Integrator} integrator  whose memory the ensemble keeps
+   * @param {number} energy  in units of the well
+   * @param {ArrayLike<number>} states  x, y, px, py of each start, in units of the well
+   */
+  constructor(integrator, energy, states) {
+    const count = states.length / 4
+    const {rows, order} = integrator.system.layout
+    this.#integrator = integrator
+    this.#exits = new Exits(integrator, [energy])
+    this.#starts = integrator.array("float64", [count, 4], states)
+    /** In the order of the kernel. */
+    this.#arrays = {
+      ends: integrator.array("float64", [rows, count]),
+      begin: integrator.array("float64", [count]),
+      jets: integrator.array("float64", [2, order + 1, count]),
+      leaving: integrator.array("int8", [count]),
+      escapeTime: integrator.array("float64", [count]),
+      last: integrator.array("float64", [count]),
+      section: integrator.array("float64", [2, count]),
+    }
+    this.#places = integrator.array("float64", [2, count])
+    this.#channels = integrator.array("int8", [count])
+    this.count = count
+    /** In units of the well. */
+    this.time = 0
+    this.restart()
+  }
+
+  #integrator
+  #exits
+  #starts
+  #arrays
+  #places
+  #channels
+
+  /** Places at the present time; NaN for orbits that are far outside. */
+  get x() {
+    return this.#places.at(0).values
+  }
+
+  get y() {
+    return this.#places.at(1).values
+  }
+
+  /** Number of the exit at which each orbit has ended so far, 0 for orbits inside. */
+  get channel() {
+    return this.#channels.values
+  }
+
+  /** When each orbit leaves, as far as it is known. */
+  get escapeTime() {
+    return this.#arrays.escapeTime.values
+  }
+
+  /** x of the last upward crossing of y = 0; NaN before the first one. */
+  get sectionX() {
+    return this.#arrays.section.at(0).values
+  }
+
+  /** px there. */
+  get sectionPx() {
+    return this.#arrays.section.at(1).values
+  }
+
+  /** Put all orbits back to their starts. */
+  restart() {
+    this.time = 0
+    this.#integrator.call("begin_ensemble", this.#starts, ...Object.values(this.#arrays), this.#places, this.#channels)
+  }
+
+  /**
+   * Follow all orbits to a time, in units of the well; an earlier one than the present begins at the starts again.
+   *
+   * @param {number} time
+   */
+  advance(time) {
+    if (time < this.time) this.restart()
+    const {address, table, system} = this.#integrator
+    const [step, jets, {tolerance}] = [address.step, address.jets, system.layout]
+    const exits = [this.#exits.gates, this.#exits.curves.at(0)]
+    const arrays = Object.values(this.#arrays)
+    this.#integrator.call("advance_ensemble", step, jets, table, tolerance, time, FOLLOWED_BEYOND, ...exits, ...arrays)
+    this.time = time
+    // Orbits that have not begun are at their starts.
+    if (time > 0) this.#integrator.call("place_ensemble", time, ...arrays, this.#places, this.#channels)
+  }
+
+  /** How many times as wide as at their starts the orbits are spread that are still inside. */
+  growth() {
+    return this.#integrator.call("measure_spread", this.#starts, this.#places, this.#channels)
+  }
+
+  /** The states of the orbits that are still inside, after the first step, with reversed momenta. */
+  reversed() {
+    return this.#integrator.temporarily(() => {
+      const states = this.#integrator.array("float64", [this.count, 4])
+      const arrays = Object.values(this.#arrays)
+      const count = this.#integrator.call("reverse_ensemble", this.time, ...arrays, this.#channels, states)
+      return Float64Array.from(states.first(count).values)
+    })
+  }
+}
+
+/** The exits at which the orbits of an ensemble will end, found in portions between the frames of the display. */
+export class Outcomes {
+  /**
+   * @param {import("./system.js").System} system
+   * @param {import("./integrator.js").Modules} modules
+   * @param {number} energy  in units of the well
+   * @param {Float64Array} states  x, y, px, py of each start
+   * @param {number} horizon  in units of the well
+   */
+  constructor(system, modules, energy, states, horizon) {
+    this.#integrator = new Integrator(system, modules)
+    this.#exits = new Exits(this.#integrator, [energy])
+    this.#states = states
+    this.#horizon = horizon
+    /** Number of the exit of each orbit; 0 where it is not known yet, and for those that stay until the horizon. */
+    this.channel = new Uint8Array(states.length / 4)
+  }
+
+  #integrator
+  #exits
+  #states
+  #horizon
+  #known = 0
+
+  /** Whether all are known. */
+  get complete() {
+    return this.#known === this.channel.length
+  }
+
+  /** Find those of the next portion. */
+  continue() {
+    const first = this.#known
+    this.#known = Math.min(first + PORTION, this.channel.length)
+    const states = this.#states.subarray(4 * first, 4 * this.#known)
+    const {tolerance} = this.#integrator.system.layout
+    const {fate} = findAllEnds(this.#integrator, states, this.#exits, {horizon: this.#horizon, tolerance})
+    this.channel.set(
+      fate.map(code => Math.max(code, 0)),
+      first,
+    )
+  }
+}

@@ -1,0 +1,94 @@
+// @ts-check
+/** Exits at some energies as the kernels take them, see `engine/integrator/kernels/events.py`, and their points. */
+
+/**
+ * An exit at one energy.
+ *
+ * @typedef {object} Exit
+ * @property {number} number
+ * @property {boolean} isOpen
+ * @property {boolean} isCircle  within or beyond which orbits end
+ */
+
+export class Exits {
+  /**
+   * The exits of a system at some energies, in units of the well. Their memory is that of the integrator.
+   *
+   * @param {import("./integrator.js").Integrator} integrator
+   * @param {ArrayLike<number>} energies
+   */
+  constructor(integrator, energies) {
+    const {exits, layout} = integrator.system
+    this.#integrator = integrator
+    this.#columns = layout.exits
+    this.count = exits.length
+    const shape = [energies.length, exits.length]
+    /** Of each energy, (energies, exits, columns). */
+    this.curves = integrator.array("float64", [...shape, layout.exits.count])
+    /** Of all energies, (exits, 3). */
+    this.gates = integrator.array("float64", [exits.length, 3])
+    exits.forEach((exit, k) => ("row" in exit ? this.#placeCircle(exit, k) : this.#interpolate(exit, k, energies)))
+  }
+
+  #integrator
+  #columns
+
+  /**
+   * @param {import("./system.js").Circle} circle
+   * @param {number} k
+   */
+  #placeCircle({row, gate}, k) {
+    for (let energy = 0; energy < this.curves.shape[0]; energy++) this.curves.at(energy).at(k).values.set(row)
+    this.gates.at(k).values.set(gate)
+  }
+
+  /**
+   * @param {import("./system.js").ExitTable} table
+   * @param {number} k
+   * @param {ArrayLike<number>} energies
+   */
+  #interpolate({shape, saddle}, k, energies) {
+    const integrator = this.#integrator
+    const table = integrator.exitTables[k] ?? []
+    integrator.temporarily(() => {
+      const places = integrator.array("float64", [energies.length], energies)
+      const code = this.#columns.shapes[shape]
+      integrator.call("interpolate_exit", ...table, saddle, code, places, k, this.curves, this.gates)
+    })
+  }
+
+  /**
+   * The exits at one of the energies.
+   *
+   * @param {number} [row]
+   * @returns {Exit[]}
+   */
+  list(row = 0) {
+    const {shape, shapes} = this.#columns
+    return Array.from({length: this.count}, (_, k) => {
+      const curve = this.curves.at(row).at(k).values
+      return {
+        number: k + 1,
+        isOpen: curve[shape] !== shapes.closed,
+        isCircle: curve[shape] >= shapes.disc,
+      }
+    })
+  }
+
+  /**
+   * x and y of points of an exit at the first energy, at s from −1 to 1; around a circle s goes from −1 to 1, too.
+   *
+   * @param {{number: number}} exit
+   * @param {number[]} positions
+   * @returns {[number[], number[]]}
+   */
+  points({number}, positions) {
+    const integrator = this.#integrator
+    return integrator.temporarily(() => {
+      const points = integrator.array("float64", [2, positions.length])
+      const places = integrator.array("float64", [positions.length], positions)
+      integrator.call("exit_points", this.curves.at(0).at(number - 1), places, points)
+      return [Array.from(points.at(0).values), Array.from(points.at(1).values)]
+    })
+  }
+}

@@ -1,0 +1,230 @@
+// @ts-check
+/** The compiled kernels for one system, and the memory with their arrays; see `engine/integrator/portable_kernels.py`. */
+
+/**
+ * WebAssembly: the kernels of all systems, and the functions of those of one structure.
+ *
+ * @typedef {{kernels: WebAssembly.Module, system: WebAssembly.Module}} Modules
+ */
+
+const PAGE = 65536
+/** Space for local variables, and what is always free for arrays that a kernel makes, in bytes. */
+const [STACK, SLACK] = [PAGE, 4 * PAGE]
+const ALIGNMENT = 16
+
+/** @typedef {{float64: Float64Array, int64: Int32Array, int8: Int8Array}} Views */
+
+/** Bytes of a number, and the array that shows it; of an integer of 64 bits the lower half is at an even place. */
+const KINDS = {
+  float64: {bytes: 8, view: Float64Array},
+  int64: {bytes: 8, view: Int32Array},
+  int8: {bytes: 1, view: Int8Array},
+}
+
+/**
+ * An array in the memory of kernels.
+ *
+ * @template {keyof Views} K
+ */
+export class Numbers {
+  /**
+   * @param {WebAssembly.Memory} memory
+   * @param {K} kind
+   * @param {number} address
+   * @param {number[]} shape
+   */
+  constructor(memory, kind, address, shape) {
+    this.#memory = memory
+    this.#kind = kind
+    this.address = address
+    this.shape = shape
+    /** What a kernel takes for the array. */
+    this.passed = [address, ...shape]
+  }
+
+  #memory
+  #kind
+  /** @type {Views[K] | null} */
+  #view = null
+
+  /** The numbers; not to be kept, because the memory moves when it grows. */
+  get values() {
+    if (this.#view?.buffer !== this.#memory.buffer) this.#view = this.#look()
+    return this.#view
+  }
+
+  #look() {
+    const {bytes, view} = KINDS[this.#kind]
+    const length = (product(this.shape) * bytes) / view.BYTES_PER_ELEMENT
+    return /** @type {Views[K]} */ (new view(this.#memory.buffer, this.address, length))
+  }
+
+  /**
+   * The first of the arrays along the first axis.
+   *
+   * @param {number} count
+   */
+  first(count) {
+    const [, ...shape] = this.shape
+    return new Numbers(this.#memory, this.#kind, this.address, [count, ...shape])
+  }
+
+  /**
+   * One of the arrays along the first axis.
+   *
+   * @param {number} index
+   */
+  at(index) {
+    const [, ...shape] = this.shape
+    const address = this.address + index * product(shape) * KINDS[this.#kind].bytes
+    return new Numbers(this.#memory, this.#kind, address, shape)
+  }
+}
+
+/** @type {(numbers: number[]) => number} */
+const product = numbers => numbers.reduce((one, other) => one * other, 1)
+
+export class Integrator {
+  /**
+   * @param {import("./system.js").System} system
+   * @param {Modules} modules
+   */
+  constructor(system, modules) {
+    const {functions, heap} = system.layout
+    this.system = system
+    this.modules = modules
+    const memory = new WebAssembly.Memory({initial: 1 + (STACK + SLACK) / PAGE})
+    const table = new WebAssembly.Table({initial: functions.length + 1, element: "anyfunc"})
+    const env = {
+      __linear_memory: memory,
+      __stack_pointer: new WebAssembly.Global({value: "i32", mutable: true}, STACK),
+      __indirect_function_table: table,
+      sin: Math.sin,
+      cos: Math.cos,
+      hypot: Math.hypot,
+    }
+    this.#memory = memory
+    this.#heap = new Numbers(memory, "int64", heap, [1])
+    this.#exports = exportsOf(modules.kernels, env)
+    const own = exportsOf(modules.system, env)
+    functions.forEach((name, k) => name in own && table.set(k + 1, own[name]))
+    /** The addresses of the functions of the system, by their names. */
+    this.address = Object.fromEntries(functions.map((name, k) => [name, k + 1]))
+    this.#free = STACK
+    this.table = this.array("float64", [system.table.length], system.table)
+    /** The kernel that finds starts beyond an exit, and its first arguments. @type {[string, ...(number | Numbers<any>)[]]} */
+    this.interior = system.polynomial
+      ? ["find_outside_polynomial", ...this.#polynomial(system.polynomial)]
+      : ["find_outside", this.address.potential_slopes, this.table, system.innerRadius]
+    /** The tables of the exits over saddles. */
+    this.exitTables = system.exits.map(exit => ("row" in exit ? null : this.#exitTable(exit)))
+  }
+
+  #memory
+  #heap
+  #exports
+
+  /** Where memory is free. */
+  get #free() {
+    return this.#heap.values[0]
+  }
+
+  set #free(address) {
+    this.#heap.values[0] = address
+  }
+
+  /**
+   * A polynomial as the interior test takes it.
+   *
+   * @param {import("./system.js").PolynomialTable} polynomial
+   */
+  #polynomial({powers, coefficients, bernstein}) {
+    const side = bernstein.length
+    const exponents = this.array("int64", [powers.length, 2])
+    powers.flat().forEach((power, k) => (exponents.values[2 * k] = power))
+    return [
+      exponents,
+      this.array("float64", [coefficients.length], coefficients),
+      this.array("float64", [side, side], bernstein.flat()),
+      this.array("float64", [3, side]),
+    ]
+  }
+
+  /** @param {import("./system.js").ExitTable} table */
+  #exitTable({nodes, rows}) {
+    return [
+      this.array("float64", [nodes.length], nodes),
+      this.array("float64", [nodes.length, rows[0]?.length ?? 0], rows.flat()),
+    ]
+  }
+
+  /**
+   * An array of zeros or of numbers.
+   *
+   * @template {keyof Views} K
+   * @param {K} kind
+   * @param {number[]} shape
+   * @param {ArrayLike<number>} [numbers]
+   */
+  array(kind, shape, numbers) {
+    const address = this.#free
+    const bytes = product(shape) * KINDS[kind].bytes
+    const end = Math.ceil((address + bytes) / ALIGNMENT) * ALIGNMENT
+    const missing = end + SLACK - this.#memory.buffer.byteLength
+    if (missing > 0) this.#memory.grow(Math.ceil(missing / PAGE))
+    this.#free = end
+    const array = new Numbers(this.#memory, kind, address, shape)
+    if (numbers) array.values.set(numbers)
+    else array.values.fill(0)
+    return array
+  }
+
+  /**
+   * An array of integers.
+   *
+   * @param {ArrayLike<number>} numbers
+   */
+  integers(numbers) {
+    const array = this.array("int64", [numbers.length])
+    const {values} = array
+    for (let k = 0; k < numbers.length; k++) values[2 * k] = numbers[k]
+    return array
+  }
+
+  /**
+   * Give back the memory of the arrays that are made meanwhile.
+   *
+   * @template T
+   * @param {() => T} use
+   */
+  temporarily(use) {
+    const free = this.#free
+    try {
+      return use()
+    } finally {
+      this.#free = free
+    }
+  }
+
+  /**
+   * Call a kernel with numbers and arrays.
+   *
+   * @param {string} name
+   * @param {(number | Numbers<any>)[]} passed
+   * @returns {number}
+   */
+  call(name, ...passed) {
+    const numbers = []
+    for (const each of passed) {
+      if (typeof each === "number") numbers.push(each)
+      else numbers.push(...each.passed)
+    }
+    const free = this.#free
+    const result = this.#exports[name](...numbers)
+    this.#free = free
+    return result
+  }
+}
+
+/** @type {(module: WebAssembly.Module, env: WebAssembly.ModuleImports) => Record<string, Function>} */
+const exportsOf = (module, env) => /** @type {any} */ (new WebAssembly.Instance(module, {env}).exports)

@@ -1,0 +1,98 @@
+// @ts-check
+/** Orbits at t = 0, and their ends. */
+
+/** Steps of lanes, at most. */
+const MOST_STEPS = 2 ** 31 - 1
+
+/**
+ * @typedef {import("./integrator.js").Integrator} Integrator
+ * @typedef {import("./integrator.js").Numbers<"float64">} Floats
+ * @typedef {ReturnType<typeof makeOrbits>} Orbits
+ *
+ * What is found of starts: their fates, the times at which they leave, NaN for others, and their crossings of the section until then.
+ *
+ * @typedef {{fate: Int8Array, time: Float64Array, crossings: Uint16Array}} Ends
+ */
+
+/**
+ * The arrays of orbits that the kernel changes, in its order.
+ *
+ * @param {Integrator} integrator
+ * @param {Floats} states  (n, 4) x, y, px, py
+ */
+export function makeOrbits(integrator, states) {
+  const [count] = states.shape
+  const {not_computed} = integrator.system.layout.fates
+  return {
+    state: states,
+    t: integrator.array("float64", [count]),
+    crossings: integrator.array("int64", [count]),
+    lastCrossings: integrator.array("int64", [count]),
+    fate: integrator.array("int8", [count], new Int8Array(count).fill(not_computed)),
+    pending: integrator.array("int8", [count], new Int8Array(count).fill(1)),
+    remainder: integrator.array("float64", [count, 2]),
+  }
+}
+
+/**
+ * Propagate orbits until a horizon; returns the number of steps.
+ *
+ * @param {Integrator} integrator
+ * @param {Orbits} orbits
+ * @param {import("./exits.js").Exits} exits
+ * @param {import("./integrator.js").Numbers<"int64">} rows  of the energy of each orbit in the exits
+ * @param {{horizon: number, tolerance: number, steps?: Floats}} options  steps (m, 5): those of the only orbit are recorded
+ */
+export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, steps}) {
+  const {step, jets} = integrator.address
+  const {lanes_together} = integrator.system.layout
+  const todo = integrator.integers(Array.from({length: orbits.t.shape[0]}, (_, orbit) => orbit))
+  const most = steps ? lanes_together * steps.shape[0] : MOST_STEPS
+  const ends = [exits.gates, exits.curves, rows, ...Object.values(orbits)]
+  const settings = [horizon, 1, tolerance, most, 0]
+  const trace = steps ?? integrator.array("float64", [0, 5])
+  return integrator.call("propagate", step, jets, integrator.table, todo, ...settings, ...ends, trace)
+}
+
+/**
+ * Find the ends of starts that are inside; those still there at the horizon are undecided.
+ *
+ * @param {Integrator} integrator
+ * @param {import("./starts.js").Inside} inside
+ * @param {import("./exits.js").Exits} exits
+ * @param {{horizon: number, tolerance: number}} options
+ * @param {import("./integrator.js").Numbers<"int8">} fate  of all starts, set for those that are left out
+ * @returns {Ends}
+ */
+export function findEnds(integrator, {kept, states, rows}, exits, options, fate) {
+  const {shape} = fate
+  const time = integrator.array("float64", shape, new Float64Array(shape[0]).fill(NaN))
+  const crossings = integrator.array("float64", shape)
+  integrator.temporarily(() => {
+    const orbits = makeOrbits(integrator, states)
+    propagate(integrator, orbits, exits, rows, options)
+    integrator.call("report_ends", ...Object.values(orbits), kept, fate, time, crossings)
+  })
+  return {
+    fate: Int8Array.from(fate.values),
+    time: Float64Array.from(time.values),
+    crossings: Uint16Array.from(crossings.values),
+  }
+}
+
+/**
+ * The ends of states that are all inside.
+ *
+ * @param {Integrator} integrator
+ * @param {ArrayLike<number>} states  x, y, px, py of each
+ * @param {import("./exits.js").Exits} exits  at their energy
+ * @param {{horizon: number, tolerance: number}} options
+ */
+export function findAllEnds(integrator, states, exits, options) {
+  const count = states.length / 4
+  return integrator.temporarily(() => {
+    const kept = integrator.integers(Array.from({length: count}, (_, orbit) => orbit))
+    const inside = {kept, states: integrator.array("float64", [count, 4], states), rows: integrator.array("int64", [count])}
+    return findEnds(integrator, inside, exits, options, integrator.array("int8", [count]))
+  })
+}

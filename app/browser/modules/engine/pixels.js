@@ -1,0 +1,78 @@
+// @ts-check
+/** Fates of the starts of a view, some rows at a time. */
+
+import {Exits} from "./exits.js"
+import {findEnds} from "./orbits.js"
+import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
+
+/**
+ * What a picture shows: a part of a slice at an energy, in units of the page.
+ *
+ * @typedef {object} View
+ * @property {import("./system.js").Slice} slice
+ * @property {number} energy
+ * @property {import("./starts.js").Window} window
+ * @property {number} most  pixels along a side of the server's map, which a preview does not exceed
+ * @property {number} columns
+ * @property {number} rows
+ * @property {number} horizon  longest time, in units of the well
+ *
+ * The pixels of a view in some rows and in the first columns of these.
+ *
+ * @typedef {object} Part
+ * @property {Uint32Array} rows
+ * @property {number} columns
+ *
+ * @typedef {object} Pixels
+ * @property {Int8Array} fate
+ * @property {Float32Array} time  of the escape, in units of the page; NaN for others
+ * @property {Uint16Array} crossings
+ */
+
+/**
+ * Error of an orbit's integration in pixels: a preview needs no steps as short as those of an orbit that is followed to t = 1e5.
+ * The last coefficients of a step are about its error in units of the well.
+ */
+const ERROR_IN_PIXELS = 1e-6
+const LARGEST_TOLERANCE = 1e-9
+
+/**
+ * Norm of the last coefficients of a step, small enough for the pixels of a view. An orbit that passes close to a body magnifies
+ * errors, the more so the smaller the body.
+ *
+ * @param {import("./system.js").System} system
+ * @param {View} view
+ */
+export function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
+  const width = (window.xHigh - window.xLow) / columns / slice.units[0]
+  const height = (window.ordinateHigh - window.ordinateLow) / rows / slice.units[1]
+  const smallest = Math.min(1, ...exits.flatMap(exit => ("row" in exit && exit.side < 0 ? [exit.radius] : [])))
+  const tolerance = Math.min(ERROR_IN_PIXELS * Math.min(width, height), LARGEST_TOLERANCE) * smallest
+  return Math.max(tolerance, layout.tolerance)
+}
+
+/**
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {View} view
+ * @param {Part} part
+ * @returns {Pixels}
+ */
+export const computePixels = (integrator, view, part) => integrator.temporarily(() => compute(integrator, view, part))
+
+/** @type {typeof computePixels} */
+function compute(integrator, view, part) {
+  const {system} = integrator
+  const {slice, window, columns, rows, horizon} = view
+  const count = part.rows.length * part.columns
+  const [axis, energy] = [energyAxis(slice), view.energy / system.units.energy]
+  const [points, energyRows] = [integrator.array("float64", [2, count]), integrator.array("int64", [count])]
+  const place = [placeWindow(integrator, window, slice.units), columns, rows, integrator.integers(part.rows), part.columns]
+  integrator.call("place_pixels", ...place, axis, points, energyRows)
+  const along = Array.from(points.at(Math.max(axis, 0)).values)
+  const firsts = Array.from(part.rows, (_, row) => along[row * part.columns])
+  const exits = new Exits(integrator, [along.slice(0, part.columns), firsts][axis] ?? [energy])
+  const fate = integrator.array("int8", [count])
+  const inside = keepInside(integrator, findStarts(integrator, slice, energy, points), exits, energyRows, fate)
+  const ends = findEnds(integrator, inside, exits, {horizon, tolerance: toleranceFor(system, view)}, fate)
+  return {...ends, time: Float32Array.from(ends.time, time => time * system.units.time)}
+}

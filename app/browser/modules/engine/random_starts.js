@@ -1,0 +1,115 @@
+// @ts-check
+/** Random starts of an ensemble; equal seeds give equal starts. */
+
+import {Ensemble} from "./ensemble.js"
+import {Exits} from "./exits.js"
+import {Integrator} from "./integrator.js"
+import {findStarts, keepInside, placeWindow, windowAt} from "./starts.js"
+import {reversedInTime} from "./system.js"
+
+/**
+ * Where the starts are: "well", evenly on the energy surface; "view" and "box", evenly on the slice in a window; "disc", evenly on it
+ * around a point; "exits", on the exits and going inward; "tubes", at the edge of the tubes that lead out.
+ *
+ * @typedef {object} Request
+ * @property {"well" | "view" | "box" | "disc" | "exits" | "tubes"} where
+ * @property {number} count
+ * @property {number} seed
+ * @property {[number, number]} point  middle of the disc, in units of the page
+ * @property {[number, number, number, number]} box  xLow, xHigh, ordinateLow, ordinateHigh, in units of the page
+ * @property {number} radius  of the disc, as a share of half the window
+ */
+
+/** Draws for each start, at most; of a window without an interior there are no starts. */
+const MOST_DRAWS = 200
+
+/**
+ * The states x, y, px, py of the starts inside all exits, in units of the well.
+ *
+ * @param {Request} request
+ * @param {import("../workers/frames.js").Scene} scene  slice, energy and window
+ * @param {Integrator} integrator
+ * @returns {Float64Array}
+ */
+export const drawStarts = (request, scene, integrator) =>
+  integrator.temporarily(() => {
+    const energy = scene.energy / integrator.system.units.energy
+    if (request.where === "exits") return drawAtExits(integrator, request, energy, false)
+    if (request.where === "tubes") return turnBack(integrator, energy, drawAtExits(integrator, request, energy, true))
+    return drawOnSlice(integrator, request, scene, energy)
+  })
+
+/**
+ * @param {Integrator} integrator
+ * @param {Request} request
+ * @param {number} energy
+ * @param {boolean} ofTubes
+ */
+function drawAtExits(integrator, {count, seed}, energy, ofTubes) {
+  const {address, table} = integrator
+  const states = integrator.array("float64", [count, 4])
+  const curves = new Exits(integrator, [energy]).curves.at(0)
+  const drawing = [curves, energy, Number(ofTubes), integrator.integers([seed]), states]
+  const found = integrator.call("draw_at_exits", address.potential_value, table, ...drawing)
+  return Float64Array.from(states.first(found).values)
+}
+
+/**
+ * The states from which orbits come to these ones: the ends of orbits that go into the well backward in time.
+ *
+ * @param {Integrator} integrator
+ * @param {number} energy
+ * @param {Float64Array} states
+ */
+function turnBack({system, modules}, energy, states) {
+  const ensemble = new Ensemble(new Integrator(reversedInTime(system), modules), energy, states)
+  ensemble.advance(system.layout.beforeExit)
+  return ensemble.reversed()
+}
+
+/**
+ * @param {Integrator} integrator
+ * @param {Request} request
+ * @param {import("../workers/frames.js").Scene} scene
+ * @param {number} energy
+ */
+function drawOnSlice(integrator, request, scene, energy) {
+  const {count, where} = request
+  const slice = where === "well" ? integrator.system.surface : scene.slice
+  const window = windowOf(integrator, request, scene)
+  const states = new Float64Array(4 * count)
+  if (!window) return states.subarray(0, 0)
+  const exits = new Exits(integrator, [energy])
+  const [area, seed] = [placeWindow(integrator, window, slice.units), integrator.integers([request.seed])]
+  let found = 0
+  for (let draw = 0; draw < MOST_DRAWS && found < states.length; draw++) {
+    integrator.temporarily(() => {
+      const points = integrator.array("float64", [slice.motion.length - 1, count])
+      integrator.call("scatter_points", seed, area, Number(where === "disc"), points)
+      const [rows, fate] = [integrator.array("int64", [count]), integrator.array("int8", [count])]
+      const inside = keepInside(integrator, findStarts(integrator, slice, energy, points), exits, rows, fate)
+      const some = inside.states.values.subarray(0, states.length - found)
+      states.set(some, found)
+      found += some.length
+    })
+  }
+  return states.subarray(0, found)
+}
+
+/**
+ * The rectangle of a request; a disc is the ellipse in it.
+ *
+ * @param {Integrator} integrator
+ * @param {Request} request
+ * @param {import("../workers/frames.js").Scene} scene
+ * @returns {import("./starts.js").Window | null}
+ */
+function windowOf(integrator, {where, box, point: [x, ordinate], radius}, {energy, window}) {
+  if (where === "well") return windowAt(integrator, "x_y", energy)
+  if (where === "view") return window
+  const width = 0.5 * radius * (window.xHigh - window.xLow)
+  const height = 0.5 * radius * (window.ordinateHigh - window.ordinateLow)
+  const around = [x - width, x + width, ordinate - height, ordinate + height]
+  const [xLow, xHigh, ordinateLow, ordinateHigh] = where === "box" ? box : around
+  return {xLow, xHigh, ordinateLow, ordinateHigh}
+}

@@ -1,0 +1,123 @@
+// @ts-check
+/**
+ * The starts of the points of a slice, in units of the well; see `Slice` in `system.js`.
+ *
+ * @typedef {import("./integrator.js").Integrator} Integrator
+ * @typedef {import("./integrator.js").Numbers<"float64">} Floats
+ * @typedef {import("./integrator.js").Numbers<"int64">} Integers
+ * @typedef {import("./system.js").Slice} Slice
+ *
+ * A rectangle of a slice, in units of the page.
+ *
+ * @typedef {object} Window
+ * @property {number} xLow
+ * @property {number} xHigh
+ * @property {number} ordinateLow
+ * @property {number} ordinateHigh
+ *
+ * Starts of points: (4, n) x, y, px, py, NaN where forbidden, and (n,) energies.
+ *
+ * @typedef {{states: Floats, energies: Floats}} Starts
+ *
+ * Those beyond no exit: (m,) their numbers among the starts, (m, 4) states, and (m,) rows of their energies in the exits.
+ *
+ * @typedef {{kept: Integers, states: Floats, rows: Integers}} Inside
+ */
+
+/**
+ * Whether a slice shows positions.
+ *
+ * @param {Pick<Slice, "axes">} slice
+ */
+export const showsPositions = ({axes}) => axes[0] === "x" && axes[1] === "y"
+
+/**
+ * The axis along which the energy differs: 0 for the abscissa, 1 for the ordinate, -1 for neither.
+ *
+ * @param {Pick<Slice, "axes">} slice
+ */
+export const energyAxis = ({axes}) => axes.indexOf("h")
+
+/**
+ * A window in units of the well, as kernels take it.
+ *
+ * @param {Integrator} integrator
+ * @param {Window} window
+ * @param {[number, number]} units
+ */
+export function placeWindow(integrator, {xLow, xHigh, ordinateLow, ordinateHigh}, [x, ordinate]) {
+  return integrator.array("float64", [4], [xLow / x, xHigh / x, ordinateLow / ordinate, ordinateHigh / ordinate])
+}
+
+/**
+ * The numbers of a slice as kernels take them.
+ *
+ * @param {Integrator} integrator
+ * @param {Pick<Slice, "axes" | "motion" | "decided">} slice
+ * @param {number} energy  of all starts, unless it is an axis
+ * @returns {[number, Floats, Floats, number]}
+ */
+export function describeSlice(integrator, {axes, motion, decided}, energy) {
+  const columns = motion[0].length
+  const numbers = integrator.array("float64", [motion.length, columns], motion.flat())
+  // The last coordinate is the energy.
+  if (energyAxis({axes}) < 0) numbers.values[columns - 1] = energy
+  return [integrator.address.potential_value, integrator.table, numbers, decided]
+}
+
+/**
+ * Find the starts of points.
+ *
+ * @param {Integrator} integrator
+ * @param {Pick<Slice, "axes" | "motion" | "decided" | "sign">} slice
+ * @param {number} energy  of all starts, unless it is an axis
+ * @param {Floats} points  (axes, n)
+ * @returns {Starts}
+ */
+export function findStarts(integrator, slice, energy, points) {
+  const count = points.shape[1]
+  const [states, energies] = [integrator.array("float64", [4, count]), integrator.array("float64", [count])]
+  integrator.call("find_starts", ...describeSlice(integrator, slice, energy), slice.sign, points, states, energies)
+  return {states, energies}
+}
+
+/**
+ * Leave out the starts that are forbidden or beyond an exit.
+ *
+ * @param {Integrator} integrator
+ * @param {Starts} starts
+ * @param {import("./exits.js").Exits} exits
+ * @param {Integers} rows  (n,) of the energies in the exits
+ * @param {import("./integrator.js").Numbers<"int8">} fate  (n,) set for starts that are left out
+ * @returns {Inside}
+ */
+export function keepInside(integrator, {states, energies}, exits, rows, fate) {
+  const count = energies.shape[0]
+  const [outside, kept] = [integrator.array("int8", [count]), integrator.array("int64", [count])]
+  const found = {kept, states: integrator.array("float64", [count, 4]), rows: integrator.array("int64", [count])}
+  const [kernel, ...potential] = integrator.interior
+  integrator.call(kernel, ...potential, states.at(0), states.at(1), energies, exits.curves, rows, outside)
+  const left = integrator.call("select_starts", states, outside, rows, fate, ...Object.values(found))
+  return {kept: kept.first(left), states: found.states.first(left), rows: found.rows.first(left)}
+}
+
+/**
+ * The default window of a slice at an energy; null beyond the table.
+ *
+ * @param {Integrator} integrator
+ * @param {string} plane  name of the slice
+ * @param {number} energy  in units of the page
+ * @returns {Window | null}
+ */
+export function windowAt(integrator, plane, energy) {
+  const table = integrator.system.windows[plane]
+  if (!table) return null
+  return integrator.temporarily(() => {
+    const energies = integrator.array("float64", [table.energies.length], table.energies)
+    const windows = integrator.array("float64", [table.windows.length, 4], table.windows.flat())
+    const window = integrator.array("float64", [4])
+    if (!integrator.call("interpolate_window", energies, windows, energy, window)) return null
+    const [xLow, xHigh, ordinateLow, ordinateHigh] = window.values
+    return {xLow, xHigh, ordinateLow, ordinateHigh}
+  })
+}

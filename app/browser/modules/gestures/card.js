@@ -1,0 +1,251 @@
+// @ts-check
+/**
+ * The orbit under the cursor, drawn over the picture of the well, or on a narrow screen over half of the only map. With a finger:
+ * press, and move.
+ */
+
+import {exitLines, LimitingCurves} from "../engine/curves.js"
+import {Integrator} from "../engine/integrator.js"
+import {findPath} from "../engine/path.js"
+import {windowAt} from "../engine/starts.js"
+import {cover, frames, strokeLine, wellFrame} from "../painting/pictures.js"
+
+/** Longest time that is followed, in units of the well. */
+const LONGEST = 200
+/** A finger that rests for this long, in ms, and moves by less than this, in pixels, shows orbits instead of moving the picture. */
+const [PRESS_MS, PRESS_PIXELS] = [350, 8]
+/** Distance from a click within which the card stays away. */
+const CLICK_PIXELS = 12
+/** Side of the card if only a map is shown, as a share of it. */
+const ALONE = 0.55
+/** Of the text, in pixels. */
+const [PADDING, TEXT_HEIGHT] = [6, 22]
+const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-surface,#fff);
+  border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
+
+/** What is known of an orbit, in words. @type {(path: Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">, unit: number, labels: string[]) => string} */
+export function describe({channel, time, crossings}, unit, labels) {
+  const t = Number((time * unit).toPrecision(4))
+  const count = crossings === 1 ? "1 crossing" : `${crossings} crossings`
+  const label = labels[channel - 1] ?? "inside until"
+  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${t}, ${count}`
+}
+
+/**
+ * The path of an orbit in units of the page.
+ *
+ * @param {Pick<import("../engine/path.js").Path, "x" | "y">} path
+ * @param {{length: number}} units  of the well
+ */
+export function pathOf({x, y}, {length}) {
+  const [xs, ys] = [x, y].map(values => values.map(value => value * length))
+  return {xs, ys}
+}
+
+export class Card {
+  /**
+   * @param {HTMLElement} el
+   * @param {() => import("../workers/frames.js").Scene | null} scene  what the pictures show
+   * @param {() => any} maps  the columns of the pictures
+   * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
+   */
+  constructor(el, scene, maps, view) {
+    this.#scene = scene
+    this.#maps = maps
+    this.#view = view
+    this.#canvas = document.createElement("canvas")
+    this.#canvas.className = "orbit-card"
+    this.#canvas.style.cssText = STYLE
+    this.#canvas.setAttribute("role", "img")
+    el.append(this.#canvas)
+    document.addEventListener("pointermove", event => this.#move(event), true)
+    document.addEventListener("pointerdown", event => this.#press(event), true)
+    document.addEventListener("pointerup", () => this.#lift(), true)
+    document.addEventListener("pointercancel", () => this.#lift(), true)
+    document.addEventListener("pointerleave", () => this.#hide())
+    // The browser would scroll the page, or open a menu.
+    for (const name of ["touchmove", "contextmenu"]) {
+      document.addEventListener(name, event => this.#pressed && event.preventDefault(), {capture: true, passive: false})
+    }
+    document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
+  }
+
+  #scene
+  #maps
+  #view
+  #canvas
+  #limits = new LimitingCurves()
+  /** @type {Integrator | null} */
+  #integrator = null
+  /** @type {{timer: ReturnType<typeof setTimeout>, x: number, y: number} | null} */
+  #finger = null
+  #pressed = false
+  /** Where the mouse was pressed last, until it moves away. @type {{x: number, y: number} | null} */
+  #clicked = null
+
+  /**
+   * @param {import("../engine/system.js").System} system
+   * @param {import("../engine/integrator.js").Modules} modules
+   */
+  setSystem(system, modules) {
+    this.#integrator = new Integrator(system, modules)
+  }
+
+  /** @param {PointerEvent} event */
+  #press(event) {
+    this.#lift()
+    const picture = this.#viewAt(event)
+    if (event.pointerType !== "touch") {
+      // The click chooses an orbit, which is drawn where the card is.
+      this.#clicked = {x: event.clientX, y: event.clientY}
+      this.#hide()
+      return
+    }
+    if (!picture) return
+    const timer = setTimeout(() => {
+      this.#pressed = true
+      this.#show(picture, event)
+    }, PRESS_MS)
+    this.#finger = {timer, x: event.clientX, y: event.clientY}
+  }
+
+  #lift() {
+    if (this.#finger) clearTimeout(this.#finger.timer)
+    if (this.#pressed) this.#hide()
+    this.#finger = null
+    this.#pressed = false
+  }
+
+  /** @param {PointerEvent} event */
+  #move(event) {
+    if (event.pointerType === "touch") {
+      const finger = this.#finger
+      // The picture would move.
+      if (this.#pressed) event.stopPropagation()
+      else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
+      if (!this.#pressed) return
+    }
+    if (this.#clicked && Math.hypot(event.clientX - this.#clicked.x, event.clientY - this.#clicked.y) < CLICK_PIXELS) return
+    this.#clicked = null
+    // While the energy or the window is dragged with a mouse, the pictures are being watched.
+    const dragged = event.buttons && event.pointerType !== "touch"
+    this.#show(dragged ? undefined : this.#viewAt(event), event)
+  }
+
+  /**
+   * The picture at a point of the screen.
+   *
+   * @param {PointerEvent} event
+   */
+  #viewAt(event) {
+    const onMap = event.composedPath().some(node => node instanceof Element && node.classList.contains("map"))
+    return onMap ? frames().find(({box}) => contains(box, event)) : undefined
+  }
+
+  /**
+   * @param {import("../painting/pictures.js").Frame | undefined} picture
+   * @param {PointerEvent} event
+   */
+  #show(picture, event) {
+    const [scene, integrator] = [this.#scene(), this.#integrator]
+    const place = picture && this.#start(picture, event)
+    if (!picture || !place || !scene || !integrator) {
+      this.#hide()
+      return
+    }
+    const {units} = scene.slice
+    const energy = scene.energy / integrator.system.units.energy
+    const path = findPath(integrator, scene.slice, energy, [place[0] / units[0], place[1] / units[1]], LONGEST)
+    if (path) this.#draw(picture, event.clientX, path)
+    else this.#hide()
+  }
+
+  #hide() {
+    this.#canvas.style.display = "none"
+  }
+
+  /**
+   * The centre of the pixel under the pointer; the point itself between pictures.
+   *
+   * @param {import("../painting/pictures.js").Frame} picture
+   * @param {PointerEvent} event
+   * @returns {[number, number] | null}
+   */
+  #start({box, view}, event) {
+    const {x, y, dw, dh, fate} = this.#maps()
+    const point = [
+      view.frame.x_scale.invert(event.clientX - box.left + view.frame.bbox.left),
+      view.frame.y_scale.invert(event.clientY - box.top + view.frame.bbox.top),
+    ]
+    const [rows, columns] = fate[0].shape
+    const snap = (
+      /** @type {number} */ value,
+      /** @type {number} */ low,
+      /** @type {number} */ size,
+      /** @type {number} */ count,
+    ) => low + (size * (Math.floor(((value - low) / size) * count) + 0.5)) / count
+    return [snap(point[0], x[0], dw[0], columns), snap(point[1], y[0], dh[0], rows)]
+  }
+
+  /**
+   * @param {import("../painting/pictures.js").Frame} over  the picture under the pointer
+   * @param {number} pointer  its place from the left of the screen
+   * @param {import("../engine/path.js").Path} path
+   */
+  #draw(over, pointer, path) {
+    const [integrator, context] = [this.#integrator, this.#canvas.getContext("2d")]
+    if (!integrator || !context) return
+    const {system} = integrator
+    const box = placeFor(over, pointer)
+    const h = path.energy * system.units.energy
+    const window = windowAt(integrator, "x_y", h)
+    if (!window) return this.#hide()
+    cover(this.#canvas, box)
+    context.clearRect(0, 0, box.width, box.height)
+    const style = getComputedStyle(this.#canvas)
+    const [ink, paper] = ["--ui-ink", "--ui-surface"].map(name => style.getPropertyValue(name))
+    const draw = (
+      /** @type {{xs: ArrayLike<number>, ys: ArrayLike<number>}} */ line,
+      /** @type {string} */ colour,
+      /** @type {number} */ width,
+    ) => strokeLine(context, window, box, line, colour, width)
+    const limit = this.#limits.trace(integrator, {slice: system.space, window, energy: h})
+    for (const line of limit) draw(line, ink, 1.5)
+    const {colours, labels} = this.#view()
+    for (const {channel, xs, ys} of exitLines(integrator, h)) draw({xs, ys}, colours[channel - 1], 3)
+    const {xs, ys} = pathOf(path, system.units)
+    draw({xs, ys}, path.channel > 0 ? colours[path.channel - 1] : ink, 1)
+    const text = describe(path, system.units.time, labels)
+    context.fillStyle = ink
+    context.beginPath()
+    const scale = box.width / (window.xHigh - window.xLow)
+    context.arc((xs[0] - window.xLow) * scale, (window.ordinateHigh - ys[0]) * scale, 3.5, 0, 2 * Math.PI)
+    context.fill()
+    context.font = "12px system-ui, sans-serif"
+    const [width, height] = [context.measureText(text).width + 2 * PADDING, TEXT_HEIGHT]
+    context.fillStyle = paper
+    context.fillRect(0, box.height - height, width, height)
+    context.fillStyle = ink
+    // Beside a small picture the letters are narrower.
+    context.fillText(text, PADDING, box.height - PADDING, box.width - 2 * PADDING)
+    this.#canvas.setAttribute("aria-label", text)
+  }
+}
+
+/** @type {(box: DOMRect, event: PointerEvent) => boolean} */
+const contains = (box, {clientX, clientY}) =>
+  clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom
+
+/**
+ * Where the card is drawn: over the well, or in the other half of the only map.
+ *
+ * @param {import("../painting/pictures.js").Frame} over  the picture under the pointer
+ * @param {number} pointer  its place from the left of the screen
+ */
+function placeFor(over, pointer) {
+  const well = wellFrame()
+  if (well) return well.box
+  const {left, top, width} = over.box
+  const side = ALONE * width
+  return new DOMRect(pointer < left + width / 2 ? left + width - side : left, top, side, side)
+}

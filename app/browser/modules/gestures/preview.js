@@ -1,0 +1,261 @@
+// @ts-check
+/**
+ * The pictures of the page while the energy or the window moves. The browser's pixels stay until the server's map shows the same
+ * view with at least as many.
+ */
+
+import {exitLines, LimitingCurves} from "../engine/curves.js"
+import {Integrator} from "../engine/integrator.js"
+import {energyAxis, showsPositions, windowAt} from "../engine/starts.js"
+import {coversEnergy} from "../engine/system.js"
+import {pixelColumns, sameEnergy, showsScene} from "../painting/columns.js"
+import {Local, LocalWhenPresent} from "../painting/local.js"
+import {Outlines} from "../painting/outlines.js"
+import {LEAST_SIDE} from "../workers/frames.js"
+
+/**
+ * The view as the server describes it.
+ *
+ * @typedef {object} ServerView
+ * @property {string} system  key of the system
+ * @property {string} plane  name of the slice
+ * @property {import("../engine/system.js").Slice | null} slice  null for a slice that only the server can compute
+ * @property {number} energy
+ * @property {boolean} home  whether the window is the default one
+ * @property {string[]} colours  of the outcomes, exits first
+ * @property {string[]} labels  of the outcomes
+ * @property {import("../painting/columns.js").Coding} coding
+ * @property {number} resolution  pixels along a side of the server's map
+ *
+ * Models of Bokeh by their names; null for those that are not on the page.
+ *
+ * @typedef {(name: string) => any} FindModel
+ */
+
+/**
+ * Edges that are this close, as a share of the side, are not moved while the energy changes: to paint axes takes longer than to
+ * paint pixels. The default window has more space than that around its interior.
+ */
+const NEAR_EDGE = 0.02
+
+/** @type {(one: import("../engine/starts.js").Window, other: import("../engine/starts.js").Window) => boolean} */
+const isNear = (one, other) => {
+  const near = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
+    Math.abs(a - b) <= NEAR_EDGE * side
+  const [width, height] = [other.xHigh - other.xLow, other.ordinateHigh - other.ordinateLow]
+  const nearX = near(one.xLow, other.xLow, width) && near(one.xHigh, other.xHigh, width)
+  return nearX && near(one.ordinateLow, other.ordinateLow, height) && near(one.ordinateHigh, other.ordinateHigh, height)
+}
+
+export class Preview {
+  /**
+   * @param {FindModel} find
+   * @param {(picture: string, name: string) => any} findSource  finds a data source of a picture
+   * @param {import("../workers/frames.js").Frames} frames
+   * @param {import("../painting/overlay.js").Overlay} overlay
+   */
+  constructor(find, findSource, frames, overlay) {
+    this.#overlay = overlay
+    this.#find = find
+    const ranges = find("basins")
+    this.#frames = frames
+    this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
+    const moved = () => this.#moved()
+    this.#x = new Local(ranges.x_range, ["start", "end"], moved)
+    this.#y = new Local(ranges.y_range, ["start", "end"], moved)
+    this.#ranges = () => [ranges.x_range, ranges.y_range]
+    this.#outlines = new Outlines(name => findSource("basins", name))
+    this.#well = new Outlines(name => findSource("well", name))
+    this.#status = new LocalWhenPresent(findStatus, ["text"])
+  }
+
+  #find
+  #frames
+  #overlay
+  #maps
+  #x
+  #y
+  #ranges
+  #outlines
+  #well
+  #status
+  #curves = new LimitingCurves()
+  #wellCurves = new LimitingCurves()
+  /** @type {import("../engine/system.js").System | null} */
+  #system = null
+  /** @type {Integrator | null} */
+  #integrator = null
+  /** @type {ServerView | null} */
+  #view = null
+  /** Energy of the slider or of the player, until the server has it. @type {number | null} */
+  #energy = null
+  /** Default window at that energy; null for that of the ranges. @type {import("../engine/starts.js").Window | null} */
+  #window = null
+  #held = false
+  #waiting = false
+  /** The preview on the page. @type {import("../engine/pixels.js").View | null} */
+  #shown = null
+
+  /**
+   * Use a system, which is that of the view or will be.
+   *
+   * @param {import("../engine/system.js").System} system
+   * @param {import("../engine/integrator.js").Modules} modules
+   */
+  setSystem(system, modules) {
+    this.#system = system
+    this.#integrator = new Integrator(system, modules)
+    this.#frames.setSystem(system, modules)
+    if (this.#held && this.#energy !== null) this.showEnergy(this.#energy)
+    else this.#follow()
+  }
+
+  /** @param {ServerView} view */
+  setView(view) {
+    const other = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
+    this.#view = view
+    if (!this.#held) this.#energy = this.#window = null
+    if (other) this.#restore()
+  }
+
+  /**
+   * Show another energy until `release`.
+   *
+   * @param {number} energy
+   */
+  showEnergy(energy) {
+    this.#held = true
+    this.#energy = energy
+    const [view, integrator] = [this.#view, this.#integrator]
+    const isHome = view?.home && view.system === integrator?.system.key
+    const returns = view && sameEnergy(energy, view.energy)
+    const home = isHome && integrator && !returns ? windowAt(integrator, view.plane, energy) : null
+    if (!home || !isNear(home, this.#present)) this.#window = home
+    if (returns) for (const range of [this.#x, this.#y]) range.restore()
+    this.#follow()
+  }
+
+  /** The energy has been handed to the server. */
+  release() {
+    this.#held = false
+  }
+
+  /** What is to be seen now; null if it cannot be computed here. @returns {import("../workers/frames.js").Scene | null} */
+  get scene() {
+    const [view, system, window] = [this.#view, this.#system, this.#present]
+    if (!view?.slice || !system || view.system !== system.key) return null
+    if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
+    const energy = this.#energy ?? view.energy
+    const highest = [window.xHigh, window.ordinateHigh][energyAxis(view.slice)] ?? energy
+    return coversEnergy(system, highest / system.units.energy) ? {slice: view.slice, energy, window, most: view.resolution} : null
+  }
+
+  /** The window that is shown, or is about to be. @returns {import("../engine/starts.js").Window} */
+  get #present() {
+    const [x, y] = this.#ranges()
+    return this.#window ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
+  }
+
+  /** Columns of the view with which this one is compared pixel by pixel, as the server does; null for none. */
+  get #compared() {
+    const isCompared = this.#maps.server.data.difference?.[0].length > 1
+    return isCompared ? (this.#find("compared_map")?.data ?? null) : null
+  }
+
+  /** A range changes: its other end and the pixels from the server may follow at once. */
+  #moved() {
+    if (this.#waiting) return
+    this.#waiting = true
+    queueMicrotask(() => {
+      this.#waiting = false
+      this.#follow()
+    })
+  }
+
+  /** Show what is wanted: the server's map if it has it, else a preview. */
+  #follow() {
+    const scene = this.scene
+    if (!scene) {
+      this.#maps.accept()
+      return
+    }
+    const same = this.#shown && JSON.stringify(scene) === JSON.stringify(pick(this.#shown))
+    const rows = same && this.#shown ? this.#shown.rows : LEAST_SIDE
+    if (showsScene(this.#maps.server.data, scene, rows)) {
+      this.#restore()
+      return
+    }
+    this.#maps.keep()
+    if (!same) this.#frames.request(scene)
+  }
+
+  /**
+   * Show the pixels of a preview: in Bokeh's pictures, or over them while the energy moves.
+   *
+   * @param {import("../engine/pixels.js").View} view
+   * @param {import("../engine/pixels.js").Pixels} pixels
+   * @param {boolean} moving  whether the next preview is to follow in the next frame
+   */
+  show(view, pixels, moving) {
+    const [integrator, server] = [this.#integrator, this.#view]
+    if (!integrator || !server) return
+    const {system} = integrator
+    this.#shown = view
+    const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data, this.#compared)
+    const limit = this.#curves.trace(integrator, view)
+    const coloured = exitLines(integrator, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
+    const exits = showsPositions(view.slice) ? coloured : []
+    const well = this.#traceWell(integrator, view)
+    // Each change of a range repaints all pictures: together with the pixels, or seldom.
+    if (this.#window) {
+      this.#x.show({start: view.window.xLow, end: view.window.xHigh})
+      this.#y.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
+    }
+    this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
+    if (moving && this.#held) {
+      this.#overlay.show({
+        energy: view.energy,
+        window: view.window,
+        columns,
+        lines: {zero_velocity_curve: limit, lyapunov_orbits: exits},
+        well: well && {window: well.window, lines: {zero_velocity_curve: well.limit, lyapunov_orbits: coloured}},
+      })
+      return
+    }
+    this.#maps.show({data: columns})
+    this.#outlines.show(limit, exits)
+    if (well) this.#well.show(well.limit, coloured)
+    this.#overlay.hide()
+  }
+
+  /**
+   * The window of the well and its zero-velocity curve; null where the energy is an axis, and the well stays as it is.
+   *
+   * @param {Integrator} integrator
+   * @param {import("../engine/pixels.js").View} view
+   */
+  #traceWell(integrator, {slice, energy}) {
+    const {system} = integrator
+    const window = energyAxis(slice) < 0 ? windowAt(integrator, "x_y", energy) : null
+    return window && {window, limit: this.#wellCurves.trace(integrator, {slice: system.space, window, energy})}
+  }
+
+  /** Show what the server shows. */
+  #restore() {
+    this.#frames.stop()
+    this.#shown = null
+    this.#overlay.hide()
+    for (const shown of [this.#maps, this.#outlines, this.#well, this.#status, this.#x, this.#y]) shown.restore()
+  }
+}
+
+/** The status line, which has no name in the document. */
+const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("status"))?.model
+
+/**
+ * The scene of a view.
+ *
+ * @param {import("../engine/pixels.js").View} view
+ * @returns {import("../workers/frames.js").Scene}
+ */
+const pick = ({slice, energy, window, most}) => ({slice, energy, window, most})

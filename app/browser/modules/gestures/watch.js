@@ -1,0 +1,413 @@
+// @ts-check
+/** The player of an ensemble: controls, particles over the well and the section, counters, and the survival. */
+
+import {Ensemble, Outcomes} from "../engine/ensemble.js"
+import {Integrator} from "../engine/integrator.js"
+import {drawStarts} from "../engine/random_starts.js"
+import {energyAxis, windowAt} from "../engine/starts.js"
+import {cover, frames, onMoved, wellFrame} from "../painting/pictures.js"
+import {drawSurvival} from "../painting/survival_chart.js"
+import {onPresent, present} from "./present.js"
+
+/** Longest time, in units of the well. */
+const LONGEST = 100
+/** Time of the first frame after the start on a logarithmic scale. */
+const FIRST = 0.5
+const STEPS = 1000
+/** What a press of "Step" shows of a playing ensemble. */
+const STEP_SECONDS = 0.05
+/** Side of a particle, in pixels, and how fast trails fade: the share of the light that is left after a frame. */
+const [SIDE, TRAIL] = [2.5, 0.88]
+const FRAMES_PER_NUMBER = 6
+/** Share of the map under the passages of the section that is covered. */
+const COVERED = 0.85
+/** Time in each frame for finding the outcomes of orbits, in ms. */
+const OUTCOMES_MS = 6
+/** A longer frame, such as one of a hidden page, advances the time by this only. */
+const LONGEST_FRAME_MS = 100
+const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none"
+
+/**
+ * How the time goes on: in units of time per second, or in factors of two per second.
+ *
+ * @type {Record<string, (time: number, seconds: number) => number>}
+ */
+const PACES = {
+  slow: (time, seconds) => time + seconds,
+  normal: (time, seconds) => time + 4 * seconds,
+  fast: (time, seconds) => time + 16 * seconds,
+  logarithmic: (time, seconds) => Math.max(time, FIRST) * 2 ** (0.5 * seconds),
+  backwards: (time, seconds) => Math.max(time - 4 * seconds, 0),
+}
+
+/** @type {(tag: string, attributes?: object, ...children: (Node | string)[]) => any} */
+const make = (tag, attributes = {}, ...children) => {
+  const node = Object.assign(document.createElement(tag), attributes)
+  node.append(...children)
+  return node
+}
+
+/** @type {(options: Record<string, string>) => HTMLElement[]} */
+const makeOptions = options => Object.entries(options).map(([value, text]) => make("option", {value}, text))
+
+/** @type {(label: string, options: Record<string, string>) => any} */
+const makeList = (label, options) => {
+  const list = make("select", {className: "bk-input"}, ...makeOptions(options))
+  list.setAttribute("aria-label", label)
+  return list
+}
+
+class Watch {
+  /**
+   * @param {any} model  of `EnsemblePlayer`
+   * @param {HTMLElement} el
+   */
+  constructor(model, el) {
+    this.#model = model
+    this.#where = makeList("Starts", model.places)
+    const counts = model.counts.map((/** @type {number} */ each) => [
+      each,
+      `${each.toLocaleString("en").replaceAll(",", " ")} orbits`,
+    ])
+    this.#count = makeList("Number of orbits", Object.fromEntries(counts))
+    ;[this.#radius.min, this.#radius.max] = model.radii
+    this.#pace = makeList("Speed", Object.fromEntries(Object.keys(PACES).map(pace => [pace, pace])))
+    this.#pace.value = "normal"
+    this.#rail.setAttribute("aria-label", "Time of the orbits")
+    this.#radius.setAttribute("aria-label", "Radius of the disc, as a power of ten of the window")
+    for (const canvas of [this.#well, this.#section]) canvas.style.cssText = STYLE
+    this.#trails.checked = false
+    el.replaceChildren(
+      make("div", {className: "row"}, this.#where, this.#count, this.#again),
+      make("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusText),
+      make("div", {className: "row"}, this.#play, this.#step, this.#rail, this.#text),
+      make(
+        "div",
+        {className: "row"},
+        this.#pace,
+        make("label", {}, this.#trails, " trails"),
+        make("label", {}, this.#loop, " loop"),
+      ),
+      this.#note,
+      this.#counters,
+      this.#growth,
+      this.#chart,
+    )
+    this.#listen()
+    this.#follow()
+  }
+
+  #model
+  #where
+  #count
+  #pace
+  #again = make("button", {type: "button", className: "bk-btn"}, "Other starts")
+  #play = make("button", {type: "button", className: "bk-btn play"})
+  #step = make("button", {type: "button", className: "bk-btn"}, "Step")
+  #rail = make("input", {type: "range", min: 0, max: STEPS, step: 1, value: 0})
+  #text = make("output")
+  #radius = make("input", {type: "range", step: 0.5})
+  #radiusText = make("output")
+  #trails = make("input", {type: "checkbox"})
+  #loop = make("input", {type: "checkbox"})
+  #note = make("p", {className: "quiet"})
+  #counters = make("table")
+  #growth = make("p", {className: "quiet"})
+  #chart = make("canvas", {className: "survival"})
+  #well = make("canvas")
+  #section = make("canvas")
+  /** @type {Integrator | null} */
+  #integrator = null
+  /** @type {Ensemble | null} */
+  #ensemble = null
+  /** @type {Outcomes | null} */
+  #outcomes = null
+  #nextSearch = 0
+  /** What the ensemble was made of. */
+  #made = ""
+  #frame = 0
+  #painted = 0
+  #unlisten = onPresent(() => this.#follow())
+  #stay = onMoved(() => this.#draw())
+
+  #listen() {
+    const model = this.#model
+    this.#where.onchange = () => this.#choose({where: this.#where.value})
+    this.#count.onchange = () => this.#choose({count: Number(this.#count.value)})
+    this.#radius.oninput = () => this.#choose({radius: Number(this.#radius.value)})
+    this.#again.onclick = () => this.#choose({seed: model.seed + 1})
+    this.#play.onclick = () => this.#setPlaying(this.#frame === 0)
+    this.#step.onclick = () => this.#show(PACES[this.#pace.value](this.#time, STEP_SECONDS))
+    this.#rail.oninput = () => this.#show((this.#rail.valueAsNumber / STEPS) * LONGEST)
+    model.on("places", () => {
+      this.#where.replaceChildren(...makeOptions(model.places))
+      this.#where.value = model.where
+    })
+    model.on(["where", "count", "seed", "radius", "point", "box", "rate"], () => this.#follow())
+    model.on("lifecycle:remove", () => this.#end())
+  }
+
+  get #time() {
+    return this.#ensemble?.time ?? 0
+  }
+
+  /**
+   * Tell the server of a choice, which comes back as a change of the model.
+   *
+   * @param {object} choice
+   */
+  #choose(choice) {
+    const {where, count, seed, radius} = this.#model
+    this.#model.send_msg({where, count, seed, radius, ...choice})
+  }
+
+  /** Follow the page and the choices. Other starts begin at time 0; a playing ensemble keeps playing. */
+  #follow() {
+    const {where, count, seed, radius, point, box} = this.#model
+    Object.assign(this.#where, {value: where})
+    this.#count.value = String(count)
+    this.#radius.value = String(radius)
+    this.#radiusText.textContent = `10^${radius}`
+    this.#radius.closest(".radius").hidden = where !== "disc"
+    const [shown, scene] = [present(), present()?.scene() ?? null]
+    /** @type {Record<string, unknown>} */
+    const places = {view: scene, disc: [scene, radius, point], box: [scene, box]}
+    const place = places[where] ?? scene?.energy
+    const made = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
+    if (made === this.#made) return this.#draw()
+    this.#made = made
+    this.#ensemble = this.#outcomes = null
+    if (shown && scene && energyAxis(scene.slice) < 0) this.#make(shown, scene)
+    this.#findOutcomes()
+    this.#show(0)
+  }
+
+  /** Find in the next frames through which exits the orbits leave. */
+  #findOutcomes() {
+    cancelAnimationFrame(this.#nextSearch)
+    const tick = () => {
+      const [outcomes, begun] = [this.#outcomes, performance.now()]
+      while (outcomes && !outcomes.complete && performance.now() - begun < OUTCOMES_MS) outcomes.continue()
+      if (this.#frame === 0) this.#draw()
+      this.#nextSearch = outcomes && !outcomes.complete ? requestAnimationFrame(tick) : 0
+    }
+    this.#nextSearch = requestAnimationFrame(tick)
+  }
+
+  /**
+   * @param {import("./present.js").Shown} shown
+   * @param {import("../workers/frames.js").Scene} scene
+   */
+  #make({system, modules}, scene) {
+    const {where, count, seed, radius, point, box} = this.#model
+    const integrator = (this.#integrator = new Integrator(system, modules))
+    const isMissing = (where === "disc" && !point.length) || (where === "box" && !box.length)
+    const request = {where: isMissing ? "view" : where, count, seed, point, box, radius: 10 ** radius}
+    const states = drawStarts(request, scene, integrator)
+    const energy = scene.energy / system.units.energy
+    this.#ensemble = new Ensemble(integrator, energy, states)
+    this.#outcomes = new Outcomes(system, modules, energy, states, LONGEST)
+  }
+
+  /** @param {boolean} on */
+  #setPlaying(on) {
+    cancelAnimationFrame(this.#frame)
+    this.#frame = 0
+    // With the counters of the moment, which are not written in every frame.
+    if (!on || !this.#ensemble) return this.#draw()
+    if (this.#hasEnded) this.#begin()
+    let last = performance.now()
+    const tick = (/** @type {number} */ now) => {
+      const seconds = Math.min(Math.max(now - last, 0), LONGEST_FRAME_MS) / 1000
+      last = now
+      this.#show(PACES[this.#pace.value](this.#time, seconds))
+      if (this.#hasEnded && this.#loop.checked) this.#begin()
+      if (this.#hasEnded) return this.#setPlaying(false)
+      this.#frame = requestAnimationFrame(tick)
+    }
+    this.#frame = requestAnimationFrame(tick)
+    this.#label()
+  }
+
+  /** Whether the time is where the pace leads. */
+  get #hasEnded() {
+    return this.#pace.value === "backwards" ? this.#time <= 0 : this.#time >= LONGEST
+  }
+
+  /** Go to the time from which the pace leads on. */
+  #begin() {
+    this.#show(this.#pace.value === "backwards" ? LONGEST : 0)
+  }
+
+  #label() {
+    const playing = this.#frame !== 0
+    this.#play.textContent = playing ? "❚❚ Pause" : "▶ Watch them leave"
+    this.#play.setAttribute("aria-pressed", String(playing))
+  }
+
+  /** @param {number} time */
+  #show(time) {
+    this.#ensemble?.advance(Math.min(time, LONGEST))
+    this.#draw()
+  }
+
+  #draw() {
+    const [ensemble, shown] = [this.#ensemble, present()]
+    this.#label()
+    for (const control of [this.#play, this.#step, this.#rail]) control.disabled = !ensemble?.count
+    this.#note.textContent = this.#explain()
+    if (!ensemble || !shown) {
+      for (const canvas of [this.#well, this.#section]) canvas.style.display = "none"
+      return
+    }
+    if (!this.#well.isConnected) shown.host.append(this.#well, this.#section)
+    const time = this.#time * shown.system.units.time
+    this.#rail.valueAsNumber = (STEPS * this.#time) / LONGEST
+    this.#rail.style.setProperty("--share", String(this.#time / LONGEST))
+    this.#text.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
+    this.#paintWell(ensemble, shown)
+    this.#paintSection(ensemble, shown)
+    // While the time goes on, numbers that change in every frame cannot be read.
+    if (this.#frame !== 0 && this.#painted++ % FRAMES_PER_NUMBER) return
+    this.#writeCounters(ensemble, shown)
+    this.#writeGrowth(ensemble, time)
+    const ink = getComputedStyle(this.#chart).color
+    drawSurvival(this.#chart, ensemble, {longest: LONGEST, unit: shown.system.units.time, rate: this.#model.rate, ink})
+  }
+
+  #explain() {
+    if (!present()) return "The engine in the browser is being loaded …"
+    if (!this.#ensemble) return "Choose a slice of one energy and one potential, within the range of the slider."
+    if (!this.#ensemble.count) return "There is no start inside the exits here."
+    const {where, explanations, point, box} = this.#model
+    if (where === "box" && !box.length) return 'Draw a box with "Count" first. These starts are in the view.'
+    if (where === "disc" && !point.length) return "Click a map first. These starts are in the view."
+    if (explanations[where]) return explanations[where]
+    const words = this.#where.selectedOptions[0].textContent
+    return `${this.#ensemble.count} starts ${words}, in the colours of the exits that they will take; grey ones stay.`
+  }
+
+  /**
+   * @param {Ensemble} ensemble
+   * @param {import("./present.js").Shown} shown
+   */
+  #paintWell(ensemble, {system, scene, colours}) {
+    const [frame, energy, integrator] = [wellFrame(), scene()?.energy, this.#integrator]
+    const window = energy === undefined || !integrator ? null : windowAt(integrator, "x_y", energy)
+    if (!frame || !window) return void (this.#well.style.display = "none")
+    this.#paint(
+      this.#well,
+      frame.box,
+      window,
+      colours(),
+      ensemble,
+      ensemble.x,
+      ensemble.y,
+      system.units.length,
+      system.units.length,
+    )
+  }
+
+  /**
+   * On (x, px): each orbit at its last passage.
+   *
+   * @param {Ensemble} ensemble
+   * @param {import("./present.js").Shown} shown
+   */
+  #paintSection(ensemble, {scene, colours}) {
+    const [frame, view] = [frames()[0], scene()]
+    // The second coordinate of the origin is y.
+    const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
+    // Before the first passage the map stays as it is.
+    if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
+      return void (this.#section.style.display = "none")
+    const style = getComputedStyle(this.#note)
+    this.#section.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVERED}%, transparent)`
+    const [xs, ps] = [ensemble.sectionX, ensemble.sectionPx]
+    this.#paint(this.#section, frame.box, view.window, colours(), ensemble, xs, ps, ...view.slice.units)
+  }
+
+  /**
+   * Paint the orbits as particles in the colours of the exits that they will take, others in that of the text.
+   *
+   * @param {HTMLCanvasElement} canvas
+   * @param {DOMRect} box
+   * @param {import("../engine/starts.js").Window} window
+   * @param {string[]} colours
+   * @param {Ensemble} ensemble
+   * @param {Float64Array} xs
+   * @param {Float64Array} ys
+   * @param {number} unitX
+   * @param {number} unitY
+   */
+  #paint(canvas, box, window, colours, {count}, xs, ys, unitX, unitY) {
+    const channel = this.#outcomes?.channel ?? []
+    const context = cover(canvas, box)
+    if (!context) return
+    if (this.#trails.checked) {
+      context.globalCompositeOperation = "destination-in"
+      context.fillStyle = `rgba(0,0,0,${TRAIL})`
+      context.fillRect(0, 0, box.width, box.height)
+      context.globalCompositeOperation = "source-over"
+    } else context.clearRect(0, 0, box.width, box.height)
+    const [scaleX, scaleY] = [box.width / (window.xHigh - window.xLow), box.height / (window.ordinateHigh - window.ordinateLow)]
+    const inks = [getComputedStyle(this.#note).color, ...colours]
+    inks.forEach((ink, code) => {
+      context.fillStyle = ink
+      for (let i = 0; i < count; i++) {
+        if (channel[i] !== code) continue
+        const [left, top] = [(xs[i] * unitX - window.xLow) * scaleX, (window.ordinateHigh - ys[i] * unitY) * scaleY]
+        if (left >= 0 && top >= 0 && left < box.width && top < box.height)
+          context.fillRect(left - SIDE / 2, top - SIDE / 2, SIDE, SIDE)
+      }
+    })
+  }
+
+  /**
+   * @param {Ensemble} ensemble
+   * @param {import("./present.js").Shown} shown
+   */
+  #writeCounters({channel, count}, shown) {
+    const [names, colours] = [["inside", ...shown.labels()], shown.colours()]
+    const numbers = new Array(names.length).fill(0)
+    for (const code of channel) numbers[code]++
+    const cells = numbers.map((number, code) => {
+      const share = count ? ((100 * number) / count).toFixed(1) : "0"
+      const cell = make("td", {}, `${names[code]}: ${number} (${share} %)`)
+      if (code) cell.style.setProperty("--colour", colours[code - 1])
+      return cell
+    })
+    this.#counters.replaceChildren(make("tbody", {}, make("tr", {}, ...cells)))
+  }
+
+  /**
+   * The growth of a disc, as a factor and as a rate: where it is small and the motion chaotic, the rate is near the Lyapunov exponent.
+   *
+   * @param {Ensemble} ensemble
+   * @param {number} time
+   */
+  #writeGrowth(ensemble, time) {
+    const isDisc = this.#model.where === "disc"
+    this.#growth.hidden = !isDisc
+    if (!isDisc) return
+    const growth = ensemble.growth()
+    const isKnown = time > 0 && growth > 0 && growth < Infinity
+    this.#growth.textContent = isKnown
+      ? `${growth.toPrecision(3)} times as wide as at the start: ln(width)/t = ${(Math.log(growth) / time).toFixed(3)}`
+      : ""
+  }
+
+  #end() {
+    cancelAnimationFrame(this.#frame)
+    cancelAnimationFrame(this.#nextSearch)
+    this.#unlisten()
+    this.#stay()
+    for (const canvas of [this.#well, this.#section]) canvas.remove()
+  }
+}
+
+/**
+ * @param {any} model
+ * @param {HTMLElement} el
+ */
+export const watch = (model, el) => void new Watch(model, el)

@@ -1,0 +1,115 @@
+// @ts-check
+/**
+ * How pixels are written as codes; the server sends it, see `app/browser/views.py`.
+ *
+ * @typedef {object} Coding
+ * @property {[number, number][]} outcomes  fate and code of the outcomes that are no escapes
+ * @property {number} first  code of the first class
+ * @property {number[]} ends  place of the outcomes from fate 1 on among all ends
+ * @property {string[]} words  of all ends
+ * @property {number[]} leastCrossings  fewest crossings of each class
+ * @property {number} undecided  code of pixels that are not decided
+ * @property {number[]} withoutOrbit  codes of pixels without an orbit
+ * @property {string[]} layers  columns of the layers, which the server alone computes
+ *
+ * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
+ */
+
+import {energyAxis} from "../engine/starts.js"
+
+/**
+ * The columns of the pictures' data source for the pixels of a view, as the server makes them of a map.
+ *
+ * @param {Coding} coding
+ * @param {import("../engine/pixels.js").View} view
+ * @param {import("../engine/pixels.js").Pixels} pixels
+ * @param {Columns} like  columns from the server, for the types of their images
+ * @param {Columns | null} compared  columns of the view with which this one is compared pixel by pixel; null for none
+ * @returns {Columns}
+ */
+export function pixelColumns(coding, view, pixels, like, compared) {
+  const {outcomes, first, ends, leastCrossings} = coding
+  const {window, columns, rows} = view
+  const codes = new Map(outcomes)
+  const count = columns * rows
+  const fate = new Uint8Array(count)
+  const crossingClass = new Uint8Array(count)
+  for (let i = 0; i < count; i++) {
+    const outcome = codes.get(pixels.fate[i])
+    fate[i] = outcome ?? first + ends[pixels.fate[i] - 1]
+    crossingClass[i] = outcome ?? first + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
+  }
+  const [Bytes, Floats] = [like.fate[0].constructor, like.escape_time[0].constructor]
+  const shape = [rows, columns]
+  const none = new Bytes(new Uint8Array(1).buffer, [1, 1])
+  return {
+    fate: [new Bytes(fate.buffer, shape)],
+    crossing_class: [new Bytes(crossingClass.buffer, shape)],
+    crossings: [new Floats(Float32Array.from(pixels.crossings).buffer, shape)],
+    escape_time: [new Floats(pixels.time.buffer, shape)],
+    ...Object.fromEntries(coding.layers.map(name => [name, [none]])),
+    difference: [compared ? new Bytes(differences(coding, view, fate, compared).buffer, shape) : none],
+    ends: [coding.words],
+    x: [window.xLow],
+    y: [window.ordinateLow],
+    dw: [window.xHigh - window.xLow],
+    dh: [window.ordinateHigh - window.ordinateLow],
+    energy: [view.energy],
+    complete: [false],
+  }
+}
+
+/**
+ * Codes of the pixels that have another outcome in another view, as `difference_column` of the server gives them.
+ *
+ * @param {Coding} coding
+ * @param {import("../engine/pixels.js").View} view
+ * @param {Uint8Array} fate  codes of its pixels
+ * @param {Columns} compared
+ */
+function differences({first, undecided, withoutOrbit}, {window, columns, rows}, fate, compared) {
+  const [image, x, y, dw, dh] = ["fate", "x", "y", "dw", "dh"].map(name => compared[name][0])
+  const [rowsThere, columnsThere] = image.shape
+  const lacks = (/** @type {number} */ code) => withoutOrbit.includes(code)
+  const places = (/** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ count) =>
+    Array.from({length: count}, (_, k) => low + ((high - low) * (k + 0.5)) / count)
+  const across = places(window.xLow, window.xHigh, columns).map(place => Math.floor(((place - x) / dw) * columnsThere))
+  const up = places(window.ordinateLow, window.ordinateHigh, rows).map(place => Math.floor(((place - y) / dh) * rowsThere))
+  return fate.map((code, pixel) => {
+    const [row, column] = [up[Math.floor(pixel / columns)], across[pixel % columns]]
+    const isInside = row >= 0 && row < rowsThere && column >= 0 && column < columnsThere
+    const other = isInside ? image[row * columnsThere + column] : undecided
+    if (code === undecided || other === undecided) return undecided
+    if (lacks(code) && lacks(other)) return code
+    return first + (lacks(code) !== lacks(other) ? 2 : Number(code !== other))
+  })
+}
+
+/** Edges of windows closer than this, as a share of its side, are the same. */
+const SAME_EDGE = 1e-6
+/** Coarse frames of the server reach this much beyond the window. */
+const WIDEST = 1.1
+const SAME_ENERGY = 1e-12
+
+/**
+ * Whether two energies are equal but for rounding.
+ *
+ * @param {number} one
+ * @param {number} other
+ */
+export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
+
+/**
+ * Whether columns from the server show a scene, with at least as many pixels as a preview of it.
+ *
+ * @param {Columns} columns
+ * @param {import("../workers/frames.js").Scene} scene
+ * @param {number} rows  of the preview
+ */
+export function showsScene({x, y, dw, dh, energy, fate, complete}, {window, energy: wanted, slice}, rows) {
+  const near = (/** @type {number} */ low, /** @type {number} */ size, /** @type {number} */ from, /** @type {number} */ to) =>
+    Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
+  const ofEnergy = energyAxis(slice) >= 0 || sameEnergy(energy[0], wanted)
+  const sameWindow = near(x[0], dw[0], window.xLow, window.xHigh) && near(y[0], dh[0], window.ordinateLow, window.ordinateHigh)
+  return ofEnergy && sameWindow && (complete[0] || fate[0].shape[0] >= rows)
+}

@@ -1,0 +1,52 @@
+// @ts-check
+/** The curves over a picture of Bokeh while the energy or the window moves: limiting curve, exits and their numbers. */
+
+import {LocalWhenPresent} from "./local.js"
+
+/**
+ * @typedef {{xs: number[], ys: number[]}} Line
+ * @typedef {ReturnType<typeof import("../engine/curves.js").exitLines>[number] & {colour: string}} Exit
+ */
+
+export class Outlines {
+  /** @param {(name: string) => any} findSource  finds a data source of the picture */
+  constructor(findSource) {
+    const local = (/** @type {string} */ name) => new LocalWhenPresent(() => findSource(name), ["data"])
+    this.#limit = local("zero_velocity_curve")
+    this.#exits = local("lyapunov_orbits")
+    this.#labels = local("channel_numbers")
+  }
+
+  #limit
+  #exits
+  #labels
+
+  /**
+   * @param {Line[]} limit
+   * @param {Exit[]} exits
+   */
+  show(limit, exits) {
+    this.#limit.show({data: sourceOf(limit)})
+    if (exits.length > 0 || this.#exits.server.data) this.#showExits(exits)
+  }
+
+  restore() {
+    for (const local of [this.#limit, this.#exits, this.#labels]) local.restore()
+  }
+
+  /** @param {Exit[]} exits */
+  #showExits(exits) {
+    this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
+    // Always as many texts: Bokeh fails when texts with colours of their own become fewer.
+    const labels = this.#labels.server.data ?? {text: [], colour: []}
+    const fill = (/** @type {any[]} */ values, /** @type {any} */ other) =>
+      Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))
+    const [x, y] = [0, 1].map(axis => exits.map(({label}) => label[axis]))
+    const text = exits.map(({channel}) => String(channel))
+    const colour = exits.map(exit => exit.colour)
+    this.#labels.show({data: {x: fill(x, NaN), y: fill(y, NaN), text: fill(text, ""), colour: fill(colour, labels.colour[0])}})
+  }
+}
+
+/** Lines as the columns of a data source of Bokeh. @type {(lines: Line[]) => {xs: number[][], ys: number[][]}} */
+const sourceOf = lines => ({xs: lines.map(({xs}) => xs), ys: lines.map(({ys}) => ys)})

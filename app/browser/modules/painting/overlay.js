@@ -1,0 +1,170 @@
+// @ts-check
+/**
+ * The pictures while the energy moves, on canvases over those of Bokeh, which would take longer to paint a frame, axes included,
+ * than the pixels take to compute. Columns, palettes and styles of lines are those of Bokeh's models.
+ */
+
+import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
+
+/** Below cards and drawers. */
+const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;background:var(--ui-page)"
+
+/**
+ * What is painted.
+ *
+ * @typedef {object} Painting
+ * @property {number} energy
+ * @property {import("../engine/starts.js").Window} window
+ * @property {import("./columns.js").Columns} columns
+ * @property {Lines} lines  of the maps
+ * @property {{window: import("../engine/starts.js").Window, lines: Lines} | null} well  null where the well stays as it is
+ *
+ * Lines by the names of Bokeh's data sources.
+ *
+ * @typedef {Record<string, {xs: number[], ys: number[], colour?: string}[]>} Lines
+ */
+
+export class Overlay {
+  /** @param {HTMLElement} el */
+  constructor(el) {
+    this.#el = el
+    document.addEventListener("scroll", () => this.hide(), {capture: true, passive: true})
+  }
+
+  #el
+  /** @type {Map<string, HTMLCanvasElement>} */
+  #canvases = new Map()
+  #pixels = document.createElement("canvas")
+  #shown = false
+
+  /** @param {Painting} painting */
+  show(painting) {
+    this.#shown = true
+    const {energy, window, columns, lines, well} = painting
+    for (const {view, box} of frames()) {
+      const context = this.#canvasFor(view.model.name, box, energy)
+      if (!context) continue
+      for (const {glyph, data_source: source} of view.model.renderers) {
+        if (source.name === "maps") this.#paintImage(context, box, columns[glyph.image.field][0], glyph.color_mapper)
+      }
+      strokeLines(context, view.model, window, box, lines)
+      context.canvas.dataset.side = String(columns.fate[0].shape[0])
+    }
+    const frame = well && wellFrame()
+    const context = frame && this.#canvasFor("well", frame.box, energy)
+    if (frame && context) strokeLines(context, frame.view.model, well.window, frame.box, well.lines)
+  }
+
+  /** Hide the canvases when Bokeh has painted, in the next frame. */
+  hide() {
+    if (!this.#shown) return
+    this.#shown = false
+    requestAnimationFrame(() =>
+      requestAnimationFrame(() => {
+        if (this.#shown) return
+        for (const canvas of this.#canvases.values()) canvas.style.display = "none"
+      }),
+    )
+  }
+
+  /**
+   * The empty canvas over a picture.
+   *
+   * @param {string} name
+   * @param {DOMRect} box
+   * @param {number} energy
+   */
+  #canvasFor(name, box, energy) {
+    const canvas = this.#canvasOf(name)
+    const context = cover(canvas, box)
+    context?.clearRect(0, 0, box.width, box.height)
+    if (context) context.imageSmoothingEnabled = false
+    canvas.dataset.energy = String(energy)
+    return context
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {DOMRect} box
+   * @param {any} image
+   * @param {any} mapper
+   */
+  #paintImage(context, box, image, mapper) {
+    const [rows, columns] = image.shape
+    const canvas = this.#pixels
+    if (canvas.width !== columns || canvas.height !== rows) Object.assign(canvas, {width: columns, height: rows})
+    const small = canvas.getContext("2d")
+    if (!small) return
+    const pixels = small.createImageData(columns, rows)
+    mapColours(image, mapper, new Uint32Array(pixels.data.buffer), columns)
+    small.putImageData(pixels, 0, 0)
+    context.drawImage(canvas, 0, 0, box.width, box.height)
+  }
+
+  /** @param {string} name */
+  #canvasOf(name) {
+    const canvas = this.#canvases.get(name) ?? document.createElement("canvas")
+    if (!this.#canvases.has(name)) {
+      canvas.style.cssText = STYLE
+      this.#el.append(canvas)
+      this.#canvases.set(name, canvas)
+    }
+    return canvas
+  }
+}
+
+/**
+ * Draw lines in the styles of the glyphs of a picture.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {any} plot
+ * @param {import("../engine/starts.js").Window} window
+ * @param {DOMRect} box
+ * @param {Lines} lines
+ */
+function strokeLines(context, plot, window, box, lines) {
+  for (const {glyph, data_source: source} of plot.renderers) {
+    for (const line of lines[source.name] ?? []) {
+      const colour = glyph.line_color.field ? line.colour : valueOf(glyph.line_color)
+      strokeLine(context, window, box, line, colour, valueOf(glyph.line_width))
+    }
+  }
+}
+
+/** A property of a glyph that is the same for all its lines. @type {(property: any) => any} */
+const valueOf = property => property?.value ?? property
+
+/** Colours of palettes as 32-bit numbers. @type {WeakMap<any[], Uint32Array>} */
+const tables = new WeakMap()
+
+/** @param {any[]} palette  of "#rrggbb" or "#rrggbbaa", or of numbers 0xrrggbbaa */
+function tableOf(palette) {
+  const known = tables.get(palette)
+  if (known) return known
+  const table = Uint32Array.from(palette, colour => {
+    const value = typeof colour === "number" ? colour : parseInt(colour.slice(1).padEnd(8, "f"), 16)
+    return ((value & 0xff) << 24) | ((value & 0xff00) << 8) | ((value >>> 8) & 0xff00) | (value >>> 24)
+  })
+  tables.set(palette, table)
+  return table
+}
+
+/**
+ * Colours of an image, upside down, as Bokeh's linear and logarithmic mappers give them.
+ *
+ * @param {any} image  numbers, with NaN for no colour
+ * @param {{type: string, palette: any[], low: number, high: number}} mapper
+ * @param {Uint32Array} colours
+ * @param {number} columns
+ */
+export function mapColours(image, {type, palette, low, high}, colours, columns) {
+  const table = tableOf(palette)
+  const scale = type === "LogColorMapper" ? Math.log : (/** @type {number} */ value) => value
+  const [first, share] = [scale(low), table.length / (scale(high) - scale(low))]
+  const rows = image.length / columns
+  for (let i = 0; i < image.length; i++) {
+    const place = Math.floor((scale(image[i]) - first) * share)
+    const row = rows - 1 - Math.floor(i / columns)
+    colours[row * columns + (i % columns)] = Number.isNaN(image[i]) ? 0 : table[Math.min(Math.max(place, 0), table.length - 1)]
+  }
+}

@@ -1,0 +1,93 @@
+// @ts-check
+/** The pictures on the screen: the well, and the maps. */
+
+/**
+ * A picture: its view of Bokeh, and the box of its frame on the screen.
+ *
+ * @typedef {{view: any, box: DOMRect}} Frame
+ */
+
+/** The maps. @returns {Frame[]} */
+export function frames() {
+  // The server numbers the maps of the view, see `map_figure` in `app/views/components/plots.py`.
+  const views = [...Bokeh.index.all_views()].filter(view => view.model.tags?.[0] === "map")
+  views.sort((one, other) => one.model.tags[1] - other.model.tags[1])
+  return views.map(withBox).filter(({box}) => box.width > 0)
+}
+
+/** The picture of the well; undefined if the screen is narrow and shows a map. @returns {Frame | undefined} */
+export function wellFrame() {
+  const view = [...Bokeh.index.all_views()].find(view => view.model.name === "well")
+  const frame = view && withBox(view)
+  return frame?.box.width ? frame : undefined
+}
+
+/** @type {(view: any) => Frame} */
+function withBox(view) {
+  const canvas = view.canvas_view.el.getBoundingClientRect()
+  const {left, top, width, height} = view.frame.bbox
+  // A picture that narrow screens hide has no canvas.
+  return {view, box: new DOMRect(canvas.left + left, canvas.top + top, canvas.width && width, canvas.height && height)}
+}
+
+/**
+ * Call a function when a picture that is painted over has moved, or when the theme has changed.
+ *
+ * No event tells of all causes: windows, layers and panels change the layout, and Bokeh follows some frames later.
+ *
+ * @param {() => void} call
+ * @returns {() => void} ends the calls
+ */
+export function onMoved(call) {
+  let [waiting, last] = [0, ""]
+  const look = () => {
+    const boxes = [wellFrame()?.box, frames()[0]?.box]
+    const now = JSON.stringify([boxes, devicePixelRatio, document.documentElement.dataset.theme])
+    if (now !== last) call()
+    last = now
+    waiting = requestAnimationFrame(look)
+  }
+  waiting = requestAnimationFrame(look)
+  return () => cancelAnimationFrame(waiting)
+}
+
+/**
+ * Make a canvas cover a box on the screen.
+ *
+ * @param {HTMLCanvasElement} canvas
+ * @param {DOMRect} box
+ */
+export function cover(canvas, box) {
+  const ratio = window.devicePixelRatio
+  const [width, height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)]
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height})
+  Object.assign(canvas.style, {
+    display: "block",
+    left: `${box.left}px`,
+    top: `${box.top}px`,
+    width: `${box.width}px`,
+    height: `${box.height}px`,
+  })
+  const context = canvas.getContext("2d")
+  context?.setTransform(ratio, 0, 0, ratio, 0, 0)
+  return context
+}
+
+/**
+ * Draw a line given in the coordinates of a window that fills a square or a rectangle.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {import("../engine/starts.js").Window} window
+ * @param {DOMRect} box
+ * @param {{xs: ArrayLike<number>, ys: ArrayLike<number>}} line
+ * @param {string} colour
+ * @param {number} width
+ */
+export function strokeLine(context, {xLow, xHigh, ordinateLow, ordinateHigh}, box, {xs, ys}, colour, width) {
+  const [scaleX, scaleY] = [box.width / (xHigh - xLow), box.height / (ordinateHigh - ordinateLow)]
+  context.strokeStyle = colour
+  context.lineWidth = width
+  context.beginPath()
+  for (let i = 0; i < xs.length; i++) context.lineTo((xs[i] - xLow) * scaleX, (ordinateHigh - ys[i]) * scaleY)
+  context.stroke()
+}

@@ -1,0 +1,234 @@
+// @ts-check
+/**
+ * Pictures at the rate of the display: as many pixels as fit a frame while the view moves, more of them, and to a later time,
+ * when it rests. Only the newest view is kept; the picture that is being computed while the view moves is finished first, so that
+ * fast moves show pictures as well.
+ *
+ * @typedef {import("../engine/pixels.js").View} View
+ * @typedef {import("../engine/pixels.js").Pixels} Pixels
+ * @typedef {Omit<View, "columns" | "rows" | "horizon">} Scene  slice, energy and window to draw
+ */
+
+/** Pixels along a side while the view moves, at least, and longest time in units of the well. */
+export const LEAST_SIDE = 76
+const MOVING_HORIZON = 30
+/** Pictures while the view rests: pixels along a side, and longest time in units of the well. */
+const RESTING = [
+  {side: 112, horizon: 100},
+  {side: 224, horizon: 100},
+]
+/** Time for the pixels of a frame, in ms; the rest of it is for painting. */
+const FRAME_MS = 10
+/** Limits of the change of the side from one frame to the next. */
+const [SLOWER, FASTER] = [0.8, 1.25]
+/** A view that has not changed for this long, in ms, rests. */
+const REST_MS = 60
+/** Pixels of a part while the view rests: a new view waits for one part at most. */
+const PART_PIXELS = 500
+
+export class Frames {
+  /**
+   * @param {import("./pool.js").Pool} pool
+   * @param {number} workers
+   * @param {(view: View, pixels: Pixels, moving: boolean) => void} show
+   */
+  constructor(pool, workers, show) {
+    this.#pool = pool
+    this.#workers = workers
+    this.#show = show
+  }
+
+  #pool
+  #workers
+  #show
+  /** @type {import("../engine/system.js").System | null} */
+  #system = null
+  /** @type {Scene | null} */
+  #scene = null
+  /** @type {"nothing" | "moving" | "resting"} */
+  #computing = "nothing"
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #rest
+  #side = LEAST_SIDE
+  #mostPixels = RESTING[RESTING.length - 1].side
+
+  /**
+   * @param {import("../engine/system.js").System} system
+   * @param {import("../engine/integrator.js").Modules} modules
+   */
+  setSystem(system, modules) {
+    this.stop()
+    this.#system = system
+    this.#pool.setSystem(system, modules)
+  }
+
+  /**
+   * Compute this view, at once or after the picture of an earlier one.
+   *
+   * @param {Scene} scene
+   */
+  request(scene) {
+    this.#scene = scene
+    clearTimeout(this.#rest)
+    if (this.#computing !== "moving") this.#begin()
+  }
+
+  /** Compute nothing more. */
+  stop() {
+    clearTimeout(this.#rest)
+    this.#scene = null
+    this.#computing = "nothing"
+    this.#pool.cancel()
+  }
+
+  #begin() {
+    const scene = this.#scene
+    this.#scene = null
+    if (!scene) return
+    this.#computing = "moving"
+    const side = Math.min(this.#side, scene.most)
+    const begun = performance.now()
+    this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
+      const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - begun, 1))
+      const next = Math.round(side * Math.min(Math.max(change, SLOWER), FASTER))
+      this.#side = Math.min(Math.max(next, LEAST_SIDE), this.#mostPixels)
+      this.#computing = "nothing"
+      if (this.#scene) this.#begin()
+      else this.#rest = setTimeout(() => this.#refine(scene, 0), REST_MS)
+    })
+  }
+
+  /**
+   * Compute the pictures of a resting view, one after the other.
+   *
+   * @param {Scene} scene
+   * @param {number} level
+   */
+  #refine(scene, level) {
+    if (level === RESTING.length) {
+      this.#computing = "nothing"
+      return
+    }
+    const {horizon} = RESTING[level]
+    const side = Math.min(RESTING[level].side, scene.most)
+    if (side < this.#side) {
+      this.#refine(scene, level + 1)
+      return
+    }
+    this.#computing = "resting"
+    const parts = Math.ceil((side * side) / PART_PIXELS)
+    this.#compute({...scene, columns: side, rows: side, horizon}, parts, () => this.#refine(scene, level + 1))
+  }
+
+  /**
+   * @param {View} view
+   * @param {number} parts  into which the rows are dealt out
+   * @param {() => void} done
+   */
+  #compute(view, parts, done) {
+    if (!this.#system) return
+    const picture = new Picture(this.#system, view)
+    const list = picture.deal(parts)
+    let left = list.length
+    this.#pool.compute(view, list, (part, pixels) => {
+      picture.add(part, pixels)
+      if (--left > 0) return
+      this.#show(view, picture.finish(), this.#computing === "moving")
+      done()
+    })
+  }
+}
+
+/** The pixels of a view; of two mirror images only one is computed. */
+export class Picture {
+  /**
+   * @param {import("../engine/system.js").System} system
+   * @param {View} view
+   */
+  constructor(system, view) {
+    const {columns, rows} = view
+    this.#view = view
+    this.#mirror = system.mirror ?? []
+    this.#flips = mirroredAxes(system, view.slice, view.window)
+    const count = columns * rows
+    /** @type {Pixels} */
+    this.pixels = {
+      fate: new Int8Array(count),
+      time: new Float32Array(count).fill(NaN),
+      crossings: new Uint16Array(count),
+    }
+  }
+
+  #view
+  #mirror
+  #flips
+
+  /**
+   * Deal the rows to compute out into parts.
+   *
+   * @param {number} count
+   * @returns {import("../engine/pixels.js").Part[]}
+   */
+  deal(count) {
+    const {columns, rows} = this.#view
+    const half = (/** @type {number} */ side) => Math.ceil(side / 2)
+    const computed = this.#flips?.[1] ? half(rows) : rows
+    const width = this.#flips && !this.#flips[1] ? half(columns) : columns
+    const parts = Math.min(count, computed)
+    return Array.from({length: parts}, (_, first) => ({
+      rows: Uint32Array.from({length: Math.ceil((computed - first) / parts)}, (_, k) => first + k * parts),
+      columns: width,
+    }))
+  }
+
+  /**
+   * @param {import("../engine/pixels.js").Part} part
+   * @param {Pixels} computed
+   */
+  add(part, computed) {
+    const {fate, time, crossings} = this.pixels
+    part.rows.forEach((row, place) => {
+      const [from, to] = [place * part.columns, row * this.#view.columns]
+      fate.set(computed.fate.subarray(from, from + part.columns), to)
+      time.set(computed.time.subarray(from, from + part.columns), to)
+      crossings.set(computed.crossings.subarray(from, from + part.columns), to)
+    })
+  }
+
+  /**
+   * The pixels, with mirror images.
+   *
+   * @returns {Pixels}
+   */
+  finish() {
+    const flips = this.#flips
+    if (!flips) return this.pixels
+    const {columns, rows} = this.#view
+    const {fate, time, crossings} = this.pixels
+    for (let row = flips[1] ? rows >> 1 : 0; row < rows; row++) {
+      const source = flips[1] ? rows - 1 - row : row
+      for (let column = flips[1] ? 0 : columns >> 1; column < columns; column++) {
+        const [to, from] = [row * columns + column, source * columns + (flips[0] ? columns - 1 - column : column)]
+        if (from >= to) continue
+        fate[to] = fate[from] > 0 ? this.#mirror[fate[from]] : fate[from]
+        time[to] = time[from]
+        crossings[to] = crossings[from]
+      }
+    }
+    return this.pixels
+  }
+}
+
+/**
+ * Which axes of a view change their direction under x → −x; null if the view is not its own mirror image.
+ *
+ * @param {import("../engine/system.js").System} system
+ * @param {Pick<import("../engine/system.js").Slice, "mirrored">} slice
+ * @param {import("../engine/starts.js").Window} window
+ * @returns {[boolean, boolean] | null}
+ */
+export function mirroredAxes(system, {mirrored}, {xLow, xHigh, ordinateLow, ordinateHigh}) {
+  if (!system.mirror || !mirrored || !(mirrored[0] || mirrored[1])) return null
+  const symmetric = (!mirrored[0] || xLow === -xHigh) && (!mirrored[1] || ordinateLow === -ordinateHigh)
+  return symmetric ? mirrored : null
+}

@@ -1,0 +1,23 @@
+"""The results that the page shows, which statistics, tables, files and figures follow."""
+
+from __future__ import annotations
+
+import param
+
+from engine import EscapeMap
+from plots.layers.map_analyses import NO_ANALYSES
+
+
+class ShownResults(param.Parameterized):
+    """What is computed for the view of one session; None and empty for what is not."""
+
+    frame = param.Parameter(default=None, doc="the `engine.EscapeMap` in view, finished or not; None before its first frame")
+    analyses = param.Parameter(default=NO_ANALYSES, doc="the `MapAnalyses` of the map")
+    orbits = param.Parameter(default=(), doc="a `ChosenOrbit` for each start")
+    curves = param.Parameter(default=None, doc="the `engine.Sweep` of the curves against energy or a parameter")
+
+    @property
+    def whole_map(self) -> EscapeMap | None:
+        """The map in view; None while it is computed."""
+        frame: EscapeMap | None = self.frame
+        return frame if frame is not None and frame.complete else None

@@ -1,0 +1,151 @@
+"""How many pages the processors have room for: the one rule from which work is put off and further pages are refused.
+
+A page is reserved the processor time that an acting visitor takes, from its opening on, so that a server does not fill up while
+its visitors are still reading. What other programs leave of the processors is measured, as is the use of the event loop.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import psutil
+
+from app.runtime.fair_share import FairShare
+from engine.foundations.execution import count_cores
+
+FULL = 0.8
+"""Share of the processors, and of the event loop, that pages may take in all: beyond it, further ones are refused."""
+
+CROWDED = 0.5
+"""Share from which work that can wait is put off, so that those who are in wait for nothing else."""
+
+OF_ONE_VISITOR = 0.5
+"""Largest part of the room that the pages of one visitor take from others."""
+
+MOST_CORES, LEAST_CORES = 1.0, 0.2
+"""Processors that a process uses: at most one, as its threads share the interpreter lock, and at least what the system gives it
+beside programs that keep all of them busy."""
+
+WINDOW_SECONDS = 20
+"""The use of the processors is a mean over this time."""
+
+ACTING_SECONDS = 300.0
+"""A page counts in full for this time after the visitor's last action."""
+
+IDLE_WEIGHT = 0.1
+"""How much of a page an idle one counts."""
+
+CONNECTION_SECONDS = 15.0
+"""A page without a connection counts for this time after its last action: it is being opened or reconnected."""
+
+
+class ProcessorTimes(NamedTuple):
+    """Processor times so far, in seconds, at a time of a monotonic clock.
+
+    Programs of low priority are left out, as they give way: so do the computations of this program.
+    """
+
+    now: float
+    all_programs: float
+    """Of all programs on the processors that this process may use."""
+    own: float
+    """Of this process."""
+    loop: float
+    """Of its event loop."""
+
+
+class Capacity:
+    """Measures what the processors have left, and says whether there is room.
+
+    Parameters
+    ----------
+    cores_per_page
+        Processors that an acting visitor takes.
+    processes
+        Number of server processes that share the processors; the others are assumed to be as busy as this one.
+    measure
+        Returns the present times; called on the thread of the event loop.
+    clock
+        The clock of the times.
+    cores
+        Number of processors.
+
+    Attributes
+    ----------
+    cores
+        Number of processors for this process, apart from those that other programs take.
+    loop
+        Share of its time that the event loop is busy.
+    """
+
+    def __init__(
+        self,
+        cores_per_page: float,
+        processes: int,
+        measure: Callable[[], ProcessorTimes],
+        clock: Callable[[], float] = time.monotonic,
+        cores: int | None = None,
+    ) -> None:
+        self._cores_per_page, self._processes, self._measure, self._clock = cores_per_page, processes, measure, clock
+        self._all_cores = count_cores() if cores is None else cores
+        self._times = deque([measure()], WINDOW_SECONDS + 1)
+        self.cores, self.loop = self._share_of(0.0), 0.0
+
+    def update(self) -> bool:
+        """Measure, if the last time was a second ago; returns whether it was."""
+        if self._clock() < self._times[-1].now + 1.0:
+            return False
+        times = self._measure()
+        self._times.append(times)
+        first = self._times[0]
+        seconds = times.now - first.now
+        others = times.all_programs - first.all_programs - self._processes * (times.own - first.own)
+        self.cores = self._share_of(max(others, 0.0) / seconds)
+        self.loop = (times.loop - first.loop) / seconds
+        return True
+
+    def is_crowded(self, pages: Mapping[str, float]) -> bool:
+        """Whether work that can wait should be put off, given the number of pages by visitor."""
+        return self.taken(pages) > CROWDED
+
+    def has_room(self, pages: Mapping[str, float], visitor: str = "") -> bool:
+        """Whether a further page of a visitor is admitted, given the number of pages by visitor."""
+        most = OF_ONE_VISITOR * FULL * self.cores / self._cores_per_page
+        counted = {other: count if other == visitor else min(count, most) for other, count in pages.items()}
+        return self.taken(counted | {visitor: counted.get(visitor, 0.0) + 1.0}) <= FULL
+
+    def taken(self, pages: Mapping[str, float]) -> float:
+        """The share of the processors that the pages may take by their number, or that of the event loop if it is larger."""
+        return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop)
+
+    def _share_of(self, others: float) -> float:
+        return min(max((self._all_cores - others) / self._processes, LEAST_CORES), MOST_CORES)
+
+
+def count_page(share: FairShare, *, connected: bool) -> float:
+    """How much of a page counts: less of one that is idle, nothing of one that was left."""
+    idle = share.idle_seconds()
+    if not connected:
+        return float(idle < CONNECTION_SECONDS)
+    return 1.0 if idle < ACTING_SECONDS else IDLE_WEIGHT
+
+
+def processor_times(computed: float) -> ProcessorTimes:
+    """The present times; `computed` are the seconds of processor time that this process has used with low priority."""
+    usable = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
+    processors = [each for number, each in enumerate(psutil.cpu_times(percpu=True)) if usable is None or number in usable]
+    return ProcessorTimes(
+        now=time.monotonic(),
+        all_programs=sum(_urgent(each) for each in processors),
+        own=time.process_time() - computed,
+        loop=time.thread_time(),
+    )
+
+
+def _urgent(times: Any) -> float:
+    """Processor time of programs of normal priority, and of other machines on the same processor."""
+    return sum(getattr(times, name, 0.0) for name in ("user", "system", "irq", "softirq", "steal"))

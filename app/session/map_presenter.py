@@ -1,0 +1,198 @@
+"""The maps of one session: requested, painted, moved to other windows, and clicked."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Any
+
+import panel as pn
+from bokeh.document import Document
+
+from app.job_clients.error_messages import ZOOM_ENDS
+from app.job_clients.map_requests import MapRequests
+from app.runtime.process_state import process_state
+from app.session.context import SessionContext
+from app.session.history import History
+from app.state.navigation import DIVE_FACTOR, zoom
+from app.state.view import Analysis, Start
+from app.views.maps.map_plots import MapActions, MapsView
+from app.views.maps.map_toolbar import MapToolbar
+from app.views.maps.progress import ProgressView
+from engine import EscapeMap, Fate, Window
+from engine.maps.warmup import seconds_until_ready_for_maps
+from engine.propagation.fates import describe_fate
+from plots.pictures.palette import MOST_ORBITS
+
+
+class MapPresenter:
+    """Requests the map of the view state and shows it; moves and clicks go to the view state.
+
+    Parameters
+    ----------
+    context
+        Of the session.
+    document
+        The page.
+    history
+        Of the browser: the moves of one gesture make one entry.
+    alone
+        Whether the page shows one picture only.
+    """
+
+    def __init__(self, context: SessionContext, document: Document, history: History, *, alone: bool) -> None:
+        state, locked = context.state, context.locked
+        self._state, self._results, self._notice = state, context.results, context.notice
+        self._document, self._history = document, history
+        self._countdown: Any = None
+        self._requested_at: float | None = None
+        # The start of the last click; None if it was chosen before.
+        self._just_added: Start | None = None
+        self.view = MapsView(
+            MapActions(
+                tap=locked(self.add_start),
+                dive=locked(self._dive),
+                zoom=locked(self._zoom_to),
+                rest=locked(history.end_gesture),
+                box=locked(self._count_in),
+                choose=locked(lambda name: state.param.update(focus=name)),
+            ),
+            alone=alone,
+        )
+        self.toolbar = MapToolbar(state, locked(self.view.set_drag))
+        self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded)
+        self.progress = ProgressView(
+            locked(self.requests.stop_map), locked(self.requests.request_map), lambda name: state.switch_layer(name, on=True)
+        )
+        state.follow(self.view.lock_times, "lock_times")
+        state.follow(self.view.grid.enlarge, "focus")
+        state.follow(self.view.marks.show_box, "box")
+        state.param.watch(self._go_to_window, ["system", "plane", "window"])
+        state.param.watch(self._remove_box, ["system", "plane", "window", "box"])
+
+    def close(self) -> None:
+        """Cancel the requests at the end of the session."""
+        self.requests.close()
+
+    def begin_touch(self) -> None:
+        """The page is used by touch."""
+        self.toolbar.begin_touch()
+        self.view.begin_touch()
+
+    # Windows, starts and boxes.
+
+    def show_window(self, window: Window | None) -> None:
+        """Show another window; where double precision ends, the last one stays."""
+        try:
+            if window is not None:
+                replace(self._state.map_spec(), window=window).find_window()
+        except ValueError:
+            self._notice.show(ZOOM_ENDS)
+            self.view.ranges.follow(self._state.find_window())
+        else:
+            self._state.window = window
+
+    def _zoom_to(self, window: Window | None) -> None:
+        self._history.begin_gesture()
+        try:
+            self.show_window(window)
+        finally:
+            self.view.ranges.finish_report()
+
+    def _go_to_window(self, *events: Any) -> None:
+        """Show the window of the state before its map is there, as a late report of an earlier move would count as a new one."""
+        if any(event.name != "window" for event in events):
+            # Another picture brings its window with it.
+            return
+        try:
+            self.view.ranges.go_to(self._state.find_window())
+        except ValueError:
+            # The map brings a window that is not known yet.
+            return
+
+    def _dive(self, x: float, ordinate: float) -> None:
+        """Zoom to a point that is clicked twice; the first click is no choice of an orbit."""
+        state = self._state
+        if self._just_added in state.starts:
+            state.remove_start(state.starts.index(self._just_added))
+        self.show_window(zoom(state.find_window(), DIVE_FACTOR, (x, ordinate)))
+
+    def add_middle(self) -> None:
+        """Add the start in the middle of the window."""
+        window = self._state.find_window()
+        x, ordinate = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
+        self.add_start(*self.view.snapped(x, ordinate))
+
+    def add_start(self, x: float, ordinate: float) -> None:
+        """Add a start, or say why not; a forbidden start takes no place."""
+        state = self._state
+        if state.orbit_job((x, ordinate)) is None:
+            self._notice.show(describe_fate(Fate.FORBIDDEN))
+            return
+        # The first orbits add figures and buttons: Bokeh searches the models of the page once for all of them.
+        before = state.starts
+        with self._document.models.freeze():
+            added = state.add_start((x, ordinate))
+            state.analysis = Analysis.ORBIT
+        self._just_added = (x, ordinate) if state.starts != before else None
+        if not added:
+            self._notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
+
+    def _count_in(self, box: Window) -> None:
+        """Count in a box, and show the statistics unless the measures are in view."""
+        shown = self._state.analysis
+        self._state.param.update(box=box, analysis=shown if shown is Analysis.MEASURES else Analysis.STATISTICS)
+
+    def _remove_box(self, *events: Any) -> None:
+        """Remove the box of another view, unless a link gives a new one."""
+        if all(event.name != "box" for event in events):
+            self._state.box = None
+
+    # Requests and their results.
+
+    def map_requested(self, *, compiling: bool = False) -> None:
+        """A map is requested."""
+        self._results.frame = None
+        if compiling:
+            # The pictures of the former system stay for some seconds.
+            self.view.grid.mark_stale(True)
+        self._requested_at = time.monotonic()
+        self.progress.start()
+        self._count_down(compiling)
+        self._notice.clear()
+
+    def _count_down(self, compiling: bool) -> None:
+        """Show each second how long the compilation will take, while it is under way."""
+        if self._countdown is not None:
+            self._document.remove_periodic_callback(self._countdown)
+            self._countdown = None
+        if compiling:
+            self._countdown = self._document.add_periodic_callback(self._show_compiling, 1000)
+            self._show_compiling()
+
+    def _show_compiling(self) -> None:
+        self.progress.show_compiling(seconds_until_ready_for_maps(self._state.potential))
+
+    def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        """Paint a frame of a map."""
+        if self._requested_at is not None:
+            process_state().metrics.first_frame.observe(time.monotonic() - self._requested_at)
+            self._requested_at = None
+        with pn.io.hold():
+            self.view.ranges.set_home(replace(frame.spec, window=None))
+            self.view.show(frame, columns)
+            self.view.grid.mark_stale(False)
+            self.progress.show(frame)
+            self._results.frame = frame
+
+    def map_stopped(self) -> None:
+        """The map is cancelled."""
+        self._count_down(False)
+        self.progress.stop()
+
+    def map_failed(self, sentence: str) -> None:
+        """Show why there is no map; the last pictures stay, greyed out."""
+        self._count_down(False)
+        self.progress.fail()
+        self.view.grid.mark_stale(True)
+        self._notice.warn(sentence)

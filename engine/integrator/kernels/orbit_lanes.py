@@ -1,0 +1,222 @@
+"""Orbits of one lane each, followed with adaptive steps until they escape: passages through y = 0, and integrals of the speed.
+
+Compiled once for all potentials, as `engine.integrator.kernels.propagate`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel, subroutine
+from engine.integrator.jit.function_pointers import call_jets, call_step
+from engine.integrator.kernels.events import append_crossings, crossed_exit, find_exit_time, passed_exit, series_slope
+from engine.integrator.kernels.propagate import VECTOR
+from engine.integrator.source.recurrence import LANES, ROWS, TIME_ROW
+from engine.integrator.source.series import ORDER
+from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
+
+# Nodes of Gauss's rule of 8 points on [−1, 1], and their weights.
+_NODES = (
+    -0.96028985649753623168, -0.79666647741362673959, -0.52553240991632898582, -0.18343464249564980494,
+    0.18343464249564980494, 0.52553240991632898582, 0.79666647741362673959, 0.96028985649753623168,
+)  # fmt: skip
+_WEIGHTS = (
+    0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
+    0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915,
+)  # fmt: skip
+# Parts of a step are halved until the rule on a part and on its halves differ by less than this share of the integral over the
+# step. Where an orbit almost stops, a power of the speed below 1 is almost singular; parts are halved this often at most.
+_ACCURACY = 1e-13
+_MOST_HALVINGS = 40
+
+
+class _StepBuffer(NamedTuple):
+    """Steps whose passages are still to be located.
+
+    start (6, lanes): x, y, px, py, t and step size; orbit (lanes,); channel (lanes,): where the step escapes, 0 for inside.
+    """
+
+    start: np.ndarray
+    orbit: np.ndarray
+    channel: np.ndarray
+
+
+@subroutine
+def fill_lanes(orbits):
+    """The arrays for the steps of orbits (rows, lanes), one in each lane: now, new, flag, crossed, and the orbit of each lane."""
+    lanes = orbits.shape[1]
+    now = np.zeros((ROWS, LANES))
+    # Element by element: for `now[:4] = orbits` Numba compiles an error message as well, which takes 2 s.
+    for c in range(orbits.shape[0]):
+        for i in range(lanes):
+            now[c, i] = orbits[c, i]
+    lane_orbit = np.zeros(lanes, np.int64)
+    for i in range(lanes):
+        lane_orbit[i] = i
+    return now, np.zeros((ROWS, LANES)), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), lane_orbit
+
+
+@kernel
+def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, curves, state, passages, found):
+    """The first m downward passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
+
+    gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of `VECTOR` up to `LANES`;
+    passages (lanes, m, 3): x, px and time; found (lanes,), zeros. A passage goes from y > 0 to y ≤ 0; none is counted after the
+    escape time.
+    """
+    lanes = state.shape[1]
+    most = passages.shape[1]
+    now, new, flag, crossed, lane_orbit = fill_lanes(state)
+    buffer = _StepBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
+    buffered = 0
+    active = lanes
+    while active > 0:
+        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        call_step(step, coefficients, width, tolerance, horizon, gates, now, new, flag, crossed)
+        for i in range(active - 1, -1, -1):
+            j = lane_orbit[i]
+            full = found[j] == most
+            down = now[1, i] > 0.0 and new[1, i] <= 0.0
+            if flag[i] == 0 and not down and not full:
+                continue
+            late = flag[i] & OVERSHOOT != 0
+            channel = 0
+            if not late and flag[i] & GATE != 0:
+                channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
+            if not late and not full and (down or channel > 0 or flag[i] & HIDDEN != 0):
+                for c in range(5):
+                    buffer.start[c, buffered] = now[c, i]
+                buffer.start[5, buffered] = new[5, i]
+                buffer.orbit[buffered] = j
+                buffer.channel[buffered] = channel
+                buffered += 1
+                if buffered == lanes:
+                    _locate_passages(jets, coefficients, buffer, buffered, curves, passages, found)
+                    buffered = 0
+            if late or full or channel > 0:
+                active -= 1
+                for c in range(ROWS):
+                    new[c, i] = new[c, active]
+                lane_orbit[i] = lane_orbit[active]
+        now, new = new, now
+    _locate_passages(jets, coefficients, buffer, buffered, curves, passages, found)
+
+
+@subroutine
+def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
+    """Append the downward passages in each of the first `n` buffered steps to those of the step's orbit."""
+    start = buffer.start
+    x_jet = np.empty((ORDER + 1, start.shape[1]))
+    y_jet = np.empty((ORDER + 1, start.shape[1]))
+    call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    for i in range(n):
+        duration = start[5, i]
+        if buffer.channel[i] > 0:
+            duration = find_exit_time(x_jet, y_jet, i, duration, curves[buffer.channel[i] - 1])
+        append_crossings(x_jet, y_jet, i, -1.0, start[4, i], duration, passages, found, buffer.orbit[i])
+
+
+@kernel
+def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget, gates, curves, curve_row, orbits, integral):
+    """Continue the integral of |v|^power over `duration`, or until an orbit crosses an exit, by at most `budget` steps.
+
+    gates (exits, 3); curves (energies, exits, columns); curve_row (lanes,): the row of `curves` of each orbit; orbits (ROWS,
+    lanes), lanes a multiple of `VECTOR` up to `LANES`: see `ROWS`; the time is infinite where the integral is complete;
+    integral (lanes,): so far, NaN for an orbit whose steps become too short.
+    """
+    now, new, flag, crossed, lane_orbit = fill_lanes(orbits)
+    active = orbits.shape[1]
+    for i in range(active):
+        orbits[TIME_ROW, i] = np.inf
+    x_jet = np.zeros((ORDER + 1, LANES))
+    y_jet = np.zeros((ORDER + 1, LANES))
+    taken = 0
+    while active > 0 and taken < budget:
+        taken += 1
+        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        call_step(step, coefficients, width, tolerance, duration, gates, now, new, flag, crossed)
+        call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
+        for i in range(active - 1, -1, -1):
+            j = lane_orbit[i]
+            failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[5, i] > 0.0)
+            within, ends = _time_inside(now, new, i, flag[i], duration, x_jet, y_jet, curves[curve_row[j]], gates)
+            if failed:
+                integral[j] = np.nan
+            else:
+                integral[j] += _integrate_step(x_jet, y_jet, i, within, power)
+            if ends or failed:
+                active -= 1
+                for c in range(ROWS):
+                    new[c, i] = new[c, active]
+                for k in range(ORDER + 1):
+                    x_jet[k, i] = x_jet[k, active]
+                    y_jet[k, i] = y_jet[k, active]
+                lane_orbit[i] = lane_orbit[active]
+        now, new = new, now
+    for i in range(active):
+        for c in range(ROWS):
+            orbits[c, lane_orbit[i]] = now[c, i]
+
+
+@subroutine
+def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
+    """How long the orbit of lane i is inside within its step and the duration, and whether it ends in the step."""
+    late = flags & OVERSHOOT != 0
+    within = min(new[5, i], duration - now[4, i])
+    channel = 0
+    if late or flags & (GATE | NEAR) != 0:
+        channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
+        if channel == 0:
+            channel = passed_exit(x_jet, y_jet, i, new[5, i], curves)
+    if channel > 0:
+        within = min(within, find_exit_time(x_jet, y_jet, i, new[5, i], curves[channel - 1]))
+    return within, late or channel > 0
+
+
+@subroutine
+def _integrate_step(x_jet, y_jet, i, duration, power):
+    """The integral over a step, in parts from its start on."""
+    total = 0.0
+    low = 0.0
+    width = duration
+    error = 0.0
+    halvings = 0
+    while low < duration:
+        # Gauss's rule on the part and on its halves.
+        whole = 0.0
+        halves = 0.0
+        for rule in range(3):
+            half = 0.5 * width if rule == 0 else 0.25 * width
+            middle = low + (half if rule < 2 else 3.0 * half)
+            found = _gauss(x_jet, y_jet, i, middle, half, power)
+            if rule == 0:
+                whole = found
+            else:
+                halves += found
+        if halvings == 0 and low == 0.0:
+            error = _ACCURACY * whole
+        if abs(halves - whole) > error and halvings < _MOST_HALVINGS:
+            width *= 0.5
+            halvings += 1
+            continue
+        total += halves
+        low += width
+        # The next part may be longer again, up to the end of the step.
+        if halvings > 0:
+            width *= 2.0
+            halvings -= 1
+        width = min(width, duration - low)
+    return total
+
+
+@subroutine
+def _gauss(x_jet, y_jet, i, middle, half, power):
+    """Gauss's rule on a part of a step, given by its middle and half its width."""
+    total = 0.0
+    for k in range(8):
+        vx = series_slope(x_jet, i, middle + half * _NODES[k])
+        vy = series_slope(y_jet, i, middle + half * _NODES[k])
+        total += _WEIGHTS[k] * (vx * vx + vy * vy) ** (0.5 * power)
+    return half * total

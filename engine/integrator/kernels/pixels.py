@@ -1,0 +1,62 @@
+"""Pixels of a part of a picture: their points, the starts inside, and what becomes of the orbits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel
+from engine.integrator.kernels.events import BOUNDED, FORBIDDEN, NOT_COMPUTED, OUTSIDE
+from engine.integrator.kernels.slice_starts import interval_centre
+
+_MOST_CROSSINGS = 65535.0
+
+
+@kernel
+def place_pixels(window, columns, rows, part_rows, part_columns, energy_axis, points, energy_rows):
+    """Set `points` (2, n) to the centres of the pixels in some rows (m,) of a picture and in its first columns, row by row.
+
+    window (4,): lowest and highest abscissa and ordinate; columns, rows: of the whole picture; energy_axis: 0, 1, or −1 for none.
+    energy_rows (n,) is set to the place of each pixel along the axis of the energy, else 0.
+    """
+    for place in range(part_rows.shape[0]):
+        ordinate = interval_centre(window[2], window[3], part_rows[place], rows)
+        for column in range(part_columns):
+            pixel = place * part_columns + column
+            points[0, pixel] = interval_centre(window[0], window[1], column, columns)
+            points[1, pixel] = ordinate
+            energy_rows[pixel] = column if energy_axis == 0 else place if energy_axis == 1 else 0
+
+
+@kernel
+def select_starts(states, outside, rows, fate, kept, kept_states, kept_rows):
+    """Number of the starts that exist and lie beyond no exit; these are kept, and the `fate` (n,) of the others is set.
+
+    states (4, n): NaN where forbidden; outside (n,): number of an exit, 0 for none; rows (n,): of the energies in the exits. Set
+    are kept (n,), the numbers of the starts, kept_states (n, 4) and kept_rows (n,).
+    """
+    count = 0
+    for i in range(outside.shape[0]):
+        if not (np.isfinite(states[2, i]) and np.isfinite(states[3, i])):
+            fate[i] = FORBIDDEN
+        elif outside[i] > 0:
+            fate[i] = OUTSIDE
+        else:
+            kept[count] = i
+            kept_rows[count] = rows[i]
+            for row in range(4):
+                kept_states[count, row] = states[row, i]
+            count += 1
+    return count
+
+
+@kernel
+def report_ends(orbits, kept, fate, time, crossings):
+    """Set the `fate`, the `time` of the escape, NaN without one, and the `crossings` (n,) of the orbits with numbers `kept`.
+
+    Orbits that are inside at the horizon are undecided. orbits: see `engine.integrator.kernels.propagate.Orbits`.
+    """
+    for k in range(orbits.t.shape[0]):
+        pixel, code = kept[k], orbits.fate[k]
+        fate[pixel] = NOT_COMPUTED if code == BOUNDED else code
+        time[pixel] = orbits.t[k] if code > 0 else np.nan
+        crossings[pixel] = min(float(orbits.crossings[k] + orbits.last_crossings[k]), _MOST_CROSSINGS)

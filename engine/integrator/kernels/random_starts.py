@@ -1,0 +1,138 @@
+"""Random starts: points of a slice, and states on the exits.
+
+The random numbers are those of the generator mulberry32 (Tommy Ettinger), whose state is one number, so that equal seeds give
+equal starts on all machines.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.integrator.jit.decorator import kernel, subroutine
+from engine.integrator.jit.function_pointers import call_potential_value
+from engine.integrator.kernels.events import CURVE, DISC, HALF_WIDTH, OUTWARD_X, OUTWARD_Y, SHAPE
+from engine.integrator.kernels.exit_curves import exit_point
+
+BEFORE_EXIT = 9.0
+"""How long before they come to the exit the orbits at a tube start, in units of the well."""
+
+_WORD = 0xFFFFFFFF
+# Parts of an exit, each with the flux through it.
+_PARTS = 200
+# Distance of orbits that enter from the exit, as a share of its half width: on it, rounding would decide what is inside.
+_SHIFT = 1e-7
+# Distance of the orbits at a tube from its edge, where they pass the exit, as a share of half its width.
+_FROM_EDGE = 3e-3
+
+
+@subroutine
+def _draw_number(seed):
+    """A random number from 0 to 1; seed (1,): changed."""
+    seed[0] = (seed[0] + 0x6D2B79F5) & _WORD
+    state = seed[0]
+    mixed = ((state ^ (state >> 15)) * (state | 1)) & _WORD
+    mixed ^= (mixed + (((mixed ^ (mixed >> 7)) * (mixed | 61)) & _WORD)) & _WORD
+    return (mixed ^ (mixed >> 14)) / 4294967296.0
+
+
+@kernel
+def scatter_points(seed, window, is_round, points):
+    """Set `points` (axes, n) to random ones, evenly spread over a window (4,) or over the ellipse in it.
+
+    Beyond the second axis there is an angle, from 0 to 2π. seed (1,): changed.
+    """
+    width, height = window[1] - window[0], window[3] - window[2]
+    for i in range(points.shape[1]):
+        one, other = _draw_number(seed), _draw_number(seed)
+        if is_round:
+            radius, angle = 0.5 * np.sqrt(one), 2.0 * np.pi * other
+            one, other = 0.5 + radius * np.cos(angle), 0.5 + radius * np.sin(angle)
+        points[0, i] = window[0] + width * one
+        points[1, i] = window[2] + height * other
+        for axis in range(2, points.shape[0]):
+            points[axis, i] = 2.0 * np.pi * _draw_number(seed)
+
+
+@kernel
+def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed, states):
+    """Set `states` (n, 4) to random ones on the open exits over saddles (exits, columns); their number, 0 without exits.
+
+    They move into the well, distributed as the flux, as those of `engine.sample_entrances`. Or, `of_tubes`, they lie at the edge
+    of the tubes of orbits that approach the Lyapunov orbits, backward in time: half of them inside, which pass the exit, and half
+    outside, which turn back. The lines in a frame that rotates are no Lyapunov orbits, and have none.
+    """
+    flux = np.zeros(curves.shape[0] * _PARTS)
+    total = 0.0
+    for exit in range(curves.shape[0]):
+        shape = curves[exit, SHAPE]
+        is_used = shape == CURVE if of_tubes else CURVE <= shape < DISC
+        for part in range(_PARTS):
+            if is_used:
+                x, y, along_x, along_y = _look(curves[exit], _middle(part))
+                speed = _speed(potential_value, coefficients, energy, x, y)
+                total += speed * np.sqrt(along_x * along_x + along_y * along_y)
+            flux[exit * _PARTS + part] = total
+    if not total > 0.0:
+        return 0
+    for i in range(states.shape[0]):
+        place = _find_above(flux, total * _draw_number(seed))
+        s = _middle(place % _PARTS) + (2.0 * _draw_number(seed) - 1.0) / _PARTS
+        share, shift = 2.0 * _draw_number(seed) - 1.0, _SHIFT
+        if of_tubes:
+            side = 1.0 if share < 0.0 else -1.0
+            is_inside = _draw_number(seed) < 0.5
+            share = side * (np.sqrt(1.0 - _FROM_EDGE * _FROM_EDGE) if is_inside else 1.0)
+            shift = _SHIFT if is_inside else _FROM_EDGE
+        _launch(potential_value, coefficients, energy, curves[place // _PARTS], s, share, shift, states[i])
+    return states.shape[0]
+
+
+@subroutine
+def _find_above(values, limit):
+    """The place of the first of rising values (n,) above a limit, which is below the last one."""
+    low, high = 0, values.shape[0] - 1
+    while low < high:
+        middle = (low + high) // 2
+        if values[middle] > limit:
+            high = middle
+        else:
+            low = middle + 1
+    return low
+
+
+@subroutine
+def _middle(part):
+    """s in the middle of a part of an exit."""
+    return -1.0 + (2 * part + 1) / _PARTS
+
+
+@subroutine
+def _launch(potential_value, coefficients, energy, curve, s, share, shift, state):
+    """Set a state on an exit, shifted inward, whose velocity has a share along the exit; the rest is inward."""
+    x, y, along_x, along_y = _look(curve, s)
+    length = np.sqrt(along_x * along_x + along_y * along_y)
+    along_x, along_y = along_x / length, along_y / length
+    side = -1.0 if along_y * curve[OUTWARD_X] - along_x * curve[OUTWARD_Y] > 0.0 else 1.0
+    inward_x, inward_y = side * along_y, -side * along_x
+    rest = np.sqrt(max(1.0 - share * share, 0.0))
+    state[0] = x + shift * curve[HALF_WIDTH] * inward_x
+    state[1] = y + shift * curve[HALF_WIDTH] * inward_y
+    speed = _speed(potential_value, coefficients, energy, state[0], state[1])
+    state[2] = speed * (share * along_x + rest * inward_x)
+    state[3] = speed * (share * along_y + rest * inward_y)
+
+
+@subroutine
+def _look(curve, s):
+    """x and y of a point of an exit, and their derivatives with respect to s."""
+    half = 0.5 / _PARTS
+    x, y = exit_point(curve, s)
+    x_before, y_before = exit_point(curve, s - half)
+    x_after, y_after = exit_point(curve, s + half)
+    return x, y, (x_after - x_before) / (2.0 * half), (y_after - y_before) / (2.0 * half)
+
+
+@subroutine
+def _speed(potential_value, coefficients, energy, x, y):
+    """The speed at a point."""
+    return np.sqrt(max(2.0 * (energy - call_potential_value(potential_value, coefficients, x, y)), 0.0))

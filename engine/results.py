@@ -1,0 +1,30 @@
+"""Classes of the results that functions of the library return, for annotations and `isinstance`."""
+
+import typing
+
+from engine.maps.descriptors import DescriptorMap as DescriptorMap
+from engine.maps.origin_fates import OriginFateMap as OriginFateMap
+from engine.maps.regularity import RegularityMap as RegularityMap
+from engine.maps.trust import TrustMap as TrustMap
+from engine.measures.basin_entropy import BasinEntropy as BasinEntropy
+from engine.measures.chaotic_share import ChaoticShare as ChaoticShare
+from engine.measures.decay_laws import DecayLaws as DecayLaws
+from engine.measures.decay_laws import LawFit as LawFit
+from engine.measures.escape_statistics import EscapeStatistics as EscapeStatistics
+from engine.measures.exit_matching import ExitMatching as ExitMatching
+from engine.measures.islands import Islands as Islands
+from engine.measures.power_law_fit import UncertaintyExponent as UncertaintyExponent
+from engine.measures.wada import WadaTest as WadaTest
+from engine.periodic.stable_manifolds import StableManifolds as StableManifolds
+from engine.propagation.classification import Outcomes as Outcomes
+from engine.sweeps.sweep import Sweep as Sweep
+from engine.systems.review.potential_review import PotentialReview as PotentialReview
+from engine.trajectories.birkhoff_digits import BirkhoffDigits as BirkhoffDigits
+from engine.trajectories.flux import EscapeFlux as EscapeFlux
+from engine.trajectories.nearest_divergent_start import DivergentStart as DivergentStart
+from engine.trajectories.orbit_verdicts import OrbitVerdict as OrbitVerdict
+from engine.trajectories.sampled_orbits import SampledOrbits as SampledOrbits
+from engine.trajectories.separation import Separation as Separation
+
+if not typing.TYPE_CHECKING:
+    __all__ = sorted(name for name in vars() if name[0].isupper())

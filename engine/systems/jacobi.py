@@ -1,0 +1,28 @@
+"""The axis of a rotating frame, about which the Jacobi constant of the three-body problem is counted."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from engine.expressions.nodes import Expression, Sum, X, Y, multiply
+from engine.systems.forms.form import Form
+
+_SQUARES = tuple(multiply(axis, axis) for axis in (X, Y))
+_MIXED = multiply(X, Y)
+
+
+def squared_speed_of_origin(form: Form, rotation: float) -> float:
+    """The square of the speed Ω d with which the origin moves about the axis of the frame.
+
+    A uniform field in Φ = … + a x + b y − ½ Ω² (x² + y²) is the centrifugal force about an axis at (a, b)/Ω², as in the problem
+    of three bodies seen from one of them. If other terms are quadratic, the axis is at the origin.
+    """
+    definition: Any = form.definition
+    if not isinstance(definition, Sum) or not rotation:
+        return 0.0
+    terms: dict[Expression, float] = dict(definition.terms)
+    is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * rotation**2) for square in _SQUARES)
+    if not is_centrifugal or _MIXED in terms:
+        return 0.0
+    return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / rotation**2

@@ -1,0 +1,126 @@
+"""How many pages the processors have room for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from app.runtime.capacity import (
+    ACTING_SECONDS,
+    CONNECTION_SECONDS,
+    IDLE_WEIGHT,
+    LEAST_CORES,
+    Capacity,
+    ProcessorTimes,
+    count_page,
+)
+from app.runtime.fair_share import FairShare
+from tests.app.clock import Clock
+
+CORES_PER_PAGE = 0.02
+
+
+@dataclass
+class Machine:
+    """Two processors with other programs, in an imagined time."""
+
+    others: float = 0.0
+    own: float = 0.0
+    loop: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.clock = Clock()
+        self.times = ProcessorTimes(self.clock.now, 1000.0, 100.0, 50.0)
+
+    def measure(self) -> ProcessorTimes:
+        return self.times
+
+    def capacity(self, processes: int = 1) -> Capacity:
+        return Capacity(CORES_PER_PAGE, processes, self.measure, self.clock.monotonic, cores=2)
+
+    def run(self, capacity: Capacity, seconds: int, siblings: float = 0.0) -> None:
+        for _ in range(seconds):
+            self.clock.now += 1.0
+            now, programs, own, loop = self.times
+            self.times = ProcessorTimes(now + 1.0, programs + self.others + self.own + siblings, own + self.own, loop + self.loop)
+            capacity.update()
+
+
+def admitted(capacity: Capacity) -> int:
+    """How many visitors are let in before anyone has acted."""
+    pages = dict[str, float]()
+    while capacity.has_room(pages, str(len(pages))):
+        pages[str(len(pages))] = 1.0
+    return len(pages)
+
+
+def test_pages_are_admitted_before_anyone_acts_up_to_four_fifths_of_a_processor() -> None:
+    assert admitted(Machine().capacity()) == 40
+
+
+def test_half_of_them_are_admitted_by_each_of_two_processes_beside_a_busy_program() -> None:
+    machine = Machine(others=1.0)
+    capacity = machine.capacity(processes=2)
+    machine.run(capacity, 20)
+    assert admitted(capacity) == 20
+
+
+def test_what_this_process_and_its_siblings_use_is_not_that_of_other_programs() -> None:
+    machine = Machine(own=0.7)
+    capacity = machine.capacity(processes=2)
+    machine.run(capacity, 20, siblings=0.7)
+    assert capacity.cores == pytest.approx(1.0)
+
+
+def test_some_are_admitted_beside_programs_that_keep_all_processors_busy() -> None:
+    machine = Machine(others=2.0)
+    capacity = machine.capacity()
+    machine.run(capacity, 20)
+    assert capacity.cores == LEAST_CORES
+    assert 1 < admitted(capacity) < 10
+
+
+def test_a_short_burst_of_another_program_counts_little() -> None:
+    machine = Machine()
+    capacity = machine.capacity()
+    machine.run(capacity, 20)
+    machine.others = 2.0
+    machine.run(capacity, 5)
+    assert capacity.cores == 1.0
+
+
+def test_nobody_is_admitted_while_the_event_loop_is_busy_whatever_the_number_of_pages() -> None:
+    machine = Machine(own=0.9, loop=0.9)
+    capacity = machine.capacity()
+    machine.run(capacity, 20)
+    assert not capacity.has_room({"a": 1.0}, "b")
+    assert capacity.is_crowded({"a": 1.0})
+
+
+def test_work_is_put_off_before_pages_are_refused() -> None:
+    capacity = Machine().capacity()
+    crowd = {str(number): 1.0 for number in range(30)}
+    assert capacity.is_crowded(crowd)
+    assert capacity.has_room(crowd)
+    assert not capacity.is_crowded({"a": 1.0})
+
+
+def test_one_visitor_cannot_fill_the_server_for_others_but_alone_has_all_of_it() -> None:
+    capacity = Machine().capacity()
+    assert capacity.has_room({"crowd": 50.0}, "other")
+    assert capacity.has_room({"crowd": 39.0}, "crowd")
+    assert not capacity.has_room({"crowd": 40.0}, "crowd")
+
+
+def test_a_page_counts_less_when_its_visitor_rests_and_nothing_when_it_is_left() -> None:
+    clock = Clock()
+    share = FairShare(clock.monotonic)
+    assert count_page(share, connected=False) == count_page(share, connected=True) == 1.0
+    clock.now += CONNECTION_SECONDS
+    assert count_page(share, connected=False) == 0.0
+    assert count_page(share, connected=True) == 1.0
+    clock.now += ACTING_SECONDS
+    assert count_page(share, connected=True) == IDLE_WEIGHT
+    share.take(0.01)
+    assert count_page(share, connected=True) == 1.0

@@ -1,0 +1,96 @@
+"""The status has the shares of the outcomes in their colours, and says how far a map is."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+from app.views.maps.progress import CONTINUE, STOP, ProgressView
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
+from plots.layers.table import LAYERS
+from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER
+
+
+@pytest.fixture(scope="module")
+def escape_map() -> EscapeMap:
+    return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (15, 15), t_max=1e3))
+
+
+def make_view() -> tuple[ProgressView, list[str]]:
+    calls: list[str] = []
+    return ProgressView(*(partial(calls.append, name) for name in ("cancel", "resume")), calls.append), calls
+
+
+def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
+    view, _ = make_view()
+    view.show(escape_map)
+    text = re.sub(r"<[^>]*>", "", view.text.object)
+    assert re.match(r"exit 1&nbsp;\d+\.\d %exit 2&nbsp;\d+\.\d %stay&nbsp;\d+\.\d %✓ t = 1 000 details", text)
+    assert (view.bar.styles["opacity"], view.button.styles["visibility"]) == ("0", "hidden")
+    assert "unresolved" not in text
+    view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))
+    assert "unresolved" in view.text.object
+
+
+def test_exits_of_several_channels_are_named() -> None:
+    # Above V = 0.45 channels 1 and 2 are one, and so are 3 and 4.
+    potential = Potential("", ((2, 0, 0.8902), (0, 2, 0.3619), (2, 4, -0.94), (0, 6, -0.0346)))
+    view, _ = make_view()
+    view.show(compute_map(MapSpec(potential, Plane.X_PX, 0.54, (5, 5), t_max=20.0)))
+    text = re.sub(r"<[^>]*>", "", view.text.object)
+    assert re.match(r"exit 1\+2&nbsp;[\d.]+ %exit 3\+4&nbsp;", text)
+
+
+def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:
+    view, _ = make_view()
+    view.show(replace(escape_map, horizon=100.0, complete=False))
+    assert "100.0 % decided, t = 100 of 1 000" in view.text.object
+
+
+def test_the_button_stops_and_continues() -> None:
+    view, calls = make_view()
+    assert view.button.styles["visibility"] == "hidden"
+    view.start()
+    assert (view.button.label, view.button.styles["visibility"]) == (STOP, "visible")
+    view.button.clicks += 1
+    view.stop()
+    assert (view.button.label, view.button.styles["visibility"]) == (CONTINUE, "visible")
+    view.button.clicks += 1
+    assert calls == ["cancel", "resume"]
+    view.start()
+    view.fail()
+    assert (re.sub(r"<[^>]*>", "", view.text.object), view.button.styles["visibility"], view.bar.styles["opacity"]) == (
+        "",
+        "hidden",
+        "0",
+    )
+
+
+def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_test(escape_map: EscapeMap) -> None:
+    view, calls = make_view()
+    view.show(replace(escape_map, rounded_share=0.273))
+    assert "about 27 % of the pixels depend on rounding errors" in re.sub(r"<[^>]*>", "", view.text.object)
+    assert (view.button.label, view.button.styles["visibility"]) == (LAYERS["trust"].title, "visible")
+    # The text is long: the button does not stand in it.
+    assert "stop" not in view.button.css_classes
+    view.button.clicks += 1
+    assert calls == ["trust"]
+    for share in (None, 0.004, float("nan")):
+        view.show(replace(escape_map, rounded_share=share))
+        assert "rounding" not in view.text.object
+        assert view.button.styles["visibility"] == "hidden"
+
+
+def test_the_bar_has_a_part_for_each_outcome_in_its_colour(escape_map: EscapeMap) -> None:
+    view, _ = make_view()
+    view.show(escape_map)
+    shares = escape_map.fractions()
+    for palette in (PAPER, COLOUR_BLIND_SAFE):
+        view.set_palette(palette)
+        parts = re.findall(r"flex-grow:([\d.]+);background:(#\w+)", view.text.object)
+        colours = [*palette.channels[:2], palette.bounded]
+        assert parts == [(f"{shares[fate]:.4f}", colour) for fate, colour in zip((1, 2, Fate.BOUNDED), colours, strict=True)]

@@ -1,0 +1,18 @@
+"""The examples of docs/extending.md, which tests run as a part of the module that each is for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+_TEXT = (Path(__file__).parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
+
+
+def run_example(heading: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The names that the Python under a heading defines, beside those that are given."""
+    section = _TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    names = dict(given)
+    exec("\n".join(re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)), names)
+    return names
