@@ -59,6 +59,12 @@ AsJson = Annotated[bool, typer.Option("--json"), Of(print_result)]
 """Type of an option that chooses JSON."""
 
 
+def list_rows(columns: Mapping[str, np.ndarray]) -> list[dict[str, Any]]:
+    """Return a table as one dictionary for each of its rows."""
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return [dict(zip(columns, row, strict=True)) for row in rows]
+
+
 def _lay_out(table: Table) -> RichTable:
     shown = RichTable(box=box.SIMPLE_HEAD, show_edge=False)
     for number, name in enumerate(table.head):

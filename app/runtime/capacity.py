@@ -53,7 +53,7 @@ class ProcessorTimes(NamedTuple):
     all_programs: float
     """Of all programs on the processors that this process may use."""
     own: float
-    """Of this process."""
+    """Of this process, and of those that compute for it."""
     loop: float
     """Of its event loop."""
 
@@ -134,14 +134,22 @@ def count_page(share: FairShare, *, connected: bool) -> float:
     return 1.0 if idle < ACTING_SECONDS else IDLE_WEIGHT
 
 
-def processor_times(computed: float) -> ProcessorTimes:
-    """The present times; `computed` are the seconds of processor time that this process has used with low priority."""
+def processor_times(low: float, elsewhere: float) -> ProcessorTimes:
+    """The present times.
+
+    Parameters
+    ----------
+    low
+        Processor time that this process has used with low priority, in seconds.
+    elsewhere
+        That which others have used for it.
+    """
     usable = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
     processors = [each for number, each in enumerate(psutil.cpu_times(percpu=True)) if usable is None or number in usable]
     return ProcessorTimes(
         now=time.monotonic(),
         all_programs=sum(_urgent(each) for each in processors),
-        own=time.process_time() - computed,
+        own=time.process_time() - low + elsewhere,
         loop=time.thread_time(),
     )
 

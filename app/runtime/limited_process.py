@@ -6,7 +6,7 @@ import os
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, Future
+from concurrent.futures import BrokenExecutor, CancelledError, Future, wait
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from contextlib import suppress
 from functools import partial
@@ -14,8 +14,6 @@ from math import ceil
 from queue import LifoQueue
 
 from loky import ProcessPoolExecutor
-
-from engine.foundations.execution import lower_priority
 
 SECONDS = 5
 """Processor time of a review."""
@@ -34,8 +32,10 @@ MEMORY = 2**30
 
 # How often the process looks whether the server is still there, in seconds.
 _WATCH_SECONDS = 2.0
-# A call on a busy machine may wait for the processor this many times as long as it runs.
+# A call on a busy machine takes at most this many times its processor time.
 _PATIENCE = 4
+# How often a call looks whether anyone still waits for it; if not, it ends after that many seconds.
+_POLL_SECONDS, _ABANDONED_SECONDS = 0.1, 1.0
 
 
 class LimitError(ValueError):
@@ -58,27 +58,39 @@ class LimitedProcess:
     ----------
     stopped
         Number of calls that exceeded a limit.
+    computed
+        Processor time of the calls that have ended, in seconds.
     """
 
     def __init__(self, seconds: int = SECONDS, memory: int = MEMORY) -> None:
         self._seconds, self._memory = seconds, memory
         self._lock = threading.Lock()
         self._executor: ProcessPoolExecutor | None = None
-        self.stopped = 0
+        self.stopped, self.computed = 0, 0.0
 
-    def __call__[Result](self, function: Callable[[], Result]) -> Result:
+    def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
         """The result of a function, which can be pickled with it.
+
+        Parameters
+        ----------
+        function
+            The function.
+        cancel
+            Set when nobody waits for the result any more.
 
         Raises
         ------
         LimitError
             If the function exceeds a limit.
+        concurrent.futures.CancelledError
+            If it is cancelled.
         """
         with self._lock:
             try:
-                return self._call(function)
+                return self._call(function, cancel or threading.Event())
             except LimitError:
                 self.stopped += 1
+                self.computed += self._seconds
                 raise
 
     def close(self) -> None:
@@ -87,19 +99,34 @@ class LimitedProcess:
         if executor is not None:
             executor.shutdown(wait=False, kill_workers=True)
 
-    def _call[Result](self, function: Callable[[], Result]) -> Result:
+    def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
         future = self._submit(partial(_call_limited, self._seconds, function))
         try:
-            result: Result = future.result(_PATIENCE * self._seconds)
+            result, computed = self._wait(future, cancel)
         except (BrokenExecutor, FutureTimeoutError, MemoryError):
             self.close()
+        except CancelledError:
+            self.close()
+            raise
         except RecursionError:
             pass
         else:
+            self.computed += computed
             return result
         raise LimitError(
             f"this formula needs more than {self._seconds} s or {self._memory // 2**20} MB to be understood; choose a simpler one"
         )
+
+    def _wait[Result](self, future: Future[Result], cancel: threading.Event) -> Result:
+        """The result, unless it takes too long, or is cancelled."""
+        begun = time.monotonic()
+        while not wait([future], _POLL_SECONDS).done:
+            seconds = time.monotonic() - begun
+            if cancel.is_set() and seconds > _ABANDONED_SECONDS:
+                raise CancelledError
+            if seconds > _PATIENCE * self._seconds:
+                raise FutureTimeoutError
+        return future.result()
 
     def _submit[Result](self, call: Callable[[], Result]) -> Future[Result]:
         """Start a call, in a new process if there is none or if it has ended between two calls."""
@@ -123,11 +150,11 @@ class LimitedProcesses:
         for process in self._processes:
             self._free.put(process)
 
-    def __call__[Result](self, function: Callable[[], Result]) -> Result:
+    def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
         """The result of a function in a process that is free, as by `LimitedProcess`."""
         process = self._free.get()
         try:
-            return process(function)
+            return process(function, cancel)
         finally:
             self._free.put(process)
 
@@ -136,14 +163,20 @@ class LimitedProcesses:
         """Number of calls that exceeded a limit."""
         return sum(process.stopped for process in self._processes)
 
+    @property
+    def computed(self) -> float:
+        """Processor time of the calls that have ended, in seconds."""
+        return sum(process.computed for process in self._processes)
+
     def close(self) -> None:
         """End the processes."""
         for process in self._processes:
             process.close()
 
 
-def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> Result:
-    """Call a function; the system ends the process when it has used these seconds."""
+def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple[Result, float]:
+    """The result of a function, and its processor time; the system ends the process when it has used these seconds."""
+    begun = time.process_time()
     # Not on Windows, where the caller's patience is the only limit.
     with suppress(ImportError):
         import resource
@@ -151,13 +184,11 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> Resul
         used = resource.getrusage(resource.RUSAGE_SELF)
         _, hard = resource.getrlimit(resource.RLIMIT_CPU)
         resource.setrlimit(resource.RLIMIT_CPU, (ceil(used.ru_utime + used.ru_stime) + seconds, hard))
-    return function()
+    return function(), time.process_time() - begun
 
 
 def _begin(memory: int, server: int) -> None:
     """Prepare the process for its calls."""
-    # The pages of others come first, as before the computations of a page.
-    lower_priority()
     threading.Thread(target=_end_with, args=(server,), daemon=True).start()
     _limit_memory(memory)
 

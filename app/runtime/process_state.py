@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 
 from bokeh.document import Document
 
-from app.runtime.capacity import Capacity, count_page, processor_times
+from app.runtime.capacity import Capacity, ProcessorTimes, count_page, processor_times
 from app.runtime.fair_share import FairShare
 from app.runtime.limited_process import COMPILATION_SECONDS, PROCESSES, LimitedProcess, LimitedProcesses
 from app.runtime.load_monitor import LoadMonitor
@@ -79,13 +79,14 @@ class ProcessState:
             limited=self.limited,
             limited_calls=PROCESSES,
         )
-        self.capacity = Capacity(
-            self.settings.cores_per_page, self.settings.processes, lambda: processor_times(self.jobs.stats().computed)
-        )
+        self.capacity = Capacity(self.settings.cores_per_page, self.settings.processes, self._processor_times)
 
     def fair_share(self, document: Document) -> FairShare:
         """The share of a document's page, whatever the number of its connections."""
         return self._shares.setdefault(document, FairShare())
+
+    def _processor_times(self) -> ProcessorTimes:
+        return processor_times(self.jobs.stats().computed, self.limited.computed + self.compiler.computed)
 
     def pages(self) -> Mapping[str, float]:
         """Number of pages by visitor, as `Capacity` counts them."""

@@ -15,14 +15,14 @@ from app.views.analysis import statistics
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential, integrate_orbit, start_states
 from engine.integrator.portable_kernels import kernel_module
-from engine.maps.warmup import (
+from engine.slices.planes import SECTION
+from engine.sweeps.warmup import (
     call_after_maps,
     prepare_for_analyses,
     prepare_for_evidence,
     prepare_for_maps,
     reserve_catalogue,
 )
-from engine.slices.planes import SECTION
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")

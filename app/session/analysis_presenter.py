@@ -20,12 +20,12 @@ from app.views.components.texts import TextPane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, SweepSpec, Window
 from engine.jobs.job import Job
-from engine.maps.warmup import is_ready_for_maps
 from engine.results import Sweep
 from engine.slices.planes import SECTION
 from engine.slices.slice_text import default_range
 from engine.sweeps.map_jobs import measure_job, sweep_job
 from engine.sweeps.measures import CURVES
+from engine.sweeps.warmup import is_ready_for_maps
 from plots.layers.layer import Layer
 from plots.layers.map_analyses import NO_ANALYSES
 from plots.layers.table import LAYERS

@@ -16,8 +16,8 @@ from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
 from engine.foundations.wording import format_whole
 from engine.jobs.job import Job, Queue
-from engine.maps.warmup import is_ready_for_maps, prepare_for_maps
 from engine.sweeps.map_jobs import map_job, members_job
+from engine.sweeps.warmup import is_ready_for_maps, prepare_for_maps
 from engine.systems.review.potential_review import SystemReview
 from plots.texts.accepted_potentials import refusal
 

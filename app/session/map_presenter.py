@@ -20,8 +20,8 @@ from app.views.maps.map_plots import MapActions, MapsView
 from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.progress import ProgressView
 from engine import EscapeMap, Fate, Window
-from engine.maps.warmup import seconds_until_ready_for_maps
 from engine.propagation.fates import describe_fate
+from engine.sweeps.warmup import seconds_until_ready_for_maps
 from plots.pictures.palette import MOST_ORBITS
 
 
@@ -152,7 +152,6 @@ class MapPresenter:
 
     def map_requested(self, *, compiling: bool = False) -> None:
         """A map is requested."""
-        self._results.frame = None
         if compiling:
             # The pictures of the former system stay for some seconds.
             self.view.grid.mark_stale(True)

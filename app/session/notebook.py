@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import html
 import threading
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,17 +17,21 @@ from app.session import explorer as session
 from app.session.page import TITLE, explorer_page
 from app.state.permalink import write_link
 from app.state.view_state import ViewState
-from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, System, write_formula
+from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, System, compute_map, write_formula
 from engine.systems.system import TYPED
 
 _STARTS_WITHIN = 60.0
+
+# Of the map that stands for the page where this cannot be reached.
+_PICTURED, _PICTURED_TIME = (112, 112), 1e3
 
 
 class Explorer:
     """The live page in a notebook cell; show it as the last line of a cell.
 
     It runs in this process: the page computes with the same threads and cache as later calls of this notebook's explorers. The
-    browser must reach this machine, as with a local JupyterLab.
+    browser must reach this machine, as with a local JupyterLab; where it cannot, and in a saved notebook, the cell shows a coarse
+    map instead.
 
     Parameters
     ----------
@@ -39,7 +44,9 @@ class Explorer:
 
     def __init__(self, spec: MapSpec | None = None, *, height: int = 900) -> None:
         self.height = height
-        self._link = "" if spec is None else write_link(_view_of(spec))
+        view = ViewState() if spec is None else _view_of(spec)
+        self._link = "" if spec is None else write_link(view)
+        self._pictured = replace(view.map_spec(), resolution=_PICTURED, t_max=min(view.t_max, _PICTURED_TIME))
         self._session: session.Explorer | None = None
         self._port = 0
         self._started = threading.Event()
@@ -69,7 +76,10 @@ class Explorer:
         self._loop.call_soon_threadsafe(self._loop.stop)
 
     def _repr_html_(self) -> str:
-        return f"<iframe src='{html.escape(self.address)}' style='width:100%;height:{self.height}px;border:0'></iframe>"
+        # Browsers show what is inside an object where its page cannot be reached, as in a saved notebook.
+        picture = compute_map(self._pictured)._repr_html_()
+        style = f"width:100%;height:{self.height}px"
+        return f"<object type='text/html' data='{html.escape(self.address)}' style='{style}'>{picture}</object>"
 
     def _serve(self) -> None:
         self._loop = asyncio.new_event_loop()

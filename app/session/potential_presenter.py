@@ -11,7 +11,7 @@ from app.session.history import History
 from app.state.system_review import is_known, review_catalogue_entry, review_job
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System
-from engine.maps.warmup import is_ready_for_maps
+from engine.sweeps.warmup import is_ready_for_maps
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
 from plots.texts.accepted_potentials import refusal

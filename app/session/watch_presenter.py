@@ -16,8 +16,8 @@ from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
 from engine import compute_flux
 from engine.jobs.job import Job
-from engine.maps.warmup import is_ready_for_maps
 from engine.results import EscapeFlux
+from engine.sweeps.warmup import is_ready_for_maps
 
 
 class WatchPresenter:

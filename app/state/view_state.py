@@ -25,7 +25,7 @@ from app.state.watched_starts import WatchedStarts
 from engine import MapSpec, Orbit, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.foundations.validation import LARGEST_NUMBER
 from engine.jobs.job import Job, Queue
-from engine.maps.warmup import is_ready_for_maps
+from engine.sweeps.warmup import is_ready_for_maps
 from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview

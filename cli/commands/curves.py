@@ -23,7 +23,7 @@ from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import Of
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
-from cli.printing import AsJson, Table, print_result
+from cli.printing import AsJson, Table, list_rows, print_result
 from engine import ParameterAxis, Potential, Slice, SweepSpec, System, compute_sweep
 from engine.results import Sweep
 from engine.sweeps.measures import CURVES, QUICK_CURVES
@@ -92,8 +92,8 @@ def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
 
 
 def _print(curves: Sweep, files: Sequence[str], as_json: bool) -> None:
-    columns = {name: column.tolist() for name, column in curve_columns(curves).items()}
-    points = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    columns = curve_columns(curves)
+    points = list_rows(columns)
     shown = [name for name in columns if not _ERROR_BAR.search(name)]
     rows = [[f"{point[name]:.4g}".replace("nan", "–") for name in shown] for point in points]
     table = Table([name.replace("_", " ") for name in shown], rows)

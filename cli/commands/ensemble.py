@@ -28,7 +28,7 @@ from cli.execution import THREADS_ONLY, Place
 from cli.option_marks import But, Of
 from cli.options import with_options
 from cli.output_files import Content, Stem, name_files, reserve_output, write_files
-from cli.printing import AsJson, Table, print_result
+from cli.printing import AsJson, Table, list_rows, print_result
 from engine import (
     Fate,
     Potential,
@@ -48,7 +48,7 @@ from engine.slices.window import GivenWindow
 from plots.pictures.palette import Palette
 from plots.printed.ensemble_movie import MovieFormat, ensemble_movie_bytes
 from plots.printed.figure_style import FigureStyle
-from plots.texts.exports import dataset_bytes
+from plots.texts.exports import dataset_bytes, write_csv
 
 MOST_PATHS = 20_000
 """Most orbits of a movie, or of a file of paths."""
@@ -128,8 +128,8 @@ def _draw_starts(
 def _table(starts: np.ndarray, outcomes: Outcomes) -> str:
     """Return a line for each orbit: its start at full precision, fate, escape time and crossings."""
     ends = (column.tolist() for column in (outcomes.fate, outcomes.escape_time, outcomes.crossings))
-    rows = (",".join(map(repr, (*start, *end))) for start, *end in zip(starts.tolist(), *ends, strict=True))
-    return "\n".join(["x,y,px,py,fate,escape_time,crossings", *rows]) + "\n"
+    rows = ((*start, *end) for start, *end in zip(starts.tolist(), *ends, strict=True))
+    return write_csv(("x", "y", "px", "py", "fate", "escape_time", "crossings"), rows)
 
 
 def _print(
@@ -153,8 +153,7 @@ def _print(
     mean = f"Mean time of the escapes: {statistics.mean_escape_time:.4g}."
     parts: list[Table | str] = [table]
     if matching is not None:
-        columns = {name: column.tolist() for name, column in matching.columns().items()}
-        answer["matching"] = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        answer["matching"] = list_rows(matching.columns())
         parts += [_matching_table(matching), matching.describe()]
     print_result(as_json, answer, *parts, mean, laws.describe(), flux.describe(), files=files)
 

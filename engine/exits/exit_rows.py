@@ -10,6 +10,7 @@ from numpy.polynomial import chebyshev
 from engine.exits.brake_orbits import saddle_axes
 from engine.exits.exit_shapes import absent_channel, closed_channel
 from engine.exits.lyapunov_orbits import UndefinedExitsError, find_orbits_in_well_units
+from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.kernels import events
 from engine.systems.potential import Potential
 from engine.systems.review.hill_region import check_closed_well
@@ -47,6 +48,15 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
         curves[orbit.channel - 1] = orbit.curve
         for channel in orbit.others:
             curves[channel - 1] = absent_channel(saddle_axes(potential, channel), potential.saddles[channel - 1])
+    return curves
+
+
+def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execution = DEFAULT_EXECUTION) -> np.ndarray:
+    """(n, outcomes, columns) `exit_curves` at energies (n,)."""
+    curves = np.repeat(closed_exits(potential)[None], len(energies), axis=0)
+    for row, energy in enumerate(energies.tolist()):
+        execution.raise_if_cancelled()
+        curves[row] = exit_curves(potential, energy)
     return curves
 
 

@@ -26,6 +26,8 @@ _FARTHEST_WALL, _WALL_POINTS, _BISECTIONS = 5.0, 400, 60
 _LINE_POINTS, _RIDGE_STEP = 41, 1e-3
 # Largest change of the position of a wall in a step, in units of the width of the neck; a larger one is a jump to another wall.
 _LARGEST_WALL_STEP = 0.25
+# Ends of two orbits closer than this, in units of the well, are the same.
+_SAME_END = 1e-6
 
 
 def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
@@ -154,3 +156,23 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
         low, high = bisect(is_beyond, low, high, _BISECTIONS)
     walls: np.ndarray = np.where(first > 0, 0.5 * (low + high), np.nan)[..., 0]
     return walls
+
+
+def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two paths, (n, 2) and (m, 2), intersect, or connect the same points and are thus equal up to rounding errors."""
+    return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
+
+
+def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two polygonal lines, (n, 2) and (m, 2), intersect."""
+    if np.any(one.max(axis=0) < other.min(axis=0)) or np.any(other.max(axis=0) < one.min(axis=0)):
+        return False
+
+    def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """(segments, points) on which side of each segment of a line the points lie."""
+        along, apart = np.diff(line, axis=0)[:, None], points - line[:-1, None]
+        left: np.ndarray = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
+        return left
+
+    first, second = sides(one, other), sides(other, one).T
+    return bool(np.any((first[:, 1:] != first[:, :-1]) & (second[1:] != second[:-1])))

@@ -13,8 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.exits.brake_orbits import chord_axes
 from engine.exits.exit_rows import exit_gates
-from engine.exits.lyapunov_orbits import exit_curve_over_chord, find_orbits_in_well_units
+from engine.exits.exit_shapes import curve_along, find_reach
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
 from engine.foundations.arrays import read_only
 from engine.integrator.kernels import events
 from engine.integrator.kernels.exit_curves import MIDDLE_COLUMN, exit_points, interpolate_exit
@@ -103,11 +105,29 @@ def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
     """The exit curves at one energy, by channel; ValueError if one is not a graph over its chord."""
     curves = {}
     for orbit in find_orbits_in_well_units(potential, energy):
-        curve = exit_curve_over_chord(orbit)
+        curve = _exit_over_chord(orbit)
         if curve is None:
             raise ValueError(f"energy={energy}: exit {orbit.channel} is not a smooth graph over its chord")
         curves[orbit.channel] = curve
     return curves
+
+
+def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
+    """(columns,) the exit of an orbit in units of the well, in axes which depend smoothly on the energy: those of its chord.
+
+    None if the path is not a smooth graph over the chord. The line of a rotating system keeps its own axes, those of the saddle.
+    """
+    potential = orbit.potential
+    if potential.rotation:
+        return orbit.curve
+    path = orbit.half_path.T
+    if chord_axes(path).outward @ potential.well.outward_directions[orbit.channel - 1] < 0.0:
+        # Mirrored orbits have the well on the other side of their path.
+        path = path[:, ::-1]
+    curve = curve_along(chord_axes(path), potential.saddles[orbit.channel - 1], path)
+    if curve is not None:
+        curve[events.REACH] = find_reach(potential, orbit.energy, curve)
+    return curve
 
 
 def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -> ExitTable:

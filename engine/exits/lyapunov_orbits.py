@@ -22,7 +22,7 @@ from engine.exits.brake_orbits import (
     find_from_both_ends,
     saddle_axes,
 )
-from engine.exits.exit_shapes import curve_along, find_reach, line_across, line_points, mirrored_curve
+from engine.exits.exit_shapes import curve_along, find_reach, line_across, line_points, mirrored_curve, paths_meet
 from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_returns
 from engine.exits.periodic_orbits import find_orbit_in_rotating_frame, monodromy_matrix, multipliers_of
 from engine.foundations.arrays import read_only
@@ -34,8 +34,6 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
-# Ends of two orbits closer than this, in units of the well, are the same.
-_SAME_END = 1e-6
 # What an exit of several channels has not, from what its search finds first.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
 _MISSING = {
@@ -301,28 +299,8 @@ def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
 
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
     for one, other in itertools.combinations(orbits, 2):
-        if _paths_cross(one.exit_path, other.exit_path) or _same_ends(one.exit_path, other.exit_path):
+        if paths_meet(one.exit_path, other.exit_path):
             raise _SearchError(f"the exits of channels {one.channel} and {other.channel} meet; choose a lower energy")
-
-
-def _same_ends(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two paths, (n, 2) each, connect the same points, and are thus equal up to rounding errors."""
-    return bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
-
-
-def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two polygonal lines, (n, 2) and (m, 2), intersect."""
-    if np.any(one.max(axis=0) < other.min(axis=0)) or np.any(other.max(axis=0) < one.min(axis=0)):
-        return False
-
-    def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """(segments, points) on which side of each segment of a line the points lie."""
-        along, apart = np.diff(line, axis=0)[:, None], points - line[:-1, None]
-        left: np.ndarray = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
-        return left
-
-    first, second = sides(one, other), sides(other, one).T
-    return bool(np.any((first[:, 1:] != first[:, :-1]) & (second[1:] != second[:-1])))
 
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
@@ -369,21 +347,3 @@ def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOr
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
     path = x[there_and_back], y[there_and_back]
     return LyapunovOrbit(channel, energy, 2.0 * orbit.half_period, *path, curve, potential=potential)
-
-
-def exit_curve_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
-    """(columns,) the exit of an orbit in units of the well, in axes which depend smoothly on the energy: those of its chord.
-
-    None if the path is not a smooth graph over the chord. The line of a rotating system keeps its own axes, those of the saddle.
-    """
-    potential = orbit.potential
-    if potential.rotation:
-        return orbit.curve
-    path = orbit.half_path.T
-    if chord_axes(path).outward @ potential.well.outward_directions[orbit.channel - 1] < 0.0:
-        # Mirrored orbits have the well on the other side of their path.
-        path = path[:, ::-1]
-    curve = curve_along(chord_axes(path), potential.saddles[orbit.channel - 1], path)
-    if curve is not None:
-        curve[events.REACH] = find_reach(potential, orbit.energy, curve)
-    return curve

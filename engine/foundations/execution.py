@@ -50,10 +50,10 @@ if hasattr(os, "register_at_fork"):
 
 def create_thread_pool(threads: int) -> ThreadPoolExecutor:
     """A thread pool for kernels, of lower priority than the threads of this process that serve requests."""
-    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=lower_priority)
+    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
 
 
-def lower_priority() -> None:
+def _lower_priority() -> None:
     """Raise the nice value of the calling thread; on other systems than Linux it belongs to the whole process."""
     if sys.platform == "linux":
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE_VALUE)

@@ -82,7 +82,7 @@ class Jobs:
     threads
         Size of a thread pool of its own; None for the default pool of this process.
     limited
-        Calls a function in a process with limits, for `Queue.LIMITED`; None for a thread of this process.
+        Calls a function in a process with limits, for `Queue.LIMITED`, until an event is set; None for a thread of this process.
     limited_calls
         Number of such calls at a time, each of another account.
     clock
@@ -95,7 +95,7 @@ class Jobs:
         cache_bytes: int = DEFAULT_CACHE_BYTES,
         most_orbits: int = DEFAULT_ORBITS,
         threads: int | None = None,
-        limited: Callable[[Callable[[], Any]], Any] | None = None,
+        limited: Callable[[Callable[[], Any], threading.Event], Any] | None = None,
         limited_calls: int = 1,
         clock: Clock = time,
     ) -> None:
@@ -240,7 +240,7 @@ class Jobs:
         }
         call = partial(job.function, *arguments, **job.keywords(offered))
         if job.queue is Queue.LIMITED and self._limited is not None:
-            call = partial(self._limited, call)
+            call = partial(self._limited, call, run.cancel)
         if job.queue in (Queue.LONG_CALL, Queue.LIMITED, Queue.COMPILATION):
             return executors[job.queue].submit(call).result()
         return call()

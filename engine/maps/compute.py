@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,18 +14,21 @@ import numpy as np
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.maps.parameter_map import LineStack
-from engine.maps.result import EscapeMap
-from engine.maps.rounded_share import estimate_rounded_share
-from engine.maps.row_blocks import BlockStack
+from engine.maps.reruns import SAME_STARTS
+from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
-from engine.maps.stages import run_stages
+from engine.maps.stages import OnChange, Stage, run_stages, run_to_frame
+from engine.maps.trust import TrustTest, find_unlike_neighbours
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""
 
 DEEP_PIXEL = 1e-7
 """Distance of pixels in units of the well below which a map says how many of them double precision does not support."""
+
+SAMPLED_SIDE = 16
+"""About this number of pixels per side are sampled for `estimate_rounded_share`."""
 
 
 @shows_progress("escape map")
@@ -117,3 +121,104 @@ def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
         return result
     share = estimate_rounded_share(result, replace(execution, on_progress=None))
     return result if execution.is_cancelled else replace(result, rounded_share=share)
+
+
+def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
+    """Divide the rows of a map into blocks; each block contains the mirror images of its rows.
+
+    Parameters
+    ----------
+    spec
+        The map.
+    max_pixels
+        Largest number of pixels in a block, at least 1. A block has at least one row and its mirror image.
+
+    Yields
+    ------
+    Increasing row numbers of each block; together the blocks contain every row once.
+    """
+    columns, rows = spec.resolution
+    height = max(max_pixels // columns, 1)
+    mirrored = spec.plane.mirrored_axes
+    if mirrored is None or not mirrored[1]:
+        yield from (np.arange(low, min(low + height, rows)) for low in range(0, rows, height))
+        return
+    half = max(height // 2, 1)
+    for low in range(0, (rows + 1) // 2, half):
+        lower = np.arange(low, min(low + half, (rows + 1) // 2))
+        yield np.union1d(lower, rows - 1 - lower)
+
+
+class BlockStack:
+    """The blocks of a map of one potential while they are computed, whose orbits together need too much memory.
+
+    Parameters
+    ----------
+    spec
+        The request, `MapSpec.in_well_units`.
+    max_pixels
+        See `row_blocks`.
+    """
+
+    def __init__(self, spec: MapSpec, max_pixels: int) -> None:
+        self.spec, self._max_pixels = spec, max_pixels
+        self._rows_done, self._horizon = 0, 0.0
+        self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
+
+    def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
+        """See `Staged`: a stage computes a block."""
+        for rows in row_blocks(self.spec, self._max_pixels):
+            yield partial(self._compute, rows, replace(execution, on_progress=None))
+
+    def _compute(self, rows: np.ndarray, execution: Execution) -> None:
+        run = MapRun(self.spec, rows=rows)
+        run_stages(run, execution)
+        block = run.frame()
+        for name, array in self._arrays.items():
+            array[rows] = getattr(block, name)
+        self._rows_done += rows.size
+        self._horizon = block.horizon
+
+    def progress(self) -> float:
+        """Share of the rows that are done."""
+        return self._rows_done / self.spec.resolution[1]
+
+    def frame(self) -> EscapeMap:
+        """The map so far, with views of the arrays; copies would need too much memory."""
+        stage = {"stride": 1, "horizon": self._horizon, "progress": self.progress()}
+        return collect_map(self.spec, self.spec.pixel_centres(), self._arrays, **stage)
+
+    def result(self) -> EscapeMap:
+        """The map so far; it has no integration state."""
+        return self.frame()
+
+
+def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT_EXECUTION) -> float:
+    """Estimate for which share of the pixels of a complete map double precision gives another fate or number of crossings.
+
+    Some `SAMPLED_SIDE`² pixels, evenly spread, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only
+    errors of the integration differ. Where the outcome changes, one of the two is wrong: the share is at most the sum of both
+    shares of wrong pixels, and at least their difference.
+
+    Parameters
+    ----------
+    escape_map
+        A complete map of one potential.
+    execution
+        How the computation runs.
+
+    Returns
+    -------
+    The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN if none is interior.
+    """
+    thinned = _thinned(escape_map)
+    unlike = find_unlike_neighbours(thinned.fate, thinned.crossings)
+    return run_to_frame(TrustTest(thinned, unlike, SAME_STARTS), execution).doubtful_share
+
+
+def _thinned(escape_map: EscapeMap) -> EscapeMap:
+    """Evenly spread pixels of a map, with the request of the whole map."""
+    down, right = (max(1, side // SAMPLED_SIDE) for side in escape_map.fate.shape)
+    arrays = {name: getattr(escape_map, name)[down // 2 :: down, right // 2 :: right] for name in PIXEL_ARRAYS}
+    x, ordinate = escape_map.x[right // 2 :: right], escape_map.ordinate[down // 2 :: down]
+    return replace(escape_map, x=x, ordinate=ordinate, batch=None, **arrays)

@@ -10,16 +10,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_number, checks_types
 from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import MirrorPixels, PixelAnalysis
-from engine.maps.result import EscapeMap
+from engine.maps.result import EscapeMap, MapLike, as_map
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage
-from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.fates import Fate
 from engine.propagation.speed_integrals import integrate_speed
 from engine.systems.potential import Potential
@@ -72,12 +71,12 @@ class DescriptorMap(PixelAnalysis):
 
     def describe(self) -> str:
         """The integral and its range in one sentence."""
-        known = self.descriptor[np.isfinite(self.descriptor)]
+        known, so_far = self.descriptor[np.isfinite(self.descriptor)], "" if self.complete else " so far"
+        if not known.size:
+            return f"No start has a Lagrangian descriptor{so_far}."
         ways = {TimeDirection.BOTH: "−τ to τ", TimeDirection.FORWARD: "0 to τ", TimeDirection.BACKWARD: "−τ to 0"}
-        spread = f" lies between {known.min():.4g} and {known.max():.4g}" if known.size else ""
-        so_far = "" if self.complete else " so far"
         integral = f"The Lagrangian descriptor ∫ |v|^p dt, p = {self.power:g}, from {ways[self.direction]}, τ = {self.duration:g}"
-        return f"{integral}, at most up to an exit,{spread}{so_far}."
+        return f"{integral}, at most up to an exit, lies between {known.min():.4g} and {known.max():.4g}{so_far}."
 
 
 @shows_progress("Lagrangian descriptor")
@@ -195,7 +194,9 @@ class _DescriptorRun:
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
         """See `Staged`: a stage computes a part of the pixels."""
-        for part in np.array_split(self._pixels, min(_PARTS, max(1, self._pixels.size))):
+        if not self._pixels.size:
+            return
+        for part in np.array_split(self._pixels, min(_PARTS, self._pixels.size)):
             yield partial(self._compute, part, execution)
 
     def _compute(self, part: np.ndarray, execution: Execution) -> None:
@@ -207,7 +208,7 @@ class _DescriptorRun:
     def _integrate(self, spec: MapSpec, part: np.ndarray, execution: Execution) -> np.ndarray:
         x, ordinate = self._map.coordinates(part)
         energies, curve_row = np.unique(spec.energies(x, ordinate), return_inverse=True)
-        curves = np.array([exit_curves(spec.potential, float(energy)) for energy in energies])
+        curves = exit_curves_at(spec.potential, energies)
         duration = self._duration / self._given.potential.units.time
         states = spec.start_states(x, ordinate)
         return integrate_speed(spec.potential, curves, states, curve_row, duration, self._power, execution=execution)

@@ -14,9 +14,8 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.validation import checks_types
 from engine.maps.parameter_map import analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
-from engine.maps.result import EscapeMap
+from engine.maps.result import EscapeMap, MapLike, as_map
 from engine.maps.stages import OnChange, Stage
-from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic

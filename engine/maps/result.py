@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.former_names import with_former_fields
+from engine.foundations.former_names import rename_stored, with_former_fields
 from engine.foundations.result import MapResult
-from engine.foundations.validation import checked_flag
+from engine.foundations.validation import checked_flag, short_repr
 from engine.foundations.wording import describe_codes
-from engine.maps.spec import MapSpec
+from engine.maps.spec import MapSpec, read_spec
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate, name_fate
@@ -43,6 +43,9 @@ def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.nda
     """Arrays without any computed pixels, by name."""
     return {name: np.full(shape, value, dtype) for name, (dtype, value) in names.items()}
 
+
+type MapLike = EscapeMap | xr.Dataset
+"""A map as measures and analyses take it: an `EscapeMap`, or the dataset of one, such as one of the maps of a sweep."""
 
 NOTED_SHARE = 0.01
 """Share of the interior pixels that double precision does not support from which a map says so."""
@@ -281,3 +284,38 @@ def find_interior(fate: np.ndarray) -> np.ndarray:
 def representative_indices(size: int, stride: int) -> np.ndarray:
     """(size,) for each row or column, the one computed first in its block of `stride`: the middle, or the last one there is."""
     return np.minimum(np.arange(size) // stride * stride + stride // 2, size - 1)
+
+
+def as_map(name: str, value: Any) -> EscapeMap:
+    """A map, given as one or as its dataset: `EscapeMap.to_xarray`, a file, or ``dataset.sel(h=0.3)`` of a sweep.
+
+    Raises
+    ------
+    ValueError
+        If it is neither, or a dataset of several maps; `name` is the parameter.
+    """
+    if isinstance(value, EscapeMap):
+        return value
+    if hasattr(value, "data_vars"):
+        value = rename_stored(value)
+    missing = [each for each in PIXEL_ARRAYS if each != "started" and each not in getattr(value, "data_vars", ())]
+    if "fate" in missing:
+        raise ValueError(f"{name}={short_repr(value)}: must be an EscapeMap, or a dataset of one")
+    if missing:
+        raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
+    if value["fate"].ndim != len(("rows", "columns")):
+        raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
+    return read_map(value)
+
+
+def read_map(dataset: xr.Dataset) -> EscapeMap:
+    """The map of a dataset. It has no integration state, so that it cannot be resumed."""
+    spec = read_spec(dataset)
+    abscissa, ordinate = spec.plane.axis_names
+    arrays: dict[str, Any] = {name: read_only(np.array(dataset[name].values)) for name in PIXEL_ARRAYS if name != "started"}
+    started = arrays["fate"] != Fate.NOT_COMPUTED
+    return EscapeMap(
+        spec=spec, x=read_only(np.array(dataset[abscissa].values)), ordinate=read_only(np.array(dataset[ordinate].values)),
+        stride=1, horizon=spec.t_max, progress=float(started.mean()), complete=bool(started.all()), started=read_only(started),
+        rounded_share=float(dataset.attrs["rounded_share"]) if "rounded_share" in dataset.attrs else None, **arrays,
+    )  # fmt: skip

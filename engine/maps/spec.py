@@ -18,11 +18,16 @@ from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.parameter_family import parameter_family
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
-from engine.slices.slice_text import write_slice
+from engine.slices.slice_text import read_slice, write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
+from engine.systems.formulas.stored_potential import read_potential
 from engine.systems.outcomes import Outcome
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
+from engine.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
@@ -240,3 +245,31 @@ def _checked_resolution(resolution: Any) -> tuple[int, int]:
     if len(sides) != 2 or not all(1 <= side <= LARGEST_SIDE for side in sides):
         raise ValueError(f"resolution={short_repr(resolution)}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
     return sides
+
+
+def read_spec(dataset: xr.Dataset) -> MapSpec:
+    """The request of a map, from the attributes of its dataset; the energy of one map of a sweep is its coordinate h."""
+    found = dataset.attrs
+    if found.get("along"):
+        raise ValueError(
+            f"dataset: is of a sweep along {found['axis']}, whose fates have the numbers of the sweep; must be a map of "
+            "compute_map, or one of a sweep over energies"
+        )
+    try:
+        chosen = json.loads(found["system"])
+        system = System(**chosen) if chosen else System("I")
+        plane = read_slice(str(found["axes"]), str(found["fix"]), system)
+        energy = found["energy"] if "energy" in found else float(dataset["h"].values)
+        window = None if found["default_window"] else tuple(float(edge) for edge in found["window"])
+        columns, rows = map(int, found["resolution"])
+    except KeyError as error:
+        raise ValueError(f"dataset: has no attribute {error}; must be one of a map, written by this version") from None
+    return MapSpec(
+        read_potential(found), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
+        float(found["t_max"]), use_evidence=bool(found["use_evidence"]), backward=bool(found["backward"]),
+    )  # fmt: skip
+
+
+def _plain(energy: Any) -> Any:
+    """An energy, or a pair of them, as a request has it."""
+    return tuple(map(float, energy)) if np.ndim(energy) else float(energy)

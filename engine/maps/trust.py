@@ -12,17 +12,16 @@ from typing import ClassVar
 import numpy as np
 
 from engine.evidence.bounded_orbits import BoundedOrbitSearch
-from engine.exits.exit_rows import closed_exits, exit_curves
+from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.integrator.kernels.dense_output import advance_states
 from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.reruns import SHIFT, SHIFTED_STARTS, Perturbation, Rerun
-from engine.maps.result import EscapeMap
+from engine.maps.result import EscapeMap, MapLike, as_map
 from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
 from engine.maps.stages import OnChange, Stage
-from engine.maps.stored_maps import MapLike, as_map
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import CHAOS_THRESHOLD, Fate
@@ -214,9 +213,7 @@ class TrustTest:
             getattr(escape_map, name).ravel()[pixels] for name in ("fate", "crossings", "escape_time")
         )
         energies, curve_row = np.unique(spec.energies(x, ordinate), return_inverse=True)
-        curves = np.repeat(closed_exits(potential)[None], energies.size, axis=0)
-        for k, energy in enumerate(energies):
-            curves[k] = exit_curves(potential, float(energy))
+        curves = exit_curves_at(potential, energies)
         closed = np.flatnonzero(potential.well.is_closed_at(energies[curve_row]))
         reruns = []
         for start, tolerance in zip(perturbation.starts(spec, x, ordinate), perturbation.tolerances, strict=True):

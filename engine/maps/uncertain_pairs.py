@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.exits.exit_rows import closed_exits, exit_curves
+from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checked_count, checks_types, short_repr
@@ -159,15 +159,7 @@ class _PairSampler:
         axis = spec.plane.energy_axis
         self.row_energy = np.array([spec.common_energy]) if axis is None else spec.pixel_centres()[axis]
         self.is_open = ~spec.potential.well.is_closed_at(self.row_energy)
-        self.curves = self._find_exit_curves()
-
-    def _find_exit_curves(self) -> np.ndarray:
-        """Exit curves at each energy."""
-        curves = np.repeat(closed_exits(self.spec.potential)[None], self.row_energy.size, axis=0)
-        for row in np.flatnonzero(self.is_open):
-            self.execution.raise_if_cancelled()
-            curves[row] = exit_curves(self.spec.potential, float(self.row_energy[row]))
-        return curves
+        self.curves = exit_curves_at(spec.potential, self.row_energy, execution)
 
     def plan_more_pairs(self, work: float) -> np.ndarray:
         """(m,) number of additional pairs at each separation, within the total integration time `work`."""

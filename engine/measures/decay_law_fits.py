@@ -75,6 +75,7 @@ def fit_decay_laws(
     >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, compute_statistics, fit_decay_laws
     >>> escapes = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (80, 80), t_max=1e3))
     >>> laws = fit_decay_laws(compute_statistics(escapes))
+    >>> assert laws.exponential is not None
     >>> laws.preferred, round(laws.exponential.rate, 3)
     (<DecayLaw.EXPONENTIAL: 'exponential'>, 0.024)
     """

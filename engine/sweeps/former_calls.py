@@ -48,7 +48,7 @@ def run_sweep(spec: SweepSpec, store: Any, **options: Any) -> xr.Dataset:
 @checks_types(potential=Potential, orbit=LyapunovOrbit)
 def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
     """Return the multipliers of an orbit; ValueError if the potential is not that of the orbit."""
-    potential.check_same_motion(orbit.potential, "orbit")
+    _check_same_motion(potential, orbit.potential)
     return orbit.find_multipliers()
 
 
@@ -56,5 +56,10 @@ def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
 def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
     """Return the crossings of y = 0 of an orbit; ValueError if the potential is not that of the orbit."""
     if orbit.potential is not None:
-        potential.check_same_motion(orbit.potential, "orbit")
+        _check_same_motion(potential, orbit.potential)
     return replace(orbit, potential=potential).find_section_crossings()
+
+
+def _check_same_motion(potential: Potential, of_orbit: Potential) -> None:
+    if (potential.form, potential.rotation) != (of_orbit.form, of_orbit.rotation):
+        raise ValueError(f"potential={potential.name}: must be that of the orbit, {of_orbit.name}")

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_type_hints
+from typing import TYPE_CHECKING, Any, get_type_hints, overload
 
 from engine.exits.lyapunov_orbits import LyapunovOrbit
 from engine.foundations.extras import require_package
@@ -15,8 +15,8 @@ from engine.foundations.result import RecordedResult, Result
 from engine.foundations.stored_fields import plain_attributes, read_field
 from engine.foundations.validation import checks_types
 from engine.maps.pixels import PixelAnalysis
-from engine.maps.result import EscapeMap
-from engine.maps.stored_maps import read_map, read_spec
+from engine.maps.result import EscapeMap, read_map
+from engine.maps.spec import read_spec
 from engine.measures.basin_entropy import BasinEntropy
 from engine.measures.chaotic_share import ChaoticShare
 from engine.measures.decay_laws import DecayLaws
@@ -64,8 +64,12 @@ _ZARR = "zarr.json"
 _HDF5 = b"\x89HDF"
 
 
-@checks_types(path=(str, os.PathLike))
-def open_result(path: str | os.PathLike[str]) -> Any:
+@overload
+def open_result(path: str | os.PathLike[str]) -> Any: ...
+@overload
+def open_result[Kind: Result](path: str | os.PathLike[str], kind: type[Kind]) -> Kind: ...
+@checks_types(path=(str, os.PathLike), kind=type)
+def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
     """A result from a file.
 
     Parameters
@@ -73,6 +77,8 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     path
         A NetCDF file that `Result.save` wrote, or the folder of a Zarr store, to which ``result.to_xarray()`` was written, or the
         store of a sweep.
+    kind
+        The class of the result, such as `EscapeMap`, which type checkers then know too; by default any.
 
     Returns
     -------
@@ -91,14 +97,21 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, open_result
+    >>> from escape_explorer import CASES, EscapeMap, MapSpec, Plane, compute_map, open_result
     >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (20, 20), t_max=100.0))
     >>> with TemporaryDirectory() as folder:
     ...     escapes.save(f"{folder}/map.nc")
-    ...     opened = open_result(f"{folder}/map.nc")
+    ...     opened = open_result(f"{folder}/map.nc", EscapeMap)
     >>> opened.spec == escapes.spec, bool((opened.fate == escapes.fate).all())
     (True, True)
     """
+    result = _open(path)
+    if kind is not Result and not isinstance(result, kind):
+        raise ValueError(f"path={os.fspath(path)}: holds {type(result).__name__}; must hold {kind.__name__}")
+    return result
+
+
+def _open(path: str | os.PathLike[str]) -> Any:
     # Slow to import, and seldom used.
     import xarray as xr
 

@@ -101,7 +101,7 @@ class Potential(Result):
     system: System | None = field(default=None, repr=False, compare=False)
     exit_names: tuple[str, ...] = field(default=(), repr=False, compare=False)
     inner_names: ClassVar = Result.inner_names | {
-        "check_at_rest", "check_same_motion", "check_without_centres", "checked_t_max", "continued", "exit_names", "form", "gaps",
+        "check_at_rest", "check_without_gaps", "checked_t_max", "continued", "exit_names", "form", "gaps",
         "hessian_matrix", "in_well_units", "lineage", "reversed_in_time", "tori_are_evidence", "units", "well",
     }  # fmt: skip
     held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names"), "terms")
@@ -295,11 +295,6 @@ class Potential(Result):
         if t_max is None:
             t_max = 1e5 if self.tori_are_evidence else _SHORT_TIME / (abs(self.rotation) or 1.0)
         return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
-
-    def check_same_motion(self, other: Potential, what: str) -> None:
-        """Raise ValueError if the equations of motion differ from those of the potential of a result."""
-        if (self.form, self.rotation) != (other.form, other.rotation):
-            raise ValueError(f"potential={self.name}: must be that of the {what}, {other.name}")
 
     def check_at_rest(self, what: str) -> None:
         """Raise ValueError in a rotating frame, for what rests on the symmetry of time reversal."""

@@ -116,6 +116,7 @@ def find_divergent_start(
     --------
     >>> from escape_explorer import CASES, Plane, find_divergent_start
     >>> divergent = find_divergent_start(CASES["III"], Plane.X_PX, 0.45, 0.3, 0.2, t_max=1e3)
+    >>> assert divergent is not None
     >>> divergent.reference_fate, divergent.fate, round(divergent.distance, 3)
     (1, 4, 0.047)
     """

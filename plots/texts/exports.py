@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import metadata
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
@@ -60,29 +60,33 @@ def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Se
     if most_rows < max(1, len(orbits)):
         raise ValueError(f"most_rows={most_rows}: must be at least 1, and one for each of {len(orbits)} orbits")
     strides = [math.ceil(orbit.t.size / (most_rows // len(orbits))) for orbit in orbits]
-    lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
+    comments, rows = [_version()], []
     for number, (orbit, stride, verdict) in enumerate(zip(orbits, strides, verdicts or map(judge_orbit, orbits), strict=True), 1):
-        lines += _header(number, orbit, stride, verdict)
-    lines.append(",".join(("orbit", *_COLUMNS)))
-    for number, (orbit, stride) in enumerate(zip(orbits, strides, strict=True), 1):
-        lines += _rows(number, orbit, stride)
+        comments += _header(number, orbit, stride, verdict)
+        columns = [getattr(orbit, name)[::stride].tolist() for name in _COLUMNS]
+        rows += [(number, *row) for row in zip(*columns, strict=True)]
+    return write_csv(("orbit", *_COLUMNS), rows, comments)
+
+
+def write_csv(names: Iterable[str], rows: Iterable[Sequence[object]], comments: Iterable[str] = ()) -> str:
+    """CSV table with the names of its columns, numbers at full precision, below comment lines (#)."""
+    lines = [*(f"# {comment}" for comment in comments), ",".join(names), *(",".join(map(repr, row)) for row in rows)]
     return "\n".join(lines) + "\n"
+
+
+def _version() -> str:
+    return f"escape-explorer {metadata.version('escape-explorer')}"
 
 
 def _header(number: int, orbit: Orbit, stride: int, verdict: OrbitVerdict) -> list[str]:
     start = ", ".join(f"{name} = {float(getattr(orbit, name)[0])!r}" for name in ("x", "y", "px", "py"))
     samples = f"one in {stride} of {orbit.t.size} samples" if stride > 1 else f"all {orbit.t.size} samples"
     return [
-        f"# orbit {number}: start {start}",
-        f"# orbit {number}: energy {orbit.energy!r}",
-        f"# orbit {number}: {verdict.describe()}",
-        f"# orbit {number}: {samples}",
+        f"orbit {number}: start {start}",
+        f"orbit {number}: energy {orbit.energy!r}",
+        f"orbit {number}: {verdict.describe()}",
+        f"orbit {number}: {samples}",
     ]
-
-
-def _rows(number: int, orbit: Orbit, stride: int) -> Iterator[str]:
-    columns = [getattr(orbit, name)[::stride].tolist() for name in _COLUMNS]
-    return (f"{number}," + ",".join(map(repr, row)) for row in zip(*columns, strict=True))
 
 
 def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:
@@ -195,8 +199,5 @@ def curve_columns(curves: Sweep) -> dict[str, np.ndarray]:
 def curves_csv(curves: Sweep) -> str:
     """CSV table of a sweep, one row per energy or value of the parameter: it, a share per outcome, and all other measures."""
     columns = curve_columns(curves)
-    lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
-    lines += [f"# {name}: {value}" for name, value in curves.dataset.attrs.items()]
-    lines.append(",".join(columns))
-    lines += [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns.values()), strict=True)]
-    return "\n".join(lines) + "\n"
+    comments = (_version(), *(f"{name}: {value}" for name, value in curves.dataset.attrs.items()))
+    return write_csv(columns, zip(*(column.tolist() for column in columns.values()), strict=True), comments)

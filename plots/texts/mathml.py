@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import singledispatch
 from html import escape
 from xml.etree import ElementTree
 
 from engine import Potential
-from engine.systems.forms.expression_form import ExpressionForm
+from engine.expressions.nodes import Expression, from_terms
 from engine.systems.forms.form import Form
-from engine.systems.forms.polynomial_form import PolynomialForm
-from plots.texts.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, raised, row, var
+from plots.texts.mathml_elements import digits, number, op, raised, row, var
 from plots.texts.mathml_expressions import signed_parts
 
 _SPOKEN = {"+": "plus", "−": "minus", "=": "equals", "∂": "partial", "˙": "dot", "¨": "double dot"}
@@ -105,30 +103,10 @@ def _sum(form: Form) -> str:
 
 def _signed_terms(form: Form) -> list[str]:
     """The terms with their signs, the first without a plus."""
-    signed = _parts(form) or [number(0.0)]
-    return [term.removeprefix(op("+")) if place == 0 else term for place, term in enumerate(signed)]
-
-
-@singledispatch
-def _parts(form: Form) -> list[str]:
-    """The terms with their signs."""
-    raise TypeError(form)
-
-
-@_parts.register
-def _parts_of_polynomial(form: PolynomialForm) -> list[str]:
-    return [_signed(c, raised(var("x"), i) + raised(var("y"), j)) for i, j, c in form.terms]
-
-
-@_parts.register
-def _parts_of_expression(form: ExpressionForm) -> list[str]:
-    return signed_parts(form.expression)
-
-
-def _signed(coefficient: float, monomial: str) -> str:
-    size = abs(coefficient)
-    factor = "" if size == 1.0 and monomial else number(size, COEFFICIENT_DIGITS)
-    return op("−" if coefficient < 0.0 else "+") + factor + monomial
+    definition = form.definition
+    expression = definition if isinstance(definition, Expression) else from_terms({(i, j): c for i, j, c in definition})
+    first, *others = signed_parts(expression)
+    return [first.removeprefix(op("+")), *others]
 
 
 def _math(formula: str) -> str:

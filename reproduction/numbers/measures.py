@@ -65,96 +65,77 @@ def counted_codes(number: StatedNumber) -> tuple[int, ...]:
     return number.channels or tuple(range(1, CASES[number.case].channels + 1))
 
 
-def _measure_shares(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+Measure = Callable[[Measures, StatedNumber], tuple[float, ...]]
+"""Computes the values of a number."""
+
+
+def _of_each_map(measure: Callable[[EscapeMap], float]) -> Measure:
+    """The values of a measure of one map."""
+    return lambda measures, number: tuple(measure(frame) for frame in measures.maps(number))
+
+
+def _shares(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     shares = [frame.fractions() for frame in measures.maps(number)]
     return tuple(100.0 * sum(share[code] for code in counted_codes(number)) for share in shares)
 
 
-def _measure_direct(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return tuple(100.0 * compute_statistics(frame).direct_share for frame in measures.maps(number))
-
-
-def _measure_chaotic(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+def _chaotic_shares(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     return tuple(100.0 * search.chaotic_share for search in measures.searches(number))
 
 
-def _measure_last_bounded(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return (measures.last_bounded(number.case),)
-
-
-def _measure_median_time(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return tuple(compute_statistics(frame).median_escape_time for frame in measures.maps(number))
-
-
-def _measure_energy_error(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+def _energy_error(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     assert number.plane is not None
     return (float(measures.cache.curves(number.case, number.plane)["worst_energy_error"].max()),)
 
 
-def _measure_accurate(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return tuple(100.0 * float(np.mean(frame.energy_error[frame.interior] < ACCURATE)) for frame in measures.maps(number))
+def _accurate_share(frame: EscapeMap) -> float:
+    return 100.0 * float(np.mean(frame.energy_error[frame.interior] < ACCURATE))
 
 
-def _measure_escape_energy(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return (CASES[number.case].escape_energy,)
-
-
-def _measure_lyapunov_r2(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+def _lyapunov_r2(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     orbits = find_lyapunov_orbits(CASES[number.case], number.energies[0])
     r2 = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in orbits])
     return float(r2.min()), float(r2.max())
 
 
-def _measure_last_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+def _last_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     escapers = measures.search.escapers
     return (float(measures.search.escape_time[escapers[-1]]) if escapers.size else float("nan"),)
 
 
-def _measure_nearest_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+def _nearest_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     times = measures.search.escape_time[np.isin(measures.search.fate, number.channels)]
     return (float(times[np.argmin(np.abs(times - number.value))]) if times.size else float("nan"),)
 
 
-def _measure_largest_share_energy(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return (number.energies[int(np.argmax(_measure_shares(measures, number)))],)
+def _energy_of_largest_share(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return (number.energies[int(np.argmax(_shares(measures, number)))],)
 
 
-def _measure_in_basins(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return tuple(share_in_basins(frame) for frame in measures.maps(number))
-
-
-def _measure_wada(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return tuple(share_next_to_all_basins(frame) for frame in measures.maps(number))
-
-
-def _measure_exponent(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+def _exponents(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     assert number.plane is not None
     return tuple(measures.cache.exponent(number.case, number.plane, energy).exponent for energy in number.energies)
 
 
-def _measure_time_orders(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    return tuple(orders_of_escape_times(frame) for frame in measures.maps(number))
-
-
-_MEASURES: Mapping[Quantity, Callable[[Measures, StatedNumber], tuple[float, ...]]] = MappingProxyType(
+_MEASURES: Mapping[Quantity, Measure] = MappingProxyType(
     {
-        Quantity.ESCAPED_BY: _measure_shares,
-        Quantity.BOUNDED: _measure_shares,
-        Quantity.ESCAPED: _measure_shares,
-        Quantity.DIRECT: _measure_direct,
-        Quantity.CHAOTIC: _measure_chaotic,
-        Quantity.LAST_BOUNDED_ENERGY: _measure_last_bounded,
-        Quantity.MEDIAN_ESCAPE_TIME: _measure_median_time,
-        Quantity.ENERGY_ERROR: _measure_energy_error,
-        Quantity.ACCURATE: _measure_accurate,
-        Quantity.ESCAPE_ENERGY: _measure_escape_energy,
-        Quantity.LYAPUNOV_R2: _measure_lyapunov_r2,
-        Quantity.LAST_ESCAPE: _measure_last_escape,
-        Quantity.NEAREST_ESCAPE: _measure_nearest_escape,
-        Quantity.LARGEST_SHARE_ENERGY: _measure_largest_share_energy,
-        Quantity.IN_BASINS: _measure_in_basins,
-        Quantity.WADA: _measure_wada,
-        Quantity.EXPONENT: _measure_exponent,
-        Quantity.TIME_ORDERS: _measure_time_orders,
+        Quantity.ESCAPED_BY: _shares,
+        Quantity.BOUNDED: _shares,
+        Quantity.ESCAPED: _shares,
+        Quantity.DIRECT: _of_each_map(lambda frame: 100.0 * compute_statistics(frame).direct_share),
+        Quantity.CHAOTIC: _chaotic_shares,
+        Quantity.LAST_BOUNDED_ENERGY: lambda measures, number: (measures.last_bounded(number.case),),
+        Quantity.MEDIAN_ESCAPE_TIME: _of_each_map(lambda frame: compute_statistics(frame).median_escape_time),
+        Quantity.ENERGY_ERROR: _energy_error,
+        Quantity.ACCURATE: _of_each_map(_accurate_share),
+        Quantity.ESCAPE_ENERGY: lambda measures, number: (CASES[number.case].escape_energy,),
+        Quantity.LYAPUNOV_R2: _lyapunov_r2,
+        Quantity.LAST_ESCAPE: _last_escape,
+        Quantity.NEAREST_ESCAPE: _nearest_escape,
+        Quantity.LARGEST_SHARE_ENERGY: _energy_of_largest_share,
+        Quantity.IN_BASINS: _of_each_map(share_in_basins),
+        Quantity.WADA: _of_each_map(share_next_to_all_basins),
+        Quantity.EXPONENT: _exponents,
+        Quantity.TIME_ORDERS: _of_each_map(orders_of_escape_times),
     }
 )

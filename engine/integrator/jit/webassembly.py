@@ -19,7 +19,8 @@ from numba.core.registry import cpu_target
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import write_program
 from engine.integrator.jit.webassembly_object import TARGET, compile_module, target_machine
-from engine.integrator.source.recurrence import ADDED, GeneratedCode, GeneratedFunction, Place
+from engine.integrator.source.generated_functions import ADDED, GeneratedFunction, Place
+from engine.integrator.source.recurrence import GeneratedCode
 from engine.integrator.source.straight_line import TABLE
 
 FUNCTIONS = ("step", "jets", "potential_value", "potential_slopes")

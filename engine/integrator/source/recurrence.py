@@ -25,16 +25,15 @@ from __future__ import annotations
 import functools
 import hashlib
 import math
-from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from engine.expressions.nodes import Expression
 from engine.foundations.arrays import read_only
 from engine.integrator.source.expression_recurrence import structure_of_expression
+from engine.integrator.source.generated_functions import GeneratedFunction, Place, lane_loop, point_function
 from engine.integrator.source.polynomial_recurrence import Terms, structure_of_polynomial
 from engine.integrator.source.series import (
     LONGEST_STEP,
@@ -49,7 +48,7 @@ from engine.integrator.source.series import (
     total,
 )
 from engine.integrator.source.step_flags import OVERSHOOT, flag_gates, flag_hidden_crossings
-from engine.integrator.source.straight_line import TABLE, StraightLine, Value, where
+from engine.integrator.source.straight_line import StraightLine, Value, where
 
 TOLERANCE = 3e-15
 """Norm of the last coefficients of a step's series times the 16th power of the step size."""
@@ -78,44 +77,6 @@ _STRUCTURES = 32
 
 Definition = Terms | Expression
 """What V is: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
-
-
-class Place(NamedTuple):
-    """A number in an array that a kernel takes: ``array[row, column]``, where the column is that of the lane if it is None.
-
-    An array without rows has the row None.
-    """
-
-    array: str
-    row: int | None = None
-    column: int | None = None
-
-    def __str__(self) -> str:
-        column = "i" if self.column is None else self.column
-        return f"{self.array}[{column}]" if self.row is None else f"{self.array}[{self.row}, {column}]"
-
-
-class GeneratedFunction(NamedTuple):
-    """A kernel as Python source, and the straight-line program that it calls by the program's name.
-
-    Attributes
-    ----------
-    name, program, kernel
-        Name of the kernel; its program; its source.
-    arguments
-        Names of its arguments.
-    reads
-        Where the inputs of the program are that are not arguments.
-    writes
-        Where its results go, in order; none for those that the kernel returns.
-    """
-
-    name: str
-    program: StraightLine
-    kernel: str
-    arguments: tuple[str, ...]
-    reads: Mapping[str, Place] = MappingProxyType({})
-    writes: tuple[Place, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,44 +178,6 @@ def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Val
     return end, slope, [(series[0] - (end - rounded)) + (change - rounded)]
 
 
-ADDED = ("crossed", "sums")
-"""Arrays to whose numbers kernels add; they replace those of others."""
-
-
-def _lane_loop(
-    program: StraightLine,
-    arguments: str,
-    reads: Mapping[str, Place],
-    writes: Mapping[Place, Value | str],
-    constants: Mapping[str, Place] | None = None,
-    rows: Sequence[str] = (),
-) -> GeneratedFunction:
-    """A kernel with a loop over lanes that reads inputs from arrays, runs a straight-line program and writes its results.
-
-    reads, constants: where inputs are; writes: values of the program, or source. Constants are read before the
-    loop: read in it, each would be checked for overlap with every array that the loop writes, and beyond some 100 checks nothing
-    is vectorised. rows: the arrays whose rows have the length `LANES`. As this is a constant, the compiler knows that the rows do
-    not overlap; the checks of separate arrays take as long as 16 lanes.
-    """
-    program.results = [value.index for value in writes.values() if isinstance(value, Value)]
-    sources = {place: f"r{value.index}" if isinstance(value, Value) else value for place, value in writes.items()}
-    name = program.name.removeprefix("_")
-    constants = constants or {}
-    lines = [
-        "@kernel",
-        f"def {name}(coefficients, n, {arguments}):",
-        *(f"    if {each}.shape[1] != {LANES}: raise ValueError('{each}: must have {LANES} columns')" for each in rows),
-        *(f"    {each} = {source}" for each, source in {TABLE: "read_table(coefficients)", **constants}.items()),
-        "    for i in range(n):",
-        *(f"        {each} = {place}" for each, place in reads.items()),
-        f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
-        *(f"        {place} {'+=' if place.array in ADDED else '='} {source}" for place, source in sources.items()),
-    ]
-    written = tuple(place for place, value in writes.items() if isinstance(value, Value))
-    names = ("coefficients", "n", *arguments.split(", "))
-    return GeneratedFunction(name, program, "\n".join(lines) + "\n", names, {**constants, **reads}, written)
-
-
 _START = {"x0": Place("x"), "y0": Place("y"), "x1": Place("px"), "y1": Place("py")}
 
 
@@ -285,7 +208,7 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     if remainders:
         reads |= {"x_remainder": Place("now", 6), "y_remainder": Place("now", 7)}
     constants = {name: Place("gates", *place) for name, place in gates.items()}
-    return _lane_loop(program, arguments, reads, writes, constants, rows=("now", "new"))
+    return lane_loop(program, arguments, reads, writes, constants, rows=dict.fromkeys(("now", "new"), LANES))
 
 
 def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
@@ -300,14 +223,14 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
         Place("sums", 1): "weight*(y0*y0)",
         **{Place("state", row): value for row, value in enumerate((x_end, y_end, px_end, py_end))},
     }
-    return _lane_loop(program, "h, weight, state, sums", _start_in("state"), writes, rows=("state", "sums"))
+    return lane_loop(program, "h, weight, state, sums", _start_in("state"), writes, rows=dict.fromkeys(("state", "sums"), LANES))
 
 
 def _jets(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_jets", table)
     orbit = zip("xy", structure.orbit(program), strict=True)
     writes = {Place(f"{name}_jet", k): series[k] for name, series in orbit for k in range(ORDER + 1)}
-    return _lane_loop(program, "x, y, px, py, x_jet, y_jet", _START, writes)
+    return lane_loop(program, "x, y, px, py, x_jet, y_jet", _START, writes)
 
 
 # A deviation vector: inputs of the recurrence, and the arrays of its components.
@@ -332,22 +255,7 @@ def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
     reads = {**_START, **{name: Place(array) for name, array in _VECTOR.items()}, "h": Place("duration")}
     writes = dict(zip(map(Place, _VECTOR.values()), (u_end, v_end, pu_end, pv_end), strict=True))
-    return _lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
-
-
-def _point_function(name: str, append: Callable[[StraightLine], Mapping[str, Value]], table: dict[Any, int]) -> GeneratedFunction:
-    """A function of one point (x, y)."""
-    program = StraightLine(f"_{name}", table)
-    values = append(program)
-    program.results = [value.index for value in values.values()]
-    lines = [
-        "@kernel",
-        f"def {name}(coefficients, x, y):",
-        f"    {TABLE} = read_table(coefficients)",
-        f"    ({', '.join(values)},) = {program.name}({', '.join(program.parameters)})",
-        f"    return {', '.join(values)}",
-    ]
-    return GeneratedFunction(name, program, "\n".join(lines) + "\n", ("coefficients", "x", "y"))
+    return lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
 
 
 def generate_code(
@@ -405,6 +313,6 @@ def _write_code(structure: Structure) -> GeneratedCode:
     table: dict[Any, int] = {}
     functions = [
         *(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent)),
-        *(_point_function(name, append, table) for name, append in structure.point_functions().items()),
+        *(point_function(name, append, table) for name, append in structure.point_functions().items()),
     ]
     return GeneratedCode(tuple(functions), tuple(table), structure)

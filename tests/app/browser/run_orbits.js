@@ -15,9 +15,14 @@ const integrator = new Integrator(system, modules)
 const {tolerance} = system.layout
 const exits = new Exits(integrator, [energy])
 
+function firstFreeByte() {
+  return integrator.temporarily(() => integrator.array("int8", [1]).passed[0])
+}
+
 function preview() {
+  const before = firstFreeByte()
   const {fate, time, crossings} = findAllEnds(integrator, states.flat(), exits, {horizon, tolerance})
-  return {fate: [...fate], time: [...time], crossings: [...crossings]}
+  return {fate: [...fate], time: [...time], crossings: [...crossings], lostBytes: [firstFreeByte() - before]}
 }
 
 function card() {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -55,6 +55,16 @@ def test_a_call_beyond_a_limit_is_refused_and_the_next_one_is_answered(limited: 
         limited(function)  # type: ignore[arg-type]
     assert limited.stopped == before + 1
     assert limited(partial(divmod, 7, 2)) == (3, 1)
+
+
+def test_a_call_that_nobody_waits_for_ends_before_its_limit() -> None:
+    process, abandoned = LimitedProcess(seconds=1000), threading.Event()
+    abandoned.set()
+    with pytest.raises(CancelledError):
+        process(compute_forever, abandoned)
+    assert process.stopped == 0
+    assert process(partial(divmod, 7, 2)) == (3, 1)
+    process.close()
 
 
 def test_calls_share_a_process_which_is_replaced_when_it_ends(limited: LimitedProcess) -> None:

@@ -13,7 +13,7 @@ from app.session.potential_presenter import PotentialPresenter
 from app.state.view_state import ViewState
 from engine import CASES, System
 from engine.jobs.manager import Jobs
-from engine.maps.warmup import prepare_for_maps
+from engine.sweeps.warmup import prepare_for_maps
 from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from tests.app.browser_messages import send

@@ -16,7 +16,7 @@ from app.state.view_state import ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts
 from engine import CASES, Plane, System, compute_flux
 from engine.jobs.manager import Jobs
-from engine.maps.warmup import prepare_for_maps
+from engine.sweeps.warmup import prepare_for_maps
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
 from tests.disc import disc_map

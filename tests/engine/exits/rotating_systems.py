@@ -7,7 +7,7 @@ from functools import cache
 import heyoka as hy
 import numpy as np
 
-from engine import POTENTIALS, Potential, parse_formula
+from engine import POTENTIALS, Potential, System
 
 EARTH_MOON = 1.215058560962404e-2
 """Mass ratio of the catalogue of periodic orbits of the Jet Propulsion Laboratory."""
@@ -19,14 +19,13 @@ def hill() -> Potential:
 
 
 def three_body(mu: float) -> Potential:
-    """The restricted three-body problem with the body of mass μ at the origin, the other one at x = −1; H = −C/2."""
-    larger = f"{1.0 - mu!r}"
-    return parse_formula(f"-{larger}/sqrt((x+1)²+y²) - {mu!r}/r - {larger}*x - {0.5 * (1.0 - mu) ** 2!r}").in_rotating_frame(1.0)
+    """The restricted three-body problem with the body of mass μ at the origin, the other one at x = −1; that of the catalogue."""
+    return System("Earth-Moon", parameters={"m": mu}).potential
 
 
-def at_jacobi_constant(constant: float) -> float:
-    """The energy of the Jacobi constant C = x² + y² + 2(1 − μ)/r1 + 2μ/r2 − v² of the three-body problem."""
-    return -0.5 * constant
+def at_jacobi_constant(constant: float, mu: float = EARTH_MOON) -> float:
+    """The energy of the Jacobi constant C = x² + y² + 2(1 − μ)/r1 + 2μ/r2 − v², with x and y from the centre of mass."""
+    return 0.5 * ((1.0 - mu) ** 2 - constant)
 
 
 def integrate(mu: float | None, start: np.ndarray, times: np.ndarray) -> np.ndarray:

@@ -89,7 +89,7 @@ def test_orbit_of_oterma_is_that_of_a_computer_assisted_proof() -> None:
     wrote, has bounds of the period of the one around L1 among its examples: 3.082119126376508 to 3.082119126392904.
     """
     mu = 0.0009537
-    potential, energy = three_body(mu), at_jacobi_constant(3.03 - mu * (1.0 - mu))
+    potential, energy = three_body(mu), at_jacobi_constant(3.03 - mu * (1.0 - mu), mu)
     period, path = path_of(potential, energy, L1)
     assert 3.082119126376508 < period < 3.082119126392904
     assert np.abs(crossings_of(mu, period, path)[0] + 1.0 - mu - 0.9208034913207400196).min() < 1e-11

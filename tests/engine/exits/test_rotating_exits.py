@@ -11,7 +11,7 @@ from engine.exits.exit_shapes import line_points
 from engine.exits.exit_tables import LARGEST_ERROR, tabulate_exits
 from engine.integrator.kernels.events import exit_distance
 from engine.systems.outcomes import Centre
-from tests.engine.exits.rotating_systems import EARTH_MOON, hill, integrate, three_body
+from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 
 HILL_ENERGIES = (-2.16, -1.5)
 each_energy = pytest.mark.parametrize("energy", HILL_ENERGIES)
@@ -55,7 +55,7 @@ def test_the_line_beyond_a_neck_that_has_opened_is_refused() -> None:
     with pytest.raises(
         ValueError, match="the line at the outer edge of the Lyapunov orbit across channel 2 does not end on the wa"
     ):
-        find_lyapunov_orbits(three_body(EARTH_MOON), -1.51)
+        find_lyapunov_orbits(three_body(EARTH_MOON), at_jacobi_constant(3.02))
 
 
 def test_orbits_and_lines_have_the_units_of_the_potential() -> None:

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, EscapeMap, Execution, Fate, MapSpec, Plane, compute_map
-from engine.maps.compute import LARGEST_RUN
+from engine.maps.compute import LARGEST_RUN, BlockStack, row_blocks
 from engine.maps.result import PIXEL_ARRAYS
-from engine.maps.row_blocks import BlockStack
 from engine.maps.stages import run_stages
 
 SPECS = [
@@ -71,3 +70,13 @@ def test_what_is_given_beside_an_execution_replaces_its_fields() -> None:
     assert not result.complete
     assert compute_map(SPECS[0], execution=Execution(on_progress=shares.append)).complete
     assert shares[-1] == 1.0
+
+
+@pytest.mark.parametrize("max_pixels", [1, 150])
+@pytest.mark.parametrize("rows", [30, 31])
+def test_blocks_contain_each_row_once_with_its_mirror_image(rows: int, max_pixels: int) -> None:
+    blocks = list(row_blocks(MapSpec(CASES["III"], Plane.X_PX, 0.4, (30, rows)), max_pixels))
+    np.testing.assert_array_equal(np.sort(np.concatenate(blocks)), np.arange(rows))
+    for block in blocks:
+        assert block.size <= max(max_pixels // 30, 2)
+        np.testing.assert_array_equal(block, np.sort(rows - 1 - block))

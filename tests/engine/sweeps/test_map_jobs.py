@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -22,7 +23,7 @@ def sweep_along(system: System, name: str) -> SweepSpec:
     return SweepSpec(system.potential, Plane.X_PX, (0.9, 1.1), (16, 16), t_max=50.0, measures=("shares",), along=axis, energy=0.2)
 
 
-def refuse(call: Callable[[], Any]) -> Any:
+def refuse(call: Callable[[], Any], cancel: threading.Event) -> Any:
     raise ValueError("beyond its limits")
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from engine import CASES, Fate, MapSpec, Plane, compute_lagrangian_descriptor, compute_map
+from engine import CASES, Fate, MapSpec, Plane, Potential, compute_lagrangian_descriptor, compute_map
+from engine.maps.descriptors import DEFAULT_DURATION
 from plots.layers.descriptors import DESCRIPTORS
 from plots.layers.picture import ShownMap
 from plots.layers.table import map_legend
@@ -25,6 +27,14 @@ def test_codes_rise_with_the_descriptor_and_other_pixels_have_those_of_their_fat
     assert codes[frame.interior].min() == FIRST_CLASS
     for fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
         assert set(codes[frame.fate == fate]) == {list(OUTCOMES).index(fate)}
+
+
+def test_the_duration_counts_in_units_of_time_of_the_well() -> None:
+    slow = Potential("slow", tuple((i, j, 0.25 * c) for i, j, c in CASES["II"].terms))
+    assert slow.units.time == pytest.approx(2.0)
+    job = DESCRIPTORS.job(MapSpec(slow, Plane.X_Y, 0.06, (8, 8), t_max=40.0), {})
+    assert job is not None
+    assert dict(job.options)["duration"] == pytest.approx(2.0 * DEFAULT_DURATION)
 
 
 def test_the_legend_has_the_scale_of_the_result() -> None:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, Regularity, compute_map, compute_regularity
 from engine.results import RegularityMap
 from plots.layers.map_images import layer_columns, result_columns
+from plots.layers.picture import ShownMap
 from plots.layers.regularity import CODES, REGULARITY
+from plots.layers.table import map_legend
 from plots.pictures.palette import PAPER
 
 
@@ -31,6 +35,17 @@ def test_regular_and_chaotic_orbits_have_different_colours() -> None:
         assert character in regularity.character
         assert set(colours[regularity.character == character]) == {colour_of(character)}
     assert set(colours[whole.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
+
+
+def test_the_legend_has_orbits_that_are_not_judged_while_there_may_be_some() -> None:
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (8, 8), t_max=20.0))
+    found = compute_regularity(frame)
+    labels = []
+    for result in (None, replace(found, complete=False), found):
+        legend = map_legend("characters", ShownMap.of(frame, PAPER, {} if result is None else {"judge": result}))
+        labels.append([entry.label for entry in legend.entries])
+    (unjudged,) = {code.entry(PAPER).label for code in CODES if code.code is Regularity.NOT_JUDGED}
+    assert [unjudged in each for each in labels] == [True, True, False]
 
 
 def test_tori_are_regular() -> None:

@@ -46,7 +46,9 @@ def draw_curves(format: FigureFormat, style: FigureStyle) -> bytes:
     return curves_figure_bytes(sweep, format, style)
 
 
-@pytest.fixture(params=["maps", *(pytest.param(each, marks=pytest.mark.slow) for each in (draw_orbits, draw_curves))])
+@pytest.fixture(
+    scope="module", params=["maps", *(pytest.param(each, marks=pytest.mark.slow) for each in (draw_orbits, draw_curves))]
+)
 def draw(request: pytest.FixtureRequest, escape_map: EscapeMap) -> Draw:
     """A function that draws one of the figures."""
     if callable(request.param):
@@ -54,29 +56,35 @@ def draw(request: pytest.FixtureRequest, escape_map: EscapeMap) -> Draw:
     return lambda format, style: map_figure_bytes(escape_map, ["basins", "times"], PAPER, format, style)
 
 
+@pytest.fixture(scope="module")
+def narrow(draw: Draw) -> dict[FigureFormat, bytes]:
+    """A narrow figure in each format."""
+    return {format: draw(format, NARROW) for format in FigureFormat}
+
+
 @pytest.mark.parametrize("format", FigureFormat)
-def test_files_are_the_same_each_time(format: FigureFormat, draw: Draw) -> None:
-    assert draw(format, NARROW) == draw(format, NARROW)
+def test_files_are_the_same_each_time(format: FigureFormat, draw: Draw, narrow: dict[FigureFormat, bytes]) -> None:
+    assert draw(format, NARROW) == narrow[format]
 
 
-def test_files_have_the_given_width(draw: Draw) -> None:
-    with Image.open(BytesIO(draw(FigureFormat.PNG, NARROW))) as image:
+def test_files_have_the_given_width(narrow: dict[FigureFormat, bytes]) -> None:
+    with Image.open(BytesIO(narrow[FigureFormat.PNG])) as image:
         assert image.width == int(8.5 / CM_PER_INCH * 100.0)
         assert image.info["dpi"] == pytest.approx((100.0, 100.0), abs=0.1)
-    points = re.search(rb'<svg [^>]*width="([0-9.]+)pt"', draw(FigureFormat.SVG, NARROW))
+    points = re.search(rb'<svg [^>]*width="([0-9.]+)pt"', narrow[FigureFormat.SVG])
     assert points is not None
     assert float(points[1]) == pytest.approx(8.5 / CM_PER_INCH * 72.0, abs=1e-3)
-    box = re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", draw(FigureFormat.PDF, NARROW))
+    box = re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", narrow[FigureFormat.PDF])
     assert box is not None
     assert float(box[1]) == pytest.approx(8.5 / CM_PER_INCH * 72.0, abs=1e-3)
 
 
-def test_text_stays_text_in_svg_files_and_nothing_has_a_date(draw: Draw) -> None:
-    svg = draw(FigureFormat.SVG, FigureStyle()).decode()
+def test_text_stays_text_in_svg_files_and_nothing_has_a_date(narrow: dict[FigureFormat, bytes]) -> None:
+    svg = narrow[FigureFormat.SVG].decode()
     assert svg.count("<text") > 10
     assert "STIXGeneral" in svg
     assert "dc:date" not in svg
-    assert b"CreationDate" not in draw(FigureFormat.PDF, NARROW)
+    assert b"CreationDate" not in narrow[FigureFormat.PDF]
 
 
 def test_pixels_of_a_map_are_embedded_as_they_are(escape_map: EscapeMap) -> None:

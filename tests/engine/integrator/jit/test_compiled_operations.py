@@ -20,7 +20,7 @@ from engine.integrator.source.recurrence import generate_code
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
-from engine.maps.warmup import reserve_catalogue
+from engine.sweeps.warmup import reserve_catalogue
 from tests.engine.jobs.inbox import Inbox
 
 MOST = 1000

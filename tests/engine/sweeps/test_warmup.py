@@ -7,7 +7,7 @@ import threading
 from engine import Potential
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.compiled_operations import compiled_operations
-from engine.maps.warmup import (
+from engine.sweeps.warmup import (
     _Compilations,
     is_ready_for_maps,
     prepare_for_analyses,

@@ -1,0 +1,148 @@
+"""Smooth curves through the passages of the orbits of a tube: how far apart their points are, and where there must be more."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.slices.window import Window
+
+SPACING = 1 / 200
+"""Largest distance between neighbouring points as a share of the window's side, before straight parts are thinned."""
+
+# Curves in a window extend beyond its edges by this share of its sides.
+_WINDOW_MARGIN = 0.1
+
+# Largest distance of a point from the chord of its neighbours, and how much of it thinning may remove, as shares of the spacing.
+_MAX_SAGITTA, _THINNING_TOLERANCE = 0.05, 0.025
+# Largest difference in passage time between neighbouring points of an arc.
+_MAX_TIME_GAP = 0.3
+# Orbits of a tube have phases from 0 to 1: the number of first intervals, and the smallest widths to which intervals are refined,
+# each for all images before the next. Below the last width rounding errors of the start states are visible.
+_FIRST_INTERVALS = 512
+_MIN_WIDTHS = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+_MAX_PARTS = 8
+
+
+@dataclass(frozen=True)
+class PointSpacing:
+    """Largest distance between neighbouring points: `fine` in the window that is drawn, `coarse` elsewhere.
+
+    The window is given by its `low` and `high` corners on the plane of the unstable manifold, where px has the opposite sign;
+    None for the whole plane.
+    """
+
+    coarse: float
+    fine: float
+    low: np.ndarray | None = None
+    high: np.ndarray | None = None
+
+    @classmethod
+    def for_window(cls, whole: Window, window: Window | None) -> PointSpacing:
+        """The spacing for the whole interior, or for a window in it, both on the plane of the stable manifold."""
+        coarse = SPACING * (whole.x_high - whole.x_low)
+        if window is None:
+            return cls(coarse, coarse)
+        low, high = np.array([[window.x_low, -window.ordinate_high], [window.x_high, -window.ordinate_low]])
+        sides = high - low
+        fine = min(coarse, SPACING * float(sides.max()))
+        return cls(coarse, fine, low - _WINDOW_MARGIN * sides, high + _WINDOW_MARGIN * sides)
+
+    def between(self, points: np.ndarray) -> np.ndarray:
+        """(n − 1,) largest distance allowed between neighbours of the points (n, 2)."""
+        if self.low is None or self.high is None:
+            return np.full(len(points) - 1, self.fine)
+        # Between two points, a curve may bulge by as much as their distance.
+        distance = np.abs(np.diff(points, axis=0)).max(axis=1)[:, None]
+        start, end = points[:-1], points[1:]
+        near = (np.minimum(end, start) - distance <= self.high) & (np.maximum(end, start) + distance >= self.low)
+        spacing: np.ndarray = np.where(near.all(axis=1), self.fine, self.coarse)
+        return spacing
+
+    def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
+        """The (m, 2) lines of a piece within the window, without points that their neighbours imply."""
+        import shapely
+
+        line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
+        if self.low is not None and self.high is not None:
+            line = shapely.clip_by_rect(line, *self.low, *self.high)
+        yield from (shapely.get_coordinates(part) for part in shapely.get_parts(line) if not part.is_empty)
+
+
+def refine_passages(
+    find_passages: Callable[[np.ndarray], np.ndarray], count: int, spacing: PointSpacing, max_orbits: int
+) -> np.ndarray:
+    """(n, count, 3) passages of orbits of rising phase, refined until curves are smooth or `max_orbits` have been added."""
+    phases = np.linspace(0.0, 1.0, _FIRST_INTERVALS + 1)
+    passages = find_passages(phases)
+    for min_width, passage in itertools.product(_MIN_WIDTHS, range(count)):
+        while True:
+            width = np.diff(phases)
+            parts = _affordable(_parts_needed(passages[:, passage], spacing), width, min_width, max_orbits)
+            if parts.max() == 1:
+                break
+            interval, new = _subdivide(phases, width, parts)
+            phases = np.insert(phases, interval + 1, new)
+            passages = np.insert(passages, interval + 1, find_passages(new), axis=0)
+            max_orbits -= new.size
+    return passages
+
+
+def _subdivide(phases: np.ndarray, width: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For each new phase, the interval it lies in and its value, when intervals are split into equal `parts` (n,)."""
+    interval = np.repeat(np.arange(parts.size), parts - 1)
+    position = np.arange(interval.size) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1) + 1
+    return interval, phases[interval] + width[interval] * position / parts[interval]
+
+
+def _affordable(parts: np.ndarray, width: np.ndarray, min_width: float, max_orbits: int) -> np.ndarray:
+    """Limit `parts` (n,) so that no part is narrower than `min_width` and at most `max_orbits` are added, widest first."""
+    parts = np.minimum(parts, np.maximum(width / min_width, 1.0)).astype(int)
+    widest_first = np.argsort(-width, kind="stable")
+    parts[widest_first[np.cumsum(parts[widest_first] - 1) > max_orbits]] = 1
+    return parts
+
+
+def _parts_needed(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
+    """(n − 1,) number of parts into which to split the intervals between neighbours of (n, 3) x, px, time; 1 to keep one."""
+    allowed = spacing.between(points[:, :2])
+    exists = np.isfinite(points[:, 0])
+    step = np.diff(points, axis=0)
+    length = np.hypot(step[:, 0], step[:, 1])
+    parts = np.ceil(np.maximum(length / allowed, np.abs(step[:, 2]) / _MAX_TIME_GAP))
+    parts = np.where(np.isnan(parts), np.where(exists[1:] != exists[:-1], _MAX_PARTS, 1), np.maximum(parts, 1))
+    sharp = _sagitta(step[:, :2], length) > _MAX_SAGITTA * np.minimum(allowed[1:], allowed[:-1])
+    parts[:-1][sharp] = np.maximum(parts[:-1][sharp], 2)
+    parts[1:][sharp] = np.maximum(parts[1:][sharp], 2)
+    return np.minimum(parts, _MAX_PARTS)
+
+
+def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """Distance of each inner point from the chord of its neighbours; where the curve reverses, from the farther neighbour.
+
+    step, length: (n − 1, 2) and (n − 1,) differences between neighbouring points and their lengths; NaN distances become 0.
+    """
+    before, after = step[:-1], step[1:]
+    area = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+    chord = np.maximum(np.hypot(*(before + after).T), np.finfo(float).tiny)
+    ahead = np.sum(before * after, axis=1) > 0.0
+    sagitta: np.ndarray = np.where(ahead, area / chord, np.maximum(length[:-1], length[1:]))
+    return np.where(np.isnan(area), 0.0, sagitta)
+
+
+def split_curve(curve: np.ndarray, spacing: PointSpacing, closed: bool) -> list[np.ndarray]:
+    """The (m, 2) pieces, m ≥ 2, of a curve (n, 3) between its gaps; on a closed curve the last piece is joined to the first."""
+    step = np.diff(curve, axis=0)
+    short = np.hypot(step[:, 0], step[:, 1]) <= 2.0 * spacing.between(curve[:, :2])
+    joined = short & (np.abs(step[:, 2]) <= 2.0 * _MAX_TIME_GAP)
+    edges = np.concatenate([[0], np.flatnonzero(~joined) + 1, [len(curve)]])
+    runs = [(begin, end) for begin, end in itertools.pairwise(edges) if end - begin > 1]
+    pieces = [curve[begin:end, :2] for begin, end in runs]
+    if closed and runs and runs[0][0] == 0 and runs[-1][1] == len(curve):
+        # The first and the last orbit of a closed curve are the same.
+        last = pieces.pop()
+        pieces[:1] = [np.concatenate([last[:-1], pieces[0] if pieces else last[:1]])]
+    return pieces
