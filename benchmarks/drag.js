@@ -3,6 +3,10 @@
 
 const frame = () => new Promise(requestAnimationFrame)
 
+/** The player of many orbits. @returns {any} */
+const findPlayer = () =>
+  [...Bokeh.documents[0]._all_models.values()].find(model => model.data?.attributes && "seed" in model.data.attributes)
+
 /** @type {Map<number, number>} */
 const moved = new Map()
 /** @type {number[]} */
@@ -48,6 +52,9 @@ function findAll(root, selector) {
 }
 
 const bench = {
+  /** The slider of the energy. */
+  rail: () => /** @type {HTMLInputElement} */ (findAll(document, 'input[type=range][aria-label^="Energy h"]')[0]),
+
   /** Wait until the engine shows pixels. */
   async ready() {
     let energy = 0.26
@@ -72,14 +79,46 @@ const bench = {
     moved.clear()
     sent = 0
     const begin = performance.now()
+    let frames = 0
     for (let share = 0; share < 1; share = (performance.now() - begin) / (1000 * seconds)) {
       const energy = Number((low + (high - low) * Math.abs(1 - ((share * seconds) % 2))).toFixed(3))
       rail.value = String(energy)
       moved.set(energy, performance.now())
       rail.dispatchEvent(new Event("input"))
       await frame()
+      frames++
     }
-    return {delays: [...delays], sides: [...sides], sent}
+    return {delays: [...delays], sides: [...sides], frames, sent}
+  },
+
+  /**
+   * Draw other starts of an ensemble some times, and follow it for some seconds; returns the ms of the former, each with the first
+   * picture, and the ms between the frames of the latter.
+   *
+   * @param {number} repeats
+   * @param {number} seconds
+   */
+  async watch(repeats, seconds) {
+    const {data} = findPlayer()
+    const starts = []
+    for (let seed = 100; seed < 100 + repeats; seed++) {
+      const begin = performance.now()
+      data.setv({seed}, {sync: false})
+      starts.push(performance.now() - begin)
+      await frame()
+    }
+    const play = /** @type {HTMLElement} */ (findAll(document, "button.play[aria-pressed]")[0])
+    play.click()
+    const frames = []
+    const begin = performance.now()
+    for (let last = begin; last - begin < 1000 * seconds;) {
+      await frame()
+      const now = performance.now()
+      frames.push(now - last)
+      last = now
+    }
+    play.click()
+    return {starts, frames}
   },
 
   /**

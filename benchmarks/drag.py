@@ -21,13 +21,14 @@ VIEWS = (("I", 0.19), ("III", 0.45), ("III", 0.30))
 SPAN = 0.06
 DRAG_SECONDS = 4.0
 HOVERS = 60
+ENSEMBLES, REPEATS = (1000, 5000, 20000), 10
 MEMORY_SAMPLES = 5
 SCRIPT = Path(__file__).with_name("drag.js")
 
 
-def ready_page(browser: Browser, address: str, case: str, energy: float) -> ExplorerPage:
+def ready_page(browser: Browser, address: str, case: str, energy: float, more: str = "") -> ExplorerPage:
     """A page whose browser has the system of the view."""
-    explorer = open_page(browser, address, f"?case={case}&h={energy}&t_max=1000")
+    explorer = open_page(browser, address, f"?case={case}&h={energy}&t_max=1000{more}")
     explorer.page.evaluate(f"async () => {{ {SCRIPT.read_text()}; window.bench = bench }}")
     explorer.page.evaluate("() => window.bench.ready()")
     return explorer
@@ -44,15 +45,19 @@ def drag(explorer: ExplorerPage, energy: float, seconds: float) -> dict[str, Any
 
 def report_drags(browser: Browser, address: str) -> None:
     """Frames per second, and time from a move of the slider to its pixels."""
-    print("| view | frames per second | ms from move to pixels: median, 95 %, worst | side in pixels: least, median | messages |")
-    print("|---|---|---|---|---|")
+    print(
+        "| view | pictures per second | frames per second | ms from move to pixels: median, 95 %, worst |"
+        " side in pixels: least, median | messages |"
+    )
+    print("|---|---|---|---|---|---|")
     for case, energy in VIEWS:
         explorer = ready_page(browser, address, case, energy)
         drag(explorer, energy, 2.0)
         found = drag(explorer, energy, DRAG_SECONDS)
         delays, sides = sorted(found["delays"]), found["sides"]
         print(
-            f"| {case}, h = {energy} | {len(sides) / DRAG_SECONDS:.0f} | {statistics.median(delays):.0f},"
+            f"| {case}, h = {energy} | {len(sides) / DRAG_SECONDS:.0f} | {found['frames'] / DRAG_SECONDS:.0f} |"
+            f" {statistics.median(delays):.0f},"
             f" {delays[int(0.95 * len(delays))]:.0f}, {delays[-1]:.0f} | {min(sides)}, {statistics.median(sides):.0f} |"
             f" {found['sent']} |",
             flush=True,
@@ -67,6 +72,22 @@ def report_hover(browser: Browser, address: str) -> None:
     times = explorer.page.evaluate("points => window.bench.hover(points)", points)
     print(f"\nOrbit under the cursor, III: {statistics.median(times):.1f} ms, at most {max(times):.1f} ms")
     explorer.page.context.close()
+
+
+def report_watch(browser: Browser, address: str) -> None:
+    """Time of the first picture of new orbits, and frames per second while they leave."""
+    print("\n| orbits | ms to the first picture: median, worst | frames per second | ms of a frame: median, worst |")
+    print("|---|---|---|---|")
+    for count in ENSEMBLES:
+        explorer = ready_page(browser, address, "III", 0.45, f"&analysis=watch&watch=well,{count},1,-2")
+        found = explorer.page.evaluate("options => window.bench.watch(...options)", [REPEATS, DRAG_SECONDS])
+        starts, frames = found["starts"], found["frames"]
+        print(
+            f"| {count} | {statistics.median(starts):.0f}, {max(starts):.0f} | {len(frames) / DRAG_SECONDS:.0f} |"
+            f" {statistics.median(frames):.0f}, {max(frames):.0f} |",
+            flush=True,
+        )
+        explorer.page.context.close()
 
 
 def report_memory(browser: Browser, address: str, minutes: float) -> None:
@@ -96,6 +117,7 @@ def main() -> None:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         report_drags(browser, address)
         report_hover(browser, address)
+        report_watch(browser, address)
         if minutes:
             report_memory(browser, address, minutes)
         browser.close()

@@ -5,19 +5,21 @@ What the browser computes by itself is measured by `benchmarks.drag`. Run: uv ru
 
 from __future__ import annotations
 
+import argparse
 import shutil
 import statistics
 import tempfile
 import time
 import urllib.request
 from collections.abc import Callable
+from dataclasses import astuple, dataclass
 from pathlib import Path
 
-from playwright.sync_api import Browser, WebSocket, sync_playwright
+from playwright.sync_api import Browser, Page, WebSocket, sync_playwright
 
 from benchmarks.load import resident_megabytes
 from tests.browser.explorer_page import ExplorerPage
-from tests.browser.served_app import served_app
+from tests.browser.served_app import PANEL, served_app, started_app
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-headless-shell")
 SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
@@ -69,6 +71,7 @@ def zoom_box(explorer: ExplorerPage, share: float) -> None:
 
 
 OPENINGS = 11
+LONGEST_OPENING_MS = 120_000
 ELEMENTS = """() => {
     let count = 0
     const walk = root => {
@@ -80,34 +83,72 @@ ELEMENTS = """() => {
     walk(document)
     return count
 }"""
-# Until the document has come, and the second animation frame after the first pixels.
-PAINTED = """() => {
-    const source = window.Bokeh?.documents[0]?.get_model_by_name('maps')
-    return source?.data.fate?.[0]?.shape[0] > 1
-}"""
+# Until the first pixels have come, or all of them.
+FIRST_PIXELS, ALL_PIXELS = (
+    f"() => {{ const data = window.Bokeh?.documents[0]?.get_model_by_name('maps')?.data; return {condition} }}"
+    for condition in ("data?.fate?.[0]?.shape[0] > 1", "data?.complete?.[0] === true")
+)
 TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
 def report_opening(browser: Browser, address: str) -> None:
     """Navigation to the first map, first with an empty browser cache and then with a full one; the server's answer alone."""
     context = browser.new_context(viewport={"width": 1600, "height": 1000})
-    maps = []
+    openings = []
     for _ in range(OPENINGS):
         page = context.new_page()
-        begin = time.perf_counter()
-        page.goto(address)
-        page.wait_for_function(PAINTED, polling=20)
-        page.evaluate(TWO_FRAMES)
-        maps.append(time.perf_counter() - begin)
+        openings.append(open_once(page, address))
         size = page.evaluate("() => Bokeh.documents[0]._all_models.size"), page.evaluate(ELEMENTS)
         page.close()
     context.close()
     answers = [seconds_to_answer(address) for _ in range(OPENINGS)]
+    print("| opening | first pixels, s | complete map, s | transferred, MB |\n|---|---|---|---|")
+    print(f"| empty browser cache | {openings[0]} |")
+    warm = [statistics.median(column) for column in zip(*map(astuple, openings[1:]), strict=True)]
+    print(f"| full browser cache, median of {OPENINGS - 1} | {Opening(*warm)} |")
+    print(f"\n{size[0]} models, {size[1]} elements. The server's answer, without a browser: {statistics.median(answers):.2f} s.")
     print(
-        f"Opening the page, {OPENINGS - 1} times: first map after {statistics.median(maps[1:]):.2f} s;"
-        f" with an empty browser cache {maps[0]:.2f} s. {size[0]} models, {size[1]} elements."
+        f"On a fresh server, which still prepares its kernels, as its first visitor: {open_fresh_server(browser)}.\n", flush=True
     )
-    print(f"The server's answer, without a browser: {statistics.median(answers):.2f} s.\n", flush=True)
+
+
+@dataclass(frozen=True)
+class Opening:
+    """Seconds from navigation to the first pixels and to the complete map, and bytes from the server until then."""
+
+    first: float
+    whole: float
+    received: float
+
+    def __str__(self) -> str:
+        return f"{self.first:.2f} | {self.whole:.2f} | {self.received / 1e6:.2f}"
+
+
+def open_once(page: Page, address: str) -> Opening:
+    """Open the page, and wait until the complete map is on the screen."""
+    session, received = page.context.new_cdp_session(page), list[float]()
+    session.send("Network.enable")
+    session.on("Network.loadingFinished", lambda event: received.append(event["encodedDataLength"]))
+    session.on("Network.webSocketFrameReceived", lambda event: received.append(len(event["response"]["payloadData"])))
+    begin, times = time.perf_counter(), list[float]()
+    page.goto(address)
+    for condition in (FIRST_PIXELS, ALL_PIXELS):
+        page.wait_for_function(condition, polling=20, timeout=LONGEST_OPENING_MS)
+        page.evaluate(TWO_FRAMES)
+        times.append(time.perf_counter() - begin)
+    return Opening(*times, sum(received))
+
+
+def open_fresh_server(browser: Browser) -> str:
+    """How long the first visitor of a server waits whose kernels are in the cache, and are being loaded."""
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.perf_counter()
+        with started_app(Path(folder) / "log", *PANEL) as running:
+            listening = time.perf_counter() - begin
+            context = browser.new_context(viewport={"width": 1600, "height": 1000})
+            opening = open_once(context.new_page(), running.address)
+            context.close()
+    return f"complete map {opening.whole:.2f} s after navigation, which begins {listening:.2f} s after the start"
 
 
 def seconds_to_answer(address: str) -> float:
@@ -215,15 +256,27 @@ def server_process(address: str) -> int:
     raise LookupError(f"no server at port {port}")
 
 
+REPORTS: dict[str, Callable[[Browser, str], None]] = {
+    "opening": report_opening,
+    "typing": report_typing,
+    "latency": report_latency,
+    "bytes": report_bytes,
+    "memory": report_memory,
+}
+
+
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", choices=REPORTS, nargs="*", default=list(REPORTS), help="what to measure")
+    chosen = parser.parse_args().only
     with (
         tempfile.TemporaryDirectory() as folder,
         served_app(Path(folder) / "log") as address,
         sync_playwright() as playwright,
     ):
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        for report in (report_opening, report_typing, report_latency, report_bytes, report_memory):
-            report(browser, address)
+        for name in chosen:
+            REPORTS[name](browser, address)
         browser.close()
 
 

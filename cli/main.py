@@ -34,7 +34,7 @@ class _Command(TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the words with the arguments at the end, after two minuses."""
-        values = {name: self._count_values(option) for option in self.params for name in option.opts}
+        values = {name: _count_values(option) for option in self.params for name in option.opts}
         words, rest, arguments = deque(args), list[str](), list[str]()
         while words and words[0] != "--":
             word = words.popleft()
@@ -47,20 +47,28 @@ class _Command(TyperCommand):
         return super().parse_args(ctx, [*rest, "--", *arguments, *list(words)[1:]])
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Return the parameters; help shows those without a value without the type of one."""
-        params: list[Any] = super().get_params(ctx)
-        for option in params:
-            if self._count_values(option) == 0:
-                option.metavar = ""
-        return params
+        """Return the parameters, as help shows them."""
+        return _without_types_of_flags(super().get_params(ctx))
 
-    @staticmethod
-    def _count_values(option: Any) -> int:
-        return 0 if getattr(option, "is_flag", False) else int(option.nargs)
+
+def _count_values(option: Any) -> int:
+    return 0 if getattr(option, "is_flag", False) else int(option.nargs)
+
+
+def _without_types_of_flags(params: list[Any]) -> list[Any]:
+    """Return parameters of which those without a value are shown without the type of one."""
+    for option in params:
+        if _count_values(option) == 0:
+            option.metavar = ""
+    return params
 
 
 class _Commands(TyperGroup):
     """Commands that are known by name and summary, until one of them runs."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Return the parameters, as help shows them."""
+        return _without_types_of_flags(super().get_params(ctx))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the name, the imported command and its words."""

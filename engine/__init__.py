@@ -41,7 +41,6 @@ from engine.measures.exit_matching import compute_exit_matching as compute_exit_
 from engine.measures.islands import compute_islands as compute_islands
 from engine.measures.measure import Measure as Measure
 from engine.measures.wada import compute_wada_test as compute_wada_test
-from engine.periodic.stable_manifolds import find_stable_manifolds as find_stable_manifolds
 from engine.propagation.classification import classify_orbits as classify_orbits
 from engine.propagation.evidence import Evidence as Evidence
 from engine.propagation.fates import Fate as Fate
@@ -76,6 +75,7 @@ from engine.trajectories.nearest_divergent_start import find_divergent_start as 
 from engine.trajectories.orbit_verdicts import judge_orbit as judge_orbit
 from engine.trajectories.sampled_orbits import sample_orbits as sample_orbits
 from engine.trajectories.separation import compute_separation as compute_separation
+from engine.trajectories.stable_manifolds import find_stable_manifolds as find_stable_manifolds
 from engine.trajectories.trajectory import Orbit as Orbit
 from engine.trajectories.trajectory import integrate_orbit as integrate_orbit
 

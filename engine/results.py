@@ -15,7 +15,6 @@ from engine.measures.exit_matching import ExitMatching as ExitMatching
 from engine.measures.islands import Islands as Islands
 from engine.measures.power_law_fit import UncertaintyExponent as UncertaintyExponent
 from engine.measures.wada import WadaTest as WadaTest
-from engine.periodic.stable_manifolds import StableManifolds as StableManifolds
 from engine.propagation.classification import Outcomes as Outcomes
 from engine.sweeps.sweep import Sweep as Sweep
 from engine.systems.review.potential_review import PotentialReview as PotentialReview
@@ -25,6 +24,7 @@ from engine.trajectories.nearest_divergent_start import DivergentStart as Diverg
 from engine.trajectories.orbit_verdicts import OrbitVerdict as OrbitVerdict
 from engine.trajectories.sampled_orbits import SampledOrbits as SampledOrbits
 from engine.trajectories.separation import Separation as Separation
+from engine.trajectories.stable_manifolds import StableManifolds as StableManifolds
 
 if not typing.TYPE_CHECKING:
     __all__ = sorted(name for name in vars() if name[0].isupper())

@@ -13,10 +13,11 @@ from __future__ import annotations
 from typing import Any
 
 from panel.io.server import DocHandler, RootHandler, WSHandler
-from tornado.web import HTTPError
+from tornado.web import HTTPError, StaticFileHandler
 
 from app.browser.module_files import ROUTES as MODULES
 from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
+from app.server.compressed_files import CompressedFiles
 from app.server.endpoints import ROUTES
 from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
@@ -66,9 +67,10 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
 
 
 def _secured(handler: type) -> type:
-    """The same handler with security headers."""
+    """The same handler with security headers; files are compressed."""
     # Bokeh recognises the root handler by identity.
     if handler is RootHandler or issubclass(handler, SecurityHeaders):
         return handler
     replaced = {DocHandler: PageHandler, WSHandler: PageWebSocket}
-    return replaced.get(handler) or type(f"Secured{handler.__name__}", (SecurityHeaders, handler), {})
+    mixins = (SecurityHeaders, CompressedFiles) if issubclass(handler, StaticFileHandler) else (SecurityHeaders,)
+    return replaced.get(handler) or type(f"Secured{handler.__name__}", (*mixins, handler), {})

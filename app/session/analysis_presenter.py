@@ -18,7 +18,7 @@ from app.views.analysis.basin_measures import TOLD, BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
-from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, SweepSpec, Window
+from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, SweepSpec
 from engine.jobs.job import Job
 from engine.results import Sweep
 from engine.slices.planes import SECTION
@@ -29,7 +29,6 @@ from engine.sweeps.warmup import is_ready_for_maps
 from plots.layers.layer import Layer
 from plots.layers.map_analyses import NO_ANALYSES
 from plots.layers.table import LAYERS
-from plots.pictures.palette import Palette
 
 # Columns and rows of the maps of a sweep.
 _SIDES = (112, 112)
@@ -48,13 +47,13 @@ class AnalysisPresenter:
         self._found: dict[str, tuple[EscapeMap, Any, Job[Any]]] = {}
         self._notes: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
-        self.measures = BasinMeasuresView(self._measure, context.copy, lambda: state.param.update(box=None))
-        self.curves = CurvesView(self._sweep, self._open_value, context.latest)
+        self.measures = BasinMeasuresView(state, self._measure, context.copy)
+        self.curves = CurvesView(state, self._sweep, self._open_value, context.latest)
         self._measuring = {
             name: LatestRequest(jobs, partial(self._show_slow, name), partial(self.measures.say, name), locked)
             for name in self.measures.buttons
         }
-        state.follow(self._follow_box, "box")
+        state.param.watch(lambda event: self._stop_measuring_box(), "box")
         self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
         self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), self._fail, locked)
         self._connect()
@@ -88,11 +87,6 @@ class AnalysisPresenter:
         self.note(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
 
-    def set_palette(self, palette: Palette) -> None:
-        """Change the colours."""
-        self._maps.overlays.set_palette(palette)
-        self.curves.set_palette(palette)
-
     def close(self) -> None:
         """Cancel all requests at the end of the session."""
         self._follow_ups.follow(None)
@@ -100,16 +94,14 @@ class AnalysisPresenter:
         self._sweeping.cancel()
 
     def _connect(self) -> None:
-        watch, state = self._state.param.watch, self._state
+        watch = self._state.param.watch
         self._results.param.watch(lambda event: self._follow_map(), "frame")
         watch(lambda *events: self._show_pictures(), ["layers", "compared"])
         watch(self._switch_layers, "layers")
         watch(lambda event: self._select(), "settings")
-        self._state.follow(self.curves.follow_energy, "energy")
         watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
-        watch(lambda *events: self._follow_system(), "system")
+        watch(lambda *events: self._show_curves(None), "system")
         self._show_pictures()
-        self.curves.follow_system(state.system)
 
     def _layer(self, layer: Layer) -> FollowUp:
         """The analysis of a layer, requested while it is on."""
@@ -214,16 +206,11 @@ class AnalysisPresenter:
         for request in self._measuring.values():
             request.cancel()
 
-    def _follow_box(self, box: Window | None) -> None:
-        """Show the box, and stop slow measures of its starts."""
+    def _stop_measuring_box(self) -> None:
+        """Stop slow measures of the starts in the box."""
         for name, request in self._measuring.items():
             if not MEASURES[name].place:
                 request.cancel()
-        self.measures.show_box(box)
-
-    def _follow_system(self) -> None:
-        self._show_curves(None)
-        self.curves.follow_system(self._state.system)
 
     def _sweep(self) -> None:
         if self.curves.running:

@@ -41,7 +41,6 @@ from app.views.panels.gallery import Gallery
 from app.views.panels.slice_panel import SlicePanel
 from engine import System
 from engine.jobs.client import JobClient
-from plots.pictures.palette import PALETTES
 
 
 class Explorer:
@@ -63,10 +62,7 @@ class Explorer:
         )
         self._make_presenters(context)
         self._make_views()
-        state = self.state
-        state.follow(self._set_palette, "palette")
-        state.follow(lambda starts: self.gallery.invite(on=not starts), "starts")
-        state.follow(self.analysis.show, "analysis")
+        self.state.follow(self.analysis.show, "analysis")
         self.links.connect(self.potential, self.browser, self.maps.progress, self.notice)
         pn.state.on_session_destroyed(self.close)
         pn.state.onload(lambda: self.links.begin(self._begin_view))
@@ -87,7 +83,7 @@ class Explorer:
         self.statistics = StatisticsView(state, results, self._copy)
         self.accessible_table = AccessibleTable(state, results)
         self.downloads = Downloads(state, results, partial(self._copy, None), self._copy_embed_code, locked(self._copied))
-        self.gallery = Gallery(locked(self._show_preset))
+        self.gallery = Gallery(state, locked(self._show_preset))
         self.browser = self._make_browser_events()
         self.controls = self._make_controls()
         self.drawers = Drawers(
@@ -155,11 +151,6 @@ class Explorer:
         self.preview.show_view()
         self.maps.requests.request_map()
         self.orbits.begin()
-
-    def _set_palette(self, name: str) -> None:
-        with pn.io.hold():
-            for view in (self.maps.view, self.maps.progress, self.orbits, self.analyses):
-                view.set_palette(PALETTES[name])
 
     def _begin_touch(self) -> None:
         self._by_touch = True

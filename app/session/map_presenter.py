@@ -22,7 +22,7 @@ from app.views.maps.progress import ProgressView
 from engine import EscapeMap, Fate, Window
 from engine.propagation.fates import describe_fate
 from engine.sweeps.warmup import seconds_until_ready_for_maps
-from plots.pictures.palette import MOST_ORBITS
+from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 
 class MapPresenter:
@@ -64,6 +64,7 @@ class MapPresenter:
         self.progress = ProgressView(
             locked(self.requests.stop_map), locked(self.requests.request_map), lambda name: state.switch_layer(name, on=True)
         )
+        state.follow(self._set_palette, "palette")
         state.follow(self.view.lock_times, "lock_times")
         state.follow(self.view.grid.enlarge, "focus")
         state.follow(self.view.marks.show_box, "box")
@@ -73,6 +74,11 @@ class MapPresenter:
     def close(self) -> None:
         """Cancel the requests at the end of the session."""
         self.requests.close()
+
+    def _set_palette(self, name: str) -> None:
+        with pn.io.hold():
+            self.view.set_palette(PALETTES[name])
+            self.progress.set_palette(PALETTES[name])
 
     def begin_touch(self) -> None:
         """The page is used by touch."""

@@ -26,7 +26,7 @@ from app.views.orbits.separation_plot import SeparationPlot
 from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
-from plots.pictures.palette import PALETTES, Palette
+from plots.pictures.palette import PALETTES
 
 REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
 
@@ -69,15 +69,12 @@ class OrbitPresenter:
         self._show_restricted = locked(self._on_restricted)
         actions = OrbitActions(
             add=locked(on_start),
-            choose=locked(self._choose),
-            remove=lambda: state.remove_start(state.chosen),
-            clear=lambda: state.param.update(starts=(), chosen=0),
             find_divergent_start=lambda: self._divergent_start.search(),
             open_plane=self._open_plane,
             show_all_times=lambda: self._brush(None),
             copy=context.copy,
         )
-        self.controls: OrbitControls = OrbitControls(actions)
+        self.controls: OrbitControls = OrbitControls(state, actions)
         self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
         # A server under load skips times instead of falling behind the player.
         self.playback = Playback(latest(self._set_time))
@@ -87,20 +84,21 @@ class OrbitPresenter:
         self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         state.param.watch(self._end_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
-        state.follow(self.controls.follow_plane, "plane")
         state.param.watch(lambda event: self._show(self._shown), "chosen")
         state.param.watch(self._take_tapped, "starts")
+        state.follow(self._set_palette, "palette")
 
     def begin(self) -> None:
         """Request the orbits of the state."""
         self._end_message()
         self._orbits.follow()
 
-    def set_palette(self, palette: Palette) -> None:
+    def _set_palette(self, name: str) -> None:
         """Change the colours."""
-        for view in (self.plots, self.controls, self._separation_plot):
-            view.set_palette(palette)
-        self._show(self._shown)
+        with pn.io.hold():
+            for view in (self.plots, self._separation_plot):
+                view.set_palette(PALETTES[name])
+            self._show(self._shown)
 
     def begin_touch(self) -> None:
         """The page is used by touch."""
@@ -128,11 +126,6 @@ class OrbitPresenter:
         changed = {event.name: event for event in events}
         if "plane" in changed and "starts" in changed and changed["starts"].old and not changed["starts"].new:
             self.controls.say(REMOVED)
-
-    def _choose(self, place: int) -> None:
-        # Orbits may have been removed since.
-        if place < len(self._state.starts):
-            self._state.chosen = place
 
     def _open_plane(self) -> None:
         """Open the section at the energy, or the value of the parameter, of the chosen orbit, with that orbit."""

@@ -30,7 +30,7 @@ from engine.sweeps.measures import CURVES, QUICK_CURVES
 from engine.systems.parameters import WELL_PARAMETERS
 from plots.printed.figure_files import curves_figure_bytes
 from plots.printed.figure_style import FigureFormat, FigureStyle
-from plots.texts.exports import curve_columns, curves_csv, dataset_bytes
+from plots.texts.exports import curves_csv, dataset_bytes
 
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
@@ -92,7 +92,7 @@ def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
 
 
 def _print(curves: Sweep, files: Sequence[str], as_json: bool) -> None:
-    columns = curve_columns(curves)
+    columns = curves.columns()
     points = list_rows(columns)
     shown = [name for name in columns if not _ERROR_BAR.search(name)]
     rows = [[f"{point[name]:.4g}".replace("nan", "–") for name in shown] for point in points]

@@ -66,7 +66,8 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     inner_names: ClassVar[frozenset[str]] = frozenset(
         {
-            *("chart", "codes", "columns", "fate_labels", "held_as", "inner_names", "numbers", "row_dimension", "shown_numbers"),
+            *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "made_by", "numbers"),
+            *("row_dimension", "shown_numbers"),
             *FORMER_FIELDS,
         }
     )

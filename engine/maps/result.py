@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.former_names import rename_stored, with_former_fields
-from engine.foundations.result import MapResult
+from engine.foundations.result import MapResult, Result
 from engine.foundations.validation import checked_flag, short_repr
 from engine.foundations.wording import describe_codes
 from engine.maps.spec import MapSpec, read_spec
@@ -112,6 +112,9 @@ class EscapeMap(MapResult):
     started: np.ndarray = field(repr=False)
     batch: OrbitBatch | None = field(default=None, repr=False)
     rounded_share: float | None = None
+    inner_names: ClassVar = Result.inner_names | {
+        "batch", "check_complete", "continued_pixels", "horizon", "restored", "started", "stride", "thinned",
+    }  # fmt: skip
 
     def numbers(self) -> dict[str, Any]:
         """The request, and the share of each outcome among the interior starts."""

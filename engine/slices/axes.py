@@ -220,7 +220,8 @@ class ParameterAxis(_SystemAxis):
     def __post_init__(self) -> None:
         if isinstance(self.system, Potential):
             object.__setattr__(self, "system", _system_of(self.system))
-        check_type("system", self.system, System)
+        if not isinstance(self.system, System):
+            raise ValueError(f"system={short_repr(self.system)}: must be a System, or the potential of one")
         known = self.system.parameter_names
         if self.key not in known:
             raise ValueError(f"parameter {short_repr(self.key)}: must be one of the system, {', '.join(known)}")

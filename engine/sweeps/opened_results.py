@@ -25,7 +25,6 @@ from engine.measures.exit_matching import ExitMatching
 from engine.measures.islands import Islands
 from engine.measures.power_law_fit import UncertaintyExponent
 from engine.measures.wada import WadaTest
-from engine.periodic.stable_manifolds import StableManifolds
 from engine.propagation.classification import Outcomes
 from engine.sweeps.sweep import Sweep
 from engine.systems.formulas.stored_potential import read_potential
@@ -38,6 +37,7 @@ from engine.trajectories.nearest_divergent_start import DivergentStart
 from engine.trajectories.orbit_verdicts import OrbitVerdict
 from engine.trajectories.sampled_orbits import SampledOrbits
 from engine.trajectories.separation import Separation
+from engine.trajectories.stable_manifolds import StableManifolds
 from engine.trajectories.trajectory import Orbit
 
 if TYPE_CHECKING:

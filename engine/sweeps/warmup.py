@@ -26,12 +26,12 @@ from engine.maps.descriptors import compute_lagrangian_descriptor
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.periodic.stable_manifolds import find_stable_manifolds
 from engine.propagation.section_points import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.compiled import kernels_of
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
+from engine.trajectories.stable_manifolds import find_stable_manifolds
 
 # Integration time, in units of the well, of the calls that trigger compilation.
 _T_MAX = 10.0

@@ -8,9 +8,9 @@ import numpy as np
 
 from engine import MapSpec, find_stable_manifolds
 from engine.jobs.job import Job
-from engine.periodic.stable_manifolds import MOST_IMAGES, ManifoldArc
 from engine.results import StableManifolds
 from engine.slices.planes import SECTION
+from engine.trajectories.stable_manifolds import MOST_IMAGES, ManifoldArc
 from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
 from plots.pictures.palette import Entry, Mark, Palette
 

@@ -15,7 +15,6 @@ from engine.systems.system import TYPED
 from plots.layers.map_analyses import NO_ANALYSES, MapAnalyses
 
 if TYPE_CHECKING:
-    import numpy as np
     import xarray as xr
 
 MOST_ROWS = 100_000
@@ -189,15 +188,8 @@ def file_stem(spec: MapSpec, case: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
 
 
-def curve_columns(curves: Sweep) -> dict[str, np.ndarray]:
-    """The numbers of a sweep by name, shares by the labels of their outcomes: ``share_bounded``, ``share_exit_1``."""
-    labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in curves.outcomes)]
-    codes = re.compile(r"(share(?:_low|_high)?)_(\d+)")
-    return {codes.sub(lambda found: f"{found[1]}_{labels[int(found[2])]}", name): c for name, c in curves.columns().items()}
-
-
 def curves_csv(curves: Sweep) -> str:
     """CSV table of a sweep, one row per energy or value of the parameter: it, a share per outcome, and all other measures."""
-    columns = curve_columns(curves)
+    columns = curves.columns()
     comments = (_version(), *(f"{name}: {value}" for name, value in curves.dataset.attrs.items()))
     return write_csv(columns, zip(*(column.tolist() for column in columns.values()), strict=True), comments)

@@ -26,6 +26,7 @@ from engine import (
     compute_regularity,
     compute_separation,
     compute_trust,
+    compute_uncertainty_exponent,
     find_divergent_start,
     find_lyapunov_orbits,
     find_stable_manifolds,
@@ -127,6 +128,20 @@ def test_stable_manifolds(scaling: Scaling) -> None:
         assert (arc.channel, arc.image) == (other.channel, other.image)
         np.testing.assert_array_equal(arc.x, scaling.length * other.x)
         np.testing.assert_array_equal(arc.px, scaling.momentum * other.px)
+
+
+@exactly_scaled
+def test_uncertainty_exponents(scaling: Scaling) -> None:
+    potential, energy = CASES["II"], 0.25
+    usual, scaled = (
+        compute_uncertainty_exponent(MapSpec(s.potential(potential), Plane.X_PX, s.energy * energy, t_max=1e3 * s.time), work=1e6)
+        for s in (Scaling(1.0, 1.0), scaling)
+    )
+    np.testing.assert_array_equal(scaled.separations, scaling.length * usual.separations)
+    np.testing.assert_array_equal(scaled.uncertain, usual.uncertain)
+    assert scaled.exponent == usual.exponent > 0.0
+    share, scaled_share = (fit.amplitude * fit.separations**fit.exponent for fit in (usual, scaled))
+    np.testing.assert_allclose(scaled_share, share, rtol=1e-12)
 
 
 def sea_start() -> np.ndarray:

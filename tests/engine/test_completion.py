@@ -7,7 +7,7 @@ import rlcompleter
 import pytest
 
 import escape_explorer
-from engine import CASES, integrate_orbit
+from engine import CASES, MapSpec, compute_map, integrate_orbit
 
 INNER = {
     "codes",
@@ -22,6 +22,11 @@ INNER = {
 }
 THINGS = {
     "potential": (CASES["I"], {"value", "saddles", "in_rotating_frame", "save"}, {"lineage", "check_at_rest", "well", *INNER}),
+    "map": (
+        compute_map(MapSpec(CASES["I"], "x_px", 0.2, (8, 8), t_max=5.0)),
+        {"fate", "fractions", "spec", "to_xarray"},
+        {"batch", "started", "stride", "thinned", *INNER},
+    ),
     "orbit": (integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 5.0), {"x", "sali", "find_section_crossings", "plot"}, INNER),
 }
 

@@ -14,6 +14,7 @@ from playwright.sync_api import Browser
 
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.system_review import review_catalogue_entry
+from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.curves import CurvesView
 from app.views.analysis.potential_panel import PotentialPanel
@@ -27,13 +28,13 @@ HOSTILE = (
 
 
 def orbit_controls() -> OrbitControls:
-    return OrbitControls(OrbitActions(*[lambda *_: None] * len(fields(OrbitActions))))
+    return OrbitControls(ViewState(), OrbitActions(*[lambda *_: None] * len(fields(OrbitActions))))
 
 
 def test_quoted_text_is_escaped() -> None:
     notice, controls, panel = Notice(), orbit_controls(), PotentialPanel(review_catalogue_entry("I"), lambda system, done: None)
-    curves = CurvesView(lambda *_: None, lambda *_: None)
-    measures = BasinMeasuresView(lambda name: None, lambda text: None, lambda: None)
+    curves = CurvesView(ViewState(), lambda *_: None, lambda *_: None)
+    measures = BasinMeasuresView(ViewState(), lambda name: None, lambda text: None)
     says: list[tuple[Callable[[str], None], pn.pane.HTML]] = [
         (notice.warn, notice.layout()),
         (notice.show, notice.layout()),

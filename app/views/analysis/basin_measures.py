@@ -11,6 +11,7 @@ from typing import Any
 import panel as pn
 
 from app.state.glossary import with_terms
+from app.state.view_state import ViewState
 from app.views.analysis.measure_charts import PairsChart, SurvivalChart
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button, number_rows
@@ -31,30 +32,31 @@ class BasinMeasuresView:
 
     Parameters
     ----------
+    state
+        The view state, whose box the measures are those of.
     on_measure
         Called with the name of a slow measure to compute it.
     on_copy
         Called with the numbers as tab-separated text.
-    on_whole
-        Called to remove the box.
     """
 
-    def __init__(self, on_measure: Callable[[str], None], on_copy: Callable[[str], None], on_whole: Callable[[], None]) -> None:
+    def __init__(self, state: ViewState, on_measure: Callable[[str], None], on_copy: Callable[[str], None]) -> None:
         slow = [measure for measure in TOLD if measure.slow]
         self.buttons = {one.name: button(f"Measure the {one.title.lower()}", partial(on_measure, one.name)) for one in slow}
-        self.whole = button(COUNT_WHOLE, on_whole, visible=False)
+        self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.text = TextPane("", name="measures", sizing_mode="stretch_width")
         self.copy = copy_button(self._rows, on_copy)
         self._sentences: dict[str, str] = {}
         self._results: dict[str, Result] = {}
         self.survival, self.uncertainty = SurvivalChart(), PairsChart()
         self._charts: dict[type, Any] = {DecayLaws: self.survival, UncertaintyExponent: self.uncertainty}
+        state.follow(self._follow_box, "box")
 
     def begin(self) -> None:
         """Remove the measures of the previous map."""
         self._remove([*self._sentences])
 
-    def show_box(self, box: Window | None) -> None:
+    def _follow_box(self, box: Window | None) -> None:
         """Show that the measures are those of a box; None is the whole view."""
         self.whole.visible = box is not None
         self._remove([measure.name for measure in TOLD if measure.slow and not measure.place])

@@ -13,6 +13,7 @@ from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, Line, MultiLine, Range1d, Scatter, Segment, Span
 from bokeh.plotting import figure
 
+from app.state.view_state import ViewState
 from app.views.components.in_turns import InTurns, Later
 from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_decades, set_range, square_figure
@@ -21,7 +22,7 @@ from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Measure, Outcome, System
 from engine.results import Sweep
 from engine.systems.parameters import symbol_of
-from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
+from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, THRESHOLD, Entry
 from plots.pictures.sweep_panels import CURVE_PANELS, SHARES, find_numbers
 
 START, STOP = "Compute the curves", "Stop"
@@ -45,6 +46,8 @@ class CurvesView:
 
     Parameters
     ----------
+    state
+        The view state.
     on_sweep
         Called when the button is pressed.
     on_value
@@ -53,9 +56,14 @@ class CurvesView:
         Of the session, for the figures.
     """
 
-    def __init__(self, on_sweep: Callable[[], None], on_value: Callable[[float], None], later: Later = lambda call: call) -> None:
-        self._palette = PAPER
-        self._on_value = on_value
+    def __init__(
+        self,
+        state: ViewState,
+        on_sweep: Callable[[], None],
+        on_value: Callable[[float], None],
+        later: Later = lambda call: call,
+    ) -> None:
+        self._state, self._on_value = state, on_value
         self.shown: Sweep | None = None
         self.running = False
         self.button = button(START, on_sweep, width=180, align="end")
@@ -69,7 +77,6 @@ class CurvesView:
         }
         self.points = ColumnDataSource(_NO_POINTS, name="curve_points")
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
-        self._energy, self._system = 0.0, System("I")
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
         self._legend = TextPane(margin=(0, 10))
         self._figures: list[figure] = []
@@ -77,21 +84,24 @@ class CurvesView:
             [self._build_shares, *(partial(self._build_panel, each) for each in CURVE_PANELS)], self._add, later
         )
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
+        state.follow(self._follow_system, "system")
+        state.follow(lambda energy: self._mark(), "energy")
+        state.param.watch(lambda event: self._redraw(), "palette")
 
-    def follow_system(self, system: System) -> None:
-        """Offer the parameters of a system."""
-        self._system = system
+    def _redraw(self) -> None:
+        if self.shown is not None:
+            self.show(self.shown)
+
+    def _follow_system(self, system: System) -> None:
+        """Remove the curves of another system, and offer the parameters of this one."""
+        if self.shown is not None:
+            self.show(None)
         self.against.options = {"h": "h"} | {symbol_of(name): name for name in system.parameter_names}
-
-    def follow_energy(self, energy: float) -> None:
-        """Mark the energy in view."""
-        self._energy = energy
-        self._mark()
 
     def _mark(self) -> None:
         """Mark the energy in view, or the system's own value of the parameter."""
         name = "h" if self.shown is None else self.shown.name
-        self._here.location = self._energy if name == "h" else self._system.value_of(name)
+        self._here.location = self._state.energy if name == "h" else self._state.system.value_of(name)
 
     def show_running(self, running: bool) -> None:
         """Label the button with what it does next."""
@@ -152,14 +162,9 @@ class CurvesView:
         if values.size:
             self._on_value(float(values[np.argmin(np.abs(values - value))]))
 
-    def set_palette(self, palette: Palette) -> None:
-        """Colours of the outcomes."""
-        self._palette = palette
-        if self.shown is not None:
-            self.show(self.shown)
-
     def _entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
-        return [Entry("bounded", self._palette.bounded), *self._palette.end_entries(outcomes)]
+        palette = self._state.colours
+        return [Entry("bounded", palette.bounded), *palette.end_entries(outcomes)]
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Make the button and the place of the plots, which are made with the first curves."""

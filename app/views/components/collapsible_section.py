@@ -57,11 +57,14 @@ class Stack:
         self.show(None if self.shown == name else name)
 
 
-class CollapsibleSection(Stack):
-    """A column with one content that opens and closes."""
+class Fold(Stack):
+    """A column with one content that opens and closes, under a button with its title."""
 
-    def __init__(self, build: Build, css_class: str) -> None:
-        super().__init__({"content": build}, css_class)
+    def __init__(self, title: str, build: Build, *, is_open: bool = False) -> None:
+        super().__init__({"content": build}, "fold")
+        self._title = title
+        self.button = button("", lambda: self.toggle("content"), kind="light", margin=0, css_classes=["fold-title"])
+        self.open(is_open)
 
     @property
     def is_open(self) -> bool:
@@ -71,16 +74,6 @@ class CollapsibleSection(Stack):
     def open(self, visible: bool) -> None:
         """Put the content on the page, or take it off."""
         self.show("content" if visible else None)
-
-
-class Fold(CollapsibleSection):
-    """A section under a button with its title."""
-
-    def __init__(self, title: str, build: Build, *, is_open: bool = False) -> None:
-        super().__init__(build, "fold")
-        self._title = title
-        self.button = button("", lambda: self.toggle("content"), kind="light", margin=0, css_classes=["fold-title"])
-        self.open(is_open)
 
     def parts(self) -> list[pn.viewable.Viewable]:
         """The button and the section."""

@@ -214,6 +214,7 @@ class MapsView:
         self.outlines.set_palette(palette)
         self.compared.set_palette(palette)
         self.well.set_palette(palette)
+        self.overlays.set_palette(palette)
         self.describe()
 
     def set_dark(self, dark: bool) -> None:

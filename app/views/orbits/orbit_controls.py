@@ -12,6 +12,7 @@ import panel as pn
 from app.browser.components.orbit_list import OrbitList
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.glossary import with_terms
+from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, copy_button, flex_row, number_rows
@@ -20,7 +21,7 @@ from engine.foundations.wording import format_number, format_time, format_whole
 from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import IndicatorVerdict
 from plots.pictures.orbit_curves import initial_state
-from plots.pictures.palette import Palette
+from plots.pictures.palette import PALETTES, Palette
 
 HINT = "Click a map: the orbit that starts there is drawn, with its exit and time. Up to five."
 _BOX = 180
@@ -32,9 +33,6 @@ class OrbitActions:
     """Callbacks of the buttons."""
 
     add: Callable[[float, float], None]
-    choose: Callable[[int], None]
-    remove: Callable[[], None]
-    clear: Callable[[], None]
     find_divergent_start: Callable[[], None]
     open_plane: Callable[[], None]
     show_all_times: Callable[[], None]
@@ -42,10 +40,10 @@ class OrbitActions:
 
 
 class OrbitControls:
-    """Number boxes for a start, the list of orbits, and the results of the chosen one."""
+    """Number boxes for a start, the list of orbits of a view state, and the results of the chosen one."""
 
-    def __init__(self, actions: OrbitActions) -> None:
-        self._actions = actions
+    def __init__(self, state: ViewState, actions: OrbitActions) -> None:
+        self._state, self._actions = state, actions
         self._shown: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
         # These are text boxes, because number boxes do not report Enter.
         self.x = pn.widgets.TextInput(label="x", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
@@ -53,8 +51,8 @@ class OrbitControls:
         self.button = button("Integrate", self._submit, kind="primary", align="end")
         self.list = OrbitList(self._choose, visible=False)
         self.divergent_start = button("Find divergent start", actions.find_divergent_start, margin=0)
-        self.remove = button("Remove", actions.remove, margin=0)
-        self.clear = button("Clear all", actions.clear, margin=0)
+        self.remove = button("Remove", lambda: state.remove_start(state.chosen), margin=0)
+        self.clear = button("Clear all", lambda: state.param.update(starts=(), chosen=0), margin=0)
         self.open_plane = button("", actions.open_plane, margin=0)
         self.interval = TextPane("", name="interval", margin=0, css_classes=["quiet"])
         all_times = button("Whole orbit", actions.show_all_times, margin=0)
@@ -69,6 +67,8 @@ class OrbitControls:
         self.copy = copy_button(self._rows, actions.copy)
         for box in (self.x, self.ordinate):
             box.param.watch(lambda event: self._submit(), "enter_pressed")
+        state.follow(self._follow_plane, "plane")
+        state.follow(lambda name: self._set_colours(PALETTES[name]), "palette")
 
     def entry(self) -> list[pn.viewable.Viewable]:
         """The boxes to type a start, to unfold."""
@@ -87,7 +87,7 @@ class OrbitControls:
         """The interval of time in view, the verdict of each indicator on the chosen orbit, and its values, to unfold."""
         return [self._interval_row, self.indicators, *Fold("Values", lambda: [self.reason, self.values, self.copy]).parts()]
 
-    def follow_plane(self, plane: Slice) -> None:
+    def _follow_plane(self, plane: Slice) -> None:
         """Label the boxes with the axes of the plane."""
         self.x.label, self.ordinate.label = plane.axis_symbols
         decided = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
@@ -95,7 +95,7 @@ class OrbitControls:
         if decided:
             self.open_plane.label = f"Open {SECTION.title} at this {' and '.join(axis.symbol for axis in decided)}"
 
-    def set_palette(self, palette: Palette) -> None:
+    def _set_colours(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
         self.list.styles = {f"--orbit-{place + 1}": colour for place, colour in enumerate(palette.orbits)}
 
@@ -147,8 +147,10 @@ class OrbitControls:
         return [*number_rows("start", start), *number_rows("orbit", orbit.numbers()), *verdicts]
 
     def _choose(self, place: int) -> None:
-        if place != self._shown[1]:
-            self._actions.choose(place)
+        # Orbits may have been removed since.
+        if place != self._shown[1] and place < len(self._state.starts):
+            with pn.io.hold():
+                self._state.chosen = place
 
     def _submit(self) -> None:
         try:

@@ -11,6 +11,7 @@ import param
 from panel.custom import JSComponent
 
 from app.state.presets import GROUPS, PRESETS, Preset
+from app.state.view_state import ViewState
 from app.views.components.texts import typeset
 from plots.layers.table import TITLES
 
@@ -58,11 +59,12 @@ class GalleryCards(JSComponent):
 class Gallery:
     """Shows `PRESETS`; `on_preset` is called, without the session's lock, with the one that is chosen."""
 
-    def __init__(self, on_preset: Callable[[Preset], None]) -> None:
+    def __init__(self, state: ViewState, on_preset: Callable[[Preset], None]) -> None:
         self._on_preset = on_preset
         self._presets = {preset.key: preset for preset in PRESETS}
         self._invitation: GalleryCards | None = None
-        self._invites = True
+        self._state = state
+        state.param.watch(lambda event: self._invite(), "starts")
 
     def build(self) -> list[pn.viewable.Viewable]:
         """The cards."""
@@ -76,14 +78,14 @@ class Gallery:
                 for preset in PRESETS
                 if preset.invitation
             ]
-            self._invitation = self._make(cards, groups=[INVITATION], hint="", visible=self._invites, margin=(0, 10))
+            self._invitation = self._make(cards, groups=[INVITATION], hint="", margin=(0, 10))
+            self._invite()
         return self._invitation
 
-    def invite(self, *, on: bool) -> None:
-        """Show or hide the invitation."""
-        self._invites = on
+    def _invite(self) -> None:
+        """Show the invitation while there are no starts."""
         if self._invitation is not None:
-            self._invitation.visible = on
+            self._invitation.visible = self._state.starts == ()
 
     def _make(self, cards: list[dict[str, str]], **options: Any) -> GalleryCards:
         shown = GalleryCards(cards=cards, sizing_mode="stretch_width", stylesheets=[_STYLE], **({"margin": 0} | options))

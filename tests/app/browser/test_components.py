@@ -18,6 +18,7 @@ from app.browser.inputs.formula_box import LONGEST_TYPED, FormulaBox
 from app.browser.inputs.number_box import NumberBox
 from app.browser.inputs.parameter_slider import ParameterSlider
 from app.state.presets import PRESETS
+from app.state.view_state import ViewState
 from app.views.panels.browser_events import BrowserActions, BrowserEvents
 from app.views.panels.gallery import Gallery
 from tests.app.browser_messages import send
@@ -112,7 +113,7 @@ EXAMPLES = {
         lambda report: OrbitPlayer(report, begin=0.0, end=0.0), [], [{"step": 3, "begin": 0, "end": 0}]
     ),
     "gallery": Example(
-        lambda report: Gallery(report).build()[0],
+        lambda report: Gallery(ViewState(), report).build()[0],
         [(PRESETS[1].key, (PRESETS[1],))],
         ["no such key", [PRESETS[0].key], {PRESETS[0].key: 1}],
     ),

@@ -117,6 +117,20 @@ def test_kernels_can_be_kept_and_are_compressed_for_those_who_ask(served: Served
         assert (gzip.decompress(content) if headers else content) == kernel_module()
 
 
+def test_scripts_are_compressed_for_those_who_ask(served: Served) -> None:
+    for path in ("/static/js/bokeh.min.js", "/static/extensions/panel/panel.min.js", f"/{ADDRESS}"):
+        contents = []
+        for headers in ({}, {"Accept-Encoding": "gzip"}, {"Accept-Encoding": "gzip", "Range": "bytes=0-"}):
+            request = urllib.request.Request(f"{served.running.root}{path}", headers=headers)
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                content = answer.read()
+                is_compressed = answer.headers["Content-Encoding"] == "gzip"
+                assert len(content) == int(answer.headers["Content-Length"])
+            assert is_compressed == (headers == {"Accept-Encoding": "gzip"})
+            contents.append(gzip.decompress(content) if is_compressed else content)
+        assert contents[0] == contents[1] == contents[2]
+
+
 def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None:
     assert served.get("/metrics")[2]["Content-Type"].startswith("text/plain; version=")
     page = served.get("/status")[1]

@@ -27,10 +27,10 @@ from engine import (
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
 from engine.evidence.exit_entry_points import find_entry_points
 from engine.maps.run import looks_for_tori
-from engine.periodic.unstable_manifold import UnstableManifold
 from engine.propagation.evidence import Evidence
 from engine.systems.outcomes import Centre
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
+from engine.trajectories.unstable_manifold import UnstableManifold
 
 ROTATING = parse_formula("½(x² + y²) + ½(x² + y²) - x² y").in_rotating_frame(0.5)
 ENERGY = 1.2 * ROTATING.escape_energy

@@ -21,6 +21,7 @@ from engine import (
 from engine.exits.interior import find_outside_channels
 from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
+from engine.slices.planes import checked_slice
 from tests.peers.exit_lines import exit_lines
 from tests.peers.random_systems import random_well
 
@@ -204,3 +205,8 @@ def test_the_default_window_of_any_slice_contains_its_interior(plane: Slice) -> 
     window = default_window(potential, plane, energy)
     assert np.all((window.x_low <= x) & (x <= window.x_high))
     assert np.all((window.ordinate_low <= ordinate) & (ordinate <= window.ordinate_high))
+
+
+@pytest.mark.parametrize("plane", Plane)
+def test_a_named_slice_is_found_by_its_title_and_its_key(plane: Plane) -> None:
+    assert checked_slice(plane.title) is checked_slice(plane.key) is plane

@@ -20,6 +20,7 @@ import xarray as xr
 
 from engine import CASES, Plane, SweepSpec, Window, compute_sweep
 from engine.foundations.execution import Execution, count_workers
+from engine.sweeps.store import check_same_sweep
 from tests.forked import Finished, run
 
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.3, 0.5), (12, 10), t_max=300.0, measures=("maps", "shares"))
@@ -224,3 +225,10 @@ def test_dask_cluster_is_byte_identical(tmp_path: Path, processes: bool) -> None
         # The machine code of this process may differ from that in the cache.
         compute_sweep(LONG_SPEC, tmp_path / "straight")
     assert files_of(tmp_path / "cluster") == files_of(tmp_path / "straight")
+
+
+def test_a_sweep_of_which_less_is_known_is_another_one() -> None:
+    wanted = {"energy": 0.2, "t_max": 100.0}
+    check_same_sweep("store", wanted, wanted)
+    with pytest.raises(ValueError, match=r"store: holds another sweep, with t_max=None; must have t_max=100.0"):
+        check_same_sweep("store", {"energy": 0.2}, wanted)

@@ -109,6 +109,12 @@ def test_an_escape_names_channel_time_and_crossings() -> None:
     assert aligned.character is Verdict.CHAOTIC_INSIDE
 
 
+@pytest.mark.parametrize(("crossings", "words"), [(0, "directly, without crossing"), (1, "after 1 upward crossing of")])
+def test_an_escape_says_after_how_many_crossings(crossings: int, words: str) -> None:
+    orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 1e3)
+    assert words in judge_orbit(replace(orbit, crossings=crossings)).describe()
+
+
 def test_a_collision_is_named_in_the_sentence_and_in_the_list() -> None:
     orbit = integrate_orbit(DISC, (0.2, 0.0, 0.0, 0.5), 100.0)
     assert orbit.fate == 3

@@ -8,6 +8,7 @@ import pytest
 from engine import CASES, integrate_orbit
 from plots.pictures.histories import History, reduce_history
 from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 
 TIMES = np.linspace(0.02, 1e4, 400_000)
 
@@ -49,3 +50,9 @@ def test_each_orbit_is_reduced_over_its_own_time() -> None:
         early = times < min(15.0, float(times[-1]))
         np.testing.assert_array_equal(values[early], curves.orbit.r2[np.searchsorted(curves.orbit.t, times[early])])
         assert np.diff(times[early]).max() < 0.3
+
+
+def test_the_axis_of_exponents_has_room_for_the_smallest_one() -> None:
+    (exponent,) = (quantity for quantity in ORBIT_QUANTITIES if quantity.name == "exponent")
+    low, high = (History((np.array([1.0, 2.0]), np.array([0.5, last])), (np.zeros(0),) * 3) for last in (0.003, 0.2))
+    assert exponent.limits([low, high])[0] == exponent.limits([high, low])[0] == pytest.approx(1e-3)

@@ -7,14 +7,20 @@ from html import escape
 
 import pytest
 
+from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from engine import CASES, MapSpec, Window, compute_basin_entropy, compute_map
 from engine.sweeps.points import measure_map
 
 
 @pytest.fixture
-def view() -> BasinMeasuresView:
-    shown = BasinMeasuresView(lambda name: None, lambda text: None, lambda: None)
+def state() -> ViewState:
+    return ViewState()
+
+
+@pytest.fixture
+def view(state: ViewState) -> BasinMeasuresView:
+    shown = BasinMeasuresView(state, lambda name: None, lambda text: None)
     frame = compute_map(MapSpec(CASES["II"], "x_px", 0.25, (40, 40), t_max=100.0))
     for name in ("basin_entropy", "wada", "decay_rate"):
         shown.show(name, measure_map(frame, name))
@@ -31,11 +37,11 @@ def test_without_a_box_all_measures_are_those_of_the_whole_view(view: BasinMeasu
     assert not view.whole.visible
 
 
-def test_the_measures_of_a_map_are_those_of_the_box(view: BasinMeasuresView) -> None:
-    view.show_box(Window(0.0, 0.1, 0.0, 0.1))
+def test_the_measures_of_a_map_are_those_of_the_box(state: ViewState, view: BasinMeasuresView) -> None:
+    state.box = Window(0.0, 0.1, 0.0, 0.1)
     assert regions(view) == ["box"]
     assert view.whole.visible
-    view.show_box(None)
+    state.box = None
     assert regions(view) == ["whole view"]
 
 
@@ -48,8 +54,8 @@ def test_numbers_have_their_errors_and_sentences_open_on_demand(view: BasinMeasu
     assert sentence in in_all
 
 
-def test_a_measure_without_numbers_has_its_sentence_in_view() -> None:
-    view = BasinMeasuresView(lambda name: None, lambda text: None, lambda: None)
+def test_a_measure_without_numbers_has_its_sentence_in_view(state: ViewState) -> None:
+    view = BasinMeasuresView(state, lambda name: None, lambda text: None)
     view.show("wada", None)
     assert "Not defined for this map." in view.text.object
     assert "details" not in view.text.object.partition("</table>")[0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from bokeh.models import HoverTool
 
+from app.state.view_state import ViewState
 from app.views.analysis.curves import CurvesView
 from app.views.components.plots import FigurePane
 from engine import CASES, Plane, SweepSpec, compute_sweep
@@ -23,7 +24,7 @@ def curves(*energies: float) -> Sweep:
 
 
 def test_there_are_no_axes_before_the_first_curves() -> None:
-    view = CurvesView(lambda: None, lambda energy: None)
+    view = CurvesView(ViewState(), lambda: None, lambda energy: None)
     *_, plots = view.build()
     assert not plots.visible
     assert plots.objects == []

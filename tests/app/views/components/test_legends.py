@@ -14,6 +14,7 @@ from plots.layers.table import map_legend
 from plots.layers.trust import TONES
 from plots.pictures.palette import PAPER
 from plots.pictures.time_scale import TimeScale
+from tests.results import result_of
 
 PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]*)")
 ALL = frozenset(int(fate) for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED, 1, 2))
@@ -44,6 +45,9 @@ def test_crossings_have_their_classes_and_what_is_drawn_over_them() -> None:
     html = legend("crossings", results={"trust": None})
     assert "doubtful pixels" in html
     assert all(tone in html for tone in TONES)
+    both = legend("crossings", CASES["III"], results={"manifolds": result_of("manifolds"), "trust": None})
+    assert "doubtful pixels" in both
+    assert "manifold" in both
 
 
 def test_the_scale_has_both_ends_and_says_whether_it_is_locked() -> None:

@@ -7,6 +7,7 @@ from dataclasses import fields
 import pytest
 
 from app.job_clients.orbit_requests import ChosenOrbit
+from app.state.view_state import ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.components.widgets import copy_button, number_rows
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
@@ -36,7 +37,7 @@ def copied() -> list[str]:
 
 def test_an_orbit_is_copied_with_its_indicators(copied: list[str]) -> None:
     nothing = {field.name: lambda *_: None for field in fields(OrbitActions)}
-    controls = OrbitControls(OrbitActions(**nothing | {"copy": copied.append}))
+    controls = OrbitControls(ViewState(), OrbitActions(**nothing | {"copy": copied.append}))
     controls.copy.clicks += 1
     orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0)
     controls.show([ChosenOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit))], 0)
@@ -53,7 +54,7 @@ def test_an_orbit_is_copied_with_its_indicators(copied: list[str]) -> None:
 def test_measures_are_copied_and_those_of_another_map_are_not(copied: list[str]) -> None:
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (30, 30), t_max=100.0))
     entropy = compute_basin_entropy(frame)
-    view = BasinMeasuresView(lambda name: None, copied.append, lambda: None)
+    view = BasinMeasuresView(ViewState(), lambda name: None, copied.append)
     view.show("basin_entropy", entropy)
     view.show("wada", compute_wada_test(frame))
     view.copy.clicks += 1

@@ -210,3 +210,8 @@ def test_a_divisor_that_is_a_power_stays_one(text: str, written: str, function: 
     potential, places = parse_formula(text), (np.array([0.3, -0.2]), np.array([0.1, 0.4]))
     assert potential.name == written
     np.testing.assert_allclose(potential.value(*places), function(*places), rtol=1e-13)
+
+
+def test_negative_powers_are_no_polynomial() -> None:
+    potential = parse_formula("½(x − 2)² + ½y² + 3/x² − 0.1y/x")
+    assert potential.value(2.5, 0.5) == pytest.approx(0.5 * 0.25 + 0.5 * 0.25 + 3.0 / 6.25 - 0.1 * 0.5 / 2.5, rel=1e-14)

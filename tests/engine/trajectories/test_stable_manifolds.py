@@ -11,8 +11,8 @@ import shapely
 
 from engine import CASES, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, start_states
 from engine.foundations.execution import Execution
-from engine.periodic.stable_manifolds import MOST_IMAGES, StableManifolds, find_stable_manifolds
 from engine.propagation.section_points import find_section_points
+from engine.trajectories.stable_manifolds import MOST_IMAGES, StableManifolds, find_stable_manifolds
 
 # The original orientation of the Hénon-Heiles potential (Case II): not even in y, so that orbits can touch y = 0.
 TURNED = Potential("turned", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3)))

@@ -21,14 +21,14 @@ from engine.foundations.arrays import ReadOnlyArrays, read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.result import Result
 from engine.foundations.validation import checked_count, checked_number, checks_types
-from engine.periodic.smooth_curves import PointSpacing, refine_passages, split_curve
-from engine.periodic.unstable_manifold import UnstableManifold
 from engine.slices.default_window import default_window
 from engine.slices.planes import SECTION
 from engine.slices.window import GivenWindow, checked_window
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH, MOMENTUM
+from engine.trajectories.smooth_curves import PointSpacing, refine_passages, split_curve
+from engine.trajectories.unstable_manifold import UnstableManifold
 
 MOST_IMAGES = 6
 """Largest number of images; later ones are too fine and too many to plot."""
