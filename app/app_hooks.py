@@ -20,18 +20,18 @@ from tornado.ioloop import PeriodicCallback
 
 from app.browser.bokeh_patches.batched_patches import batch_patches
 from app.browser.bokeh_patches.inline_callbacks import run_callbacks_inline
-from app.runtime import disconnects, load_monitor
+from app.runtime import disconnects, loop_watch
+from app.runtime.health import StateCollector
 from app.runtime.loop_watch import LoopWatch
 from app.runtime.memory_allocation import reduce_fragmentation
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
-from app.runtime.state_collector import StateCollector
 from app.server.admission import admit
 from app.server.limited_http_server import LimitedHTTPServer
 from app.server.log_format import set_up_logs
+from app.server.routes import install_handlers
 from app.server.shutdown import finish_shutdown, stop_on_signals
 from app.server.start_checks import SEVERAL_PROCESSES, asks_for_several_processes, refuse_to_start
-from app.server.url_patterns import install_handlers
 from app.server.warmup import start_warmup
 from app.state.system_review import review_catalogue_entry
 from engine import CASES
@@ -60,7 +60,7 @@ def on_server_loaded(server_context: Any) -> None:
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
     watch = LoopWatch(state.load, state.metrics.loop_delays)
     gc.callbacks.append(watch.on_collection)
-    PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * load_monitor.TICK_SECONDS).start()
+    PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * loop_watch.TICK_SECONDS).start()
     threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
     compile_in(state.compiler)
     start_warmup(state)

@@ -52,6 +52,9 @@ function findAll(root, selector) {
 }
 
 const bench = {
+  /** The slider of the energy. */
+  rail: () => /** @type {HTMLInputElement} */ (findAll(document, 'input[type=range][aria-label^="Energy h"]')[0]),
+
   /** Wait until the engine shows pixels. */
   async ready() {
     let energy = 0.26

@@ -22,7 +22,7 @@ PUBLIC = {name: getattr(module, name) for module in (engine, results) for name i
 NAME = re.compile(r"(?<!`)`([A-Za-z_]\w*(?:\.\w+)*)(?:\([^`\n]*\))?`(?!`)")
 
 FOREIGN = re.compile(
-    r"BOKEH_\w+|(?:asyncio|concurrent|datashader|matplotlib|np|numpy|pandas|zlib)\.[\w.]+"
+    r"BOKEH_\w+|PANEL_\w+|(?:asyncio|concurrent|datashader|matplotlib|np|numpy|pandas|zlib)\.[\w.]+"
     # Of Bokeh, Panel, nginx and the files of this project.
     r"|Application\._set_session_prefix|ComponentResourceHandler\.parse_url_path|OAuthProvider\.get_user_async"
     r"|_BytesDecoder\.bytes_object_hook|_dispatch_msgs|auth_basic|get_token_payload|secret_key_bytes|settings\.sign_sessions"

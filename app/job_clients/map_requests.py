@@ -52,6 +52,8 @@ class MapRequests:
         Runs callbacks under the session's lock; it may drop all calls but the latest.
     is_crowded
         Whether the server is crowded; then frames between the first and the last are skipped.
+    prepare
+        Called with the map of a frame before it is delivered, on the thread of its job: computes what the listener needs.
     """
 
     def __init__(
@@ -61,6 +63,7 @@ class MapRequests:
         listener: MapListener,
         locked: Locked,
         is_crowded: Callable[[], bool] = lambda: False,
+        prepare: Callable[[MapSpec], object] = lambda spec: None,
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._subscription: Subscription | None = None
@@ -72,7 +75,7 @@ class MapRequests:
         self._delivered = -1
         # What was delivered last: a map and its columns.
         self._painted: tuple[MapSpec, dict[str, list[Any]]] | None = None
-        self._is_crowded = is_crowded
+        self._is_crowded, self._prepare = is_crowded, prepare
         self._continue = locked(self._on_compiled)
         self._show_members = locked(self._on_members)
         self._show_frame = locked(self._on_frame)
@@ -121,6 +124,7 @@ class MapRequests:
         try:
             # Slow, and needed by the ranges of the maps, whose smallest window depends on it.
             replace(frame.spec, window=None).find_window()
+            self._prepare(frame.spec)
         except ValueError as error:
             self._deliver(self._show_error, generation, error)
             return

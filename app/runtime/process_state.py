@@ -15,7 +15,7 @@ from bokeh.document import Document
 from app.runtime.capacity import Capacity, ProcessorTimes, count_page, processor_times
 from app.runtime.fair_share import FairShare
 from app.runtime.limited_process import COMPILATION_SECONDS, PROCESSES, LimitedProcess, LimitedProcesses
-from app.runtime.load_monitor import LoadMonitor
+from app.runtime.loop_watch import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.settings import Settings, read_settings
 from app.runtime.visitors import visitor_of

@@ -1,20 +1,32 @@
-"""The routes that the page and the operator need, and the hosts; all others are refused before their handlers see the request.
+"""The routes that the page and the operator need, their handlers, and the hosts; all others are refused.
 
 Bokeh and Panel mount more: ``autoload.js`` creates sessions, and ``components`` imports the module that the address names.
+
+The handlers are installed in ``bokeh.server.urls``, from which Bokeh builds its web application. Bokeh documents both lists
+(https://docs.bokeh.org/en/latest/docs/reference/server/urls.html); Panel puts its own handlers there as well. They are the only
+public way to reach the handlers of ``panel serve`` without a command line option: lifecycle hooks get no reference to the web
+application, which already exists when they run. Not covered, because Bokeh and Panel add them elsewhere: the redirect from ``/``,
+``/favicon.ico``, ``/app/static`` and Panel's login pages.
 """
 
 from __future__ import annotations
 
 import http.client
 import re
+from typing import Any
 
 from bokeh.server.tornado import BokehTornado
 from bokeh.settings import settings as bokeh_settings
-from tornado.web import HTTPError
+from panel.io.server import DocHandler, RootHandler, WSHandler
+from tornado.web import HTTPError, StaticFileHandler
 
 from app.browser.module_files import ROUTES as MODULES
+from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
+from app.server.compressed_files import CompressedFiles
 from app.server.endpoints import ROUTES, NotFound
-from app.server.security_headers import SecurityHeaders
+from app.server.page_websocket import PageWebSocket
+from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
+from app.server.session_tokens import issue_token, use_token
 
 # Tornado fails to look for a file with a null character in its name.
 _FILES = "/static/(?!.*%00).*"
@@ -68,3 +80,55 @@ def refuse_other_hosts(application: BokehTornado) -> None:
     """
     operated = "|".join(application.prefix + path for path, _ in ROUTES)
     application.add_handlers(f"(?!(?:{accepted_hosts(application)})$).*", [(f"(?!(?:{operated})$).*", OtherHost)])
+
+
+class PageHandler(SecurityHeaders, DocHandler):
+    """Serves the page with a nonce on its scripts, and with a signed token of its session."""
+
+    async def get_session(self) -> Any:
+        """Create the session of a new token."""
+        extra = self.application_context.application.process_request(self.request)
+        use_token(self.request, issue_token(self.application, self.request, extra))
+        return await super().get_session()
+
+    def write_error(self, status_code: int, **kwargs: Any) -> None:
+        """Answer with the reason, and let browsers ask again for a page that may be served later."""
+        error = kwargs.get("exc_info", (None, None))[1]
+        if status_code not in RETRIED or not isinstance(error, HTTPError):
+            super().write_error(status_code, **kwargs)
+            return
+        self.set_header("Retry-After", RETRY_SECONDS)
+        self.finish(refusal_page(error.reason or ""))
+
+    def write(self, chunk: Any) -> None:
+        """Write a response; a page gets the nonce and the matching policy."""
+        if isinstance(chunk, str):
+            nonce = new_nonce()
+            self.set_security_headers(nonce)
+            chunk = add_nonce(chunk, nonce)
+        super().write(chunk)
+
+
+def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) -> None:
+    """Add security headers to the handlers in the lists, and append the server's own endpoints; a second call does nothing.
+
+    Parameters
+    ----------
+    per_app_patterns, toplevel_patterns
+        The lists in `bokeh.server.urls`: tuples of a path, a handler and, optionally, its arguments.
+    """
+    for patterns in (per_app_patterns, toplevel_patterns):
+        patterns[:] = [(path, _secured(handler), *rest) for path, handler, *rest in patterns]
+    added = [*ROUTES, *((path, _secured(handler), arguments) for path, handler, arguments in MODULES)]
+    if all(path != added[0][0] for path, *_ in toplevel_patterns):
+        toplevel_patterns += added
+
+
+def _secured(handler: type) -> type:
+    """The same handler with security headers; files are compressed."""
+    # Bokeh recognises the root handler by identity.
+    if handler is RootHandler or issubclass(handler, SecurityHeaders):
+        return handler
+    replaced = {DocHandler: PageHandler, WSHandler: PageWebSocket}
+    mixins = (SecurityHeaders, CompressedFiles) if issubclass(handler, StaticFileHandler) else (SecurityHeaders,)
+    return replaced.get(handler) or type(f"Secured{handler.__name__}", (*mixins, handler), {})

@@ -16,7 +16,7 @@ from app.session.context import SessionContext
 from app.session.history import History
 from app.state.navigation import DIVE_FACTOR, zoom
 from app.state.view import Analysis, Start
-from app.views.maps.map_plots import MapActions, MapsView
+from app.views.maps.map_plots import MapActions, MapsView, prepare_curves
 from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.progress import ProgressView
 from engine import EscapeMap, Fate, Window
@@ -60,7 +60,7 @@ class MapPresenter:
             alone=alone,
         )
         self.toolbar = MapToolbar(state, locked(self.view.set_drag))
-        self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded)
+        self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded, prepare_curves)
         self.progress = ProgressView(
             locked(self.requests.stop_map), locked(self.requests.request_map), lambda name: state.switch_layer(name, on=True)
         )

@@ -1,35 +1,69 @@
-"""Sums with fewer products: x u + x v as x (u + v)."""
+"""Sums rewritten with fewer products: x u + x v as x (u + v)."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 
 from engine.expressions.nodes import Expression, Product, Sum, linear_combination, multiply, power
 
 Terms = tuple[tuple[Expression, float], ...]
 
+# The mantissa of a power of two.
+_POWER_OF_TWO = 0.5
+
 
 def factor_out(terms: Terms) -> Terms:
-    """Σ c m with the factors that most products have in common taken out of them; the constants of new sums are 0."""
+    """Rewrite Σ c m with the most common factors of its products factored out; the constants of new sums are 0.
+
+    Sums among the factors get the first coefficient 1 if that is exact, so that u (2x + 1) + v (x + ½) has a common factor.
+    """
+    terms = _terms_of(linear_combination(_with_unit_sums(part, c) for part, c in terms))
     while (factor := _most_common_factor(terms)) is not None:
         inverse = power(factor, -1.0)
-        rests = [(c, multiply(part, inverse)) if factor in _factors(part) else None for part, c in terms]
+        rests = [(c, multiply(part, inverse)) if _contains(part, factor) else None for part, c in terms]
         inner = linear_combination(rest for rest in rests if rest is not None)
         others = ((c, part) for (part, c), rest in zip(terms, rests, strict=True) if rest is None)
-        total = linear_combination([(1.0, multiply(factor, inner)), *others])
-        terms = total.terms if isinstance(total, Sum) else ((total, 1.0),)
+        terms = _terms_of(linear_combination([_with_unit_sums(multiply(factor, inner), 1.0), *others]))
     return terms
 
 
+def _terms_of(total: Expression) -> Terms:
+    return total.terms if isinstance(total, Sum) else ((total, 1.0),)
+
+
+def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
+    """Return (d, e) with d e = c m; the sums among the factors of e have the first coefficient 1 if it was a power of two."""
+    factors = []
+    for base, n in part.factors if isinstance(part, Product) else ():
+        scale = base.terms[0][1] if isinstance(base, Sum) and n == int(n) else 1.0
+        if abs(math.frexp(scale)[0]) != _POWER_OF_TWO:
+            scale = 1.0
+        c *= scale**n
+        factors.append(power(linear_combination([(1.0 / scale, base)]), n))
+    return c, multiply(*factors) if factors else part
+
+
 def _most_common_factor(terms: Terms) -> Expression | None:
-    """The factor of the most products, at least two; among equals the first, so that a program never depends on hashes."""
+    """Return the product of all factors shared by those products that share the most common one, at least two of them.
+
+    Of several most common factors the first is taken, so that a program never depends on hashes.
+    """
     counts = Counter(factor for part, _ in terms for factor in _factors(part))
     factor, count = max(counts.items(), key=lambda item: item[1], default=(None, 0))
-    return factor if count > 1 else None
+    if factor is None or count == 1:
+        return None
+    having = [_factors(part) for part, _ in terms if factor in _factors(part)]
+    return multiply(*(each for each in having[0] if all(each in others for others in having)))
+
+
+def _contains(part: Expression, factor: Expression) -> bool:
+    """Return whether a product has all factors of another one."""
+    return all(each in _factors(part) for each in _factors(factor) or (factor,))
 
 
 def _factors(part: Expression) -> tuple[Expression, ...]:
-    """The factors of a product of at least two, in its order; of a positive integer power of b it is b."""
+    """Return the factors of a product of at least two, in order; a positive integer power of b has the factor b."""
     if not isinstance(part, Product):
         return ()
     found = tuple(base if n > 0.0 and n == int(n) else power(base, n) for base, n in part.factors)

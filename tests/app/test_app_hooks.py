@@ -8,8 +8,8 @@ from bokeh.server import urls
 
 from app import app_hooks
 from app.server.endpoints import ROUTES
+from app.server.routes import PageHandler, PageWebSocket, install_handlers
 from app.server.security_headers import SecurityHeaders
-from app.server.url_patterns import PageHandler, PageWebSocket, install_handlers
 
 ROOT = Path(__file__).parents[2]
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import functools
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from bokeh.models import ColumnDataSource, MultiLine, Text
@@ -16,8 +17,36 @@ from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, LineColours, Palette
 
+# Number of maps whose curves are kept.
+_TRACED = 128
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
+
+
+class TracedCurves(NamedTuple):
+    """The lines of the zero-velocity curve, and of the equipotentials at critical energies and between them."""
+
+    limit: list[np.ndarray]
+    critical: list[np.ndarray]
+    levels: list[np.ndarray]
+
+
+@functools.lru_cache(maxsize=_TRACED)
+def trace_curves(spec: MapSpec) -> TracedCurves:
+    """The curves of a map's plane, window and energy; slow for some potentials, so that the job of a map calls it first."""
+    window, h = spec.find_window(), spec.common_energy
+    limit = trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window)
+    if h is None:
+        return TracedCurves(limit, [], [])
+    critical = critical_energies(spec.potential)
+    energies = [*critical, *depth_levels(spec.potential, _LEVELS)]
+    traced = trace_equipotentials(spec.potential, spec.plane, energies, window)
+    split = len(critical)
+    return TracedCurves(limit, _joined(traced[:split]), _joined(traced[split:]))
+
+
+def _joined(levels: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:
+    return [line for lines in levels for line in lines]
 
 
 class CurveLayers:
@@ -73,17 +102,14 @@ class CurveLayers:
 
     def show(self, spec: MapSpec) -> None:
         """Draw the curves of a map's plane, window and energy."""
-        window, h = spec.find_window(), spec.common_energy
-        self._limit.data = _lines(trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window))
+        h, traced = spec.common_energy, trace_curves(spec)
+        self._limit.data = _lines(traced.limit)
         orbits = find_lyapunov_orbits(spec.potential, h) if spec.plane.shows_positions and h is not None else ()
         # Do not send empty data again.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
-        critical = critical_energies(spec.potential)
-        energies = [*critical, *depth_levels(spec.potential, _LEVELS)]
-        traced = trace_equipotentials(spec.potential, spec.plane, energies, window) if h is not None else []
-        self._critical.data = _lines([line for lines in traced[: len(critical)] for line in lines])
-        self._levels.data = _lines([line for lines in traced[len(critical) :] for line in lines])
+        self._critical.data = _lines(traced.critical)
+        self._levels.data = _lines(traced.levels)
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         if orbits:

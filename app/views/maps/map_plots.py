@@ -29,16 +29,17 @@ from app.state.view import PICTURES
 from app.views.components.legends import picture_legend
 from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
 from app.views.maps.comparison import ComparedMap
-from app.views.maps.curve_layers import CurveLayers
+from app.views.maps.curve_layers import CurveLayers, trace_curves
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_ranges import MapRanges, TwoFingers
 from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from app.views.maps.picture_grid import PictureGrid
-from app.views.maps.well import WellView
+from app.views.maps.well import WellView, well_spec
 from engine import EscapeMap, MapSpec, Window
 from engine.foundations.wording import format_number
+from engine.slices.axes import highest_energy
 from plots.layers.map_images import LAYER_COLUMNS, result_columns
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
@@ -86,6 +87,12 @@ class MapActions:
     rest: Callable[[], None]
     box: Callable[[Window], None]
     choose: Callable[[str], None]
+
+
+def prepare_curves(spec: MapSpec) -> None:
+    """Trace the curves over a map, which takes up to half a second for some potentials."""
+    trace_curves(spec)
+    trace_curves(well_spec(spec.potential, highest_energy(spec.energy)))
 
 
 class MapsView:

@@ -11,7 +11,7 @@ from app.views.components.legends import legend
 from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities
 from app.views.components.plots import FigurePane, annotate_picture, batched_additions, map_figure, set_range
 from app.views.maps.curve_layers import CurveLayers
-from engine import MapSpec, Window
+from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
 from engine.slices.planes import SPACE
 from plots.pictures.orbit_curves import OrbitCurves, find_well_window, moment
@@ -20,6 +20,11 @@ from plots.pictures.palette import LIGHT, MARK_EDGE, PAPER, Palette
 TITLE = "The well in (x, y)"
 
 _NO_LINE = np.zeros(0), np.zeros(0)
+
+
+def well_spec(potential: Potential, energy: float) -> MapSpec:
+    """The map in (x, y) whose curves are those of the well."""
+    return MapSpec(potential, SPACE, energy, window=find_well_window(potential, energy))
 
 
 class WellView:
@@ -116,13 +121,12 @@ class WellView:
         if chosen is not None and (spec.common_energy is None or spec.plane.parameter is not None):
             # Along an axis h or a parameter, the well is that of the chosen orbit.
             potential, energy = chosen.orbit.potential or potential, chosen.orbit.energy
-        window = find_well_window(potential, energy)
-        outlined = MapSpec(potential, SPACE, energy, window=window), self._palette
+        outlined = well_spec(potential, energy), self._palette
         if outlined == self._outlined:
             return
         self._outlined = outlined
         self.outlines.show(outlined[0])
-        self._go_to(window)
+        self._go_to(outlined[0].find_window())
         self.describe()
 
     def _go_to(self, window: Window) -> None:

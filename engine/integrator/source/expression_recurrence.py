@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import reduce
-from itertools import islice
+from itertools import chain, islice
 from operator import add
 from typing import NamedTuple
 
@@ -27,11 +27,12 @@ from engine.integrator.source.series import (
     Series,
     Setting,
     add_coriolis,
-    cauchy,
     half_square,
+    inner_pairs,
     sum_of_products,
     total,
 )
+from engine.integrator.source.series_plan import plan_series
 from engine.integrator.source.straight_line import StraightLine, Value
 
 _ROOT = 0.5
@@ -144,9 +145,12 @@ class _Recurrence:
         self.program, self.name, self.graph, self.rotates, self.remainders = program, name, graph, rotates, remainders
         self.x, self.y = ([program.input(f"{axis}{k}") for k in (0, 1)] for axis in "xy")
         self.series: list[list[Value]] = [{"x": self.x, "y": self.y}.get(node.kind, []) for node in graph.nodes]
-        # k u_k of the arguments of functions, and 1 / u_0 of those of powers and logarithms.
+        self._plan = plan_series(graph)
+        # k u_k of the arguments of functions, 1 / u_0 of those of powers and logarithms, sums of products, and sums of series.
         self._slopes: dict[int, list[Value]] = {}
         self._reciprocals: dict[int, Value] = {}
+        self._inner_sums: dict[tuple[int, int, bool, int], Value] = {}
+        self._combined: dict[tuple[int, int], list[Value]] = {}
         self._orders = 0
 
     def advance_to(self, k: int) -> None:
@@ -157,9 +161,13 @@ class _Recurrence:
     def advance(self, k: int) -> None:
         """Find coefficients k of all nodes, and with them coefficient k + 2 of x and y."""
         self._orders = k + 1
-        for index, node in enumerate(self.graph.nodes):
-            if node.kind not in ("x", "y"):
-                self.series[index].append(self._first(node) if k == 0 else _RULES[node.kind](self, index, node, k))
+        for index, (node, planned) in enumerate(zip(self.graph.nodes, self._plan.nodes, strict=True)):
+            if node.kind in ("x", "y"):
+                continue
+            if k == 0:
+                self.series[index].append(self._first(node))
+            elif index in self._plan.needed:
+                self.series[index].append(_RULES[planned.kind](self, index, planned, k))
         for axis, slope in zip((self.x, self.y), self.graph.results, strict=False):
             axis.append(self.series[slope][k] * (-1.0 / ((k + 1) * (k + 2))))
         if self.rotates:
@@ -188,20 +196,52 @@ class _Recurrence:
             self._reciprocals[index] = 1.0 / self.series[index][0]
         return self._reciprocals[index]
 
-    def add(self, _index: int, node: Node, k: int) -> Value:
+    def add(self, index: int, node: Node, k: int) -> Value:
         """(Σ c u)_k = Σ c u_k."""
-        pairs = zip(node.operands, node.numbers, strict=False)
-        return total(self.program, (self.program.entry((self.name, place)) * self.series[each][k] for each, place in pairs))
+        entries = {each: self.program.entry((self.name, place)) for each, place in zip(node.operands, node.numbers, strict=False)}
+        groups = self._plan.groups[index]
+        grouped = {each for products in groups.values() for each in products}
+        single = (entries[each] * self.series[each][k] for each in node.operands if each not in grouped)
+        common = (self._common_product(index, root, {each: entries[each] for each in groups[root]}, k) for root in groups)
+        return total(self.program, chain(single, common))
+
+    def _common_product(self, index: int, root: int, entries: Mapping[int, Value], k: int) -> Value:
+        """(Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k; x + d is next to 0 near a body."""
+        factors = {product: self.graph.nodes[product].operands for product in entries}
+        combined = self._combined.setdefault((index, root), [])
+        for j in range(len(combined), k + 1):
+            combined.append(reduce(add, (entries[each] * self.series[f][j] for each, (f, _) in factors.items())))
+        pairs = [(self.series[root][j], combined[k - j]) for j in range(1, k + 1)]
+        pairs += [(self.series[d][0], entries[each] * self.series[f][k]) for each, (f, d) in factors.items()]
+        return sum_of_products(pairs)
 
     def shift(self, _index: int, node: Node, k: int) -> Value:
         """(u + c)_k = u_k for k > 0."""
         return self.series[node.operands[0]][k]
 
     def product(self, _index: int, node: Node, k: int) -> Value:
-        """(u v)_k = Σ u_j v_(k − j)."""
-        left, right = (self.series[operand] for operand in node.operands)
-        coefficient = cauchy(left, right, k)
-        return coefficient + coefficient if left is right else coefficient
+        """(u v)_k = Σ u_j v_(k − j), of which u + c and v + d have all in common but the first and the last."""
+        one, other = node.operands
+        u, v = self.series[one], self.series[other]
+        if one == other:
+            half = reduce(add, [*self._inner_sum(one, one, k), u[0] * u[k]])
+            return half + half
+        return reduce(add, [*self._inner_sum(one, other, k), u[0] * v[k], u[k] * v[0]])
+
+    def _inner_sum(self, one: int, other: int, k: int) -> list[Value]:
+        """Σ u_j v_(k − j) over j = 1 … k − 1, or half of it for a square, unless it is empty."""
+        if k == 1:
+            return []
+        key = self._plan.roots[one], self._plan.roots[other], one == other, k
+        if key not in self._inner_sums:
+            u, v = self.series[one], self.series[other]
+            self._inner_sums[key] = sum_of_products(islice(half_square(u, k), k // 2) if one == other else inner_pairs(u, v, k))
+        return [self._inner_sums[key]]
+
+    def quotient(self, index: int, node: Node, k: int) -> Value:
+        """u_0 (v/u)_k = v_k − Σ u_(k − j) w_j over j = 0 … k − 1."""
+        numerator, argument = node.operands
+        return self._quotient(index, [numerator], argument, k)
 
     def power(self, index: int, node: Node, k: int) -> Value:
         """k u_0 (u^a)_k = Σ (a (k − j) − j) u_(k − j) w_j over j = 0 … k − 1, from u w' = a u' w."""
@@ -253,6 +293,7 @@ _RULES: Mapping[str, Callable[[_Recurrence, int, Node, int], Value]] = {
     "sum": _Recurrence.add,
     "shift": _Recurrence.shift,
     "product": _Recurrence.product,
+    "quotient": _Recurrence.quotient,
     "power": _Recurrence.power,
     "exp": _Recurrence.exponential,
     "log": _Recurrence.logarithm,

@@ -116,7 +116,12 @@ def cauchy(left: Series, right: Series, k: int) -> Value:
     """Coefficient k of the product of two series, or of half a square; the newest last, since the rest can start earlier."""
     if left is right:
         return sum_of_products(half_square(left, k))
-    return sum_of_products((left[j], right[k - j]) for j in sorted(range(k + 1), key=lambda j: max(j, k - j)))
+    return sum_of_products([*inner_pairs(left, right, k), (left[0], right[k]), *([(left[k], right[0])] if k else [])])
+
+
+def inner_pairs(left: Series, right: Series, k: int) -> Iterator[tuple[Value, Value]]:
+    """The factors of the products of coefficient k of a product of two series without the first and the last, the newest last."""
+    yield from ((left[j], right[k - j]) for j in sorted(range(1, k), key=lambda j: max(j, k - j)))
 
 
 def half_square(series: Series, k: int) -> Iterator[tuple[Value, Value]]:

@@ -63,12 +63,27 @@ class Recorder:
 @pytest.fixture
 def session() -> Iterator[tuple[ViewState, MapRequests, Recorder, Jobs]]:
     state, recorder, jobs = ViewState(system=System("I"), energy=0.3, resolution=112, t_max=1e2), Recorder(), Jobs()
-    requests = MapRequests(state, jobs, recorder, lambda function: function)
+    requests = MapRequests(
+        state,
+        jobs,
+        recorder,
+        lambda function: function,
+        prepare=lambda spec: recorder.record("prepared", threading.current_thread()),
+    )
     yield state, requests, recorder, jobs
     requests.close()
 
 
 Session = tuple[ViewState, MapRequests, Recorder, Jobs]
+
+
+def test_what_the_listener_needs_is_computed_before_each_frame_on_the_thread_of_the_job(session: Session) -> None:
+    _, requests, recorder, _ = session
+    requests.request_map()
+    recorder.wait_for(recorder.complete)
+    names = [name for name in recorder.names() if name != "map requested"]
+    assert names == ["prepared", "map arrived"] * (len(names) // 2)
+    assert all(value is not threading.current_thread() for name, value in recorder.calls if name == "prepared")
 
 
 def test_a_map_arrives_in_frames_and_ends_complete(session: Session) -> None:

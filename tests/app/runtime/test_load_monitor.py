@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.runtime.load_monitor import HIGH_SECONDS, LONGEST_SECONDS, TICK_SECONDS, LoadMonitor
+from app.runtime.loop_watch import HIGH_SECONDS, LONGEST_SECONDS, TICK_SECONDS, LoadMonitor
 from tests.app.clock import Clock
 
 

@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 
-from app.runtime.load_monitor import TICK_SECONDS, LoadMonitor
-from app.runtime.loop_watch import SLOW_SECONDS, WAITING, LoopWatch, find_cause
+from app.runtime.loop_watch import SLOW_SECONDS, TICK_SECONDS, WAITING, LoadMonitor, LoopWatch, find_cause
 from app.runtime.metrics import ServerMetrics
 from app.session.history import History
 from tests.app.clock import Clock

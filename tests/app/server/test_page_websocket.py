@@ -26,7 +26,7 @@ from app.browser.bokeh_patches.inline_callbacks import call_inline
 from app.runtime.fair_share import BURST_SECONDS, SHARE
 from app.runtime.process_state import ProcessState
 from app.server.page_websocket import DELAYED_NOTICE, PageWebSocket
-from app.server.url_patterns import install_handlers
+from app.server.routes import install_handlers
 from app.views.components.notice import Notice
 from tests.app.other_loop import run_on_new_loop
 from tests.page_channel import Channel

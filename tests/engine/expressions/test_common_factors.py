@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 from engine.expressions.common_factors import factor_out
-from engine.expressions.nodes import Product, X, Y, apply_function, multiply
+from engine.expressions.nodes import Product, X, Y, apply_function, linear_combination, multiply, number
 
 PROGRAM = """
 from engine import parse_formula
@@ -22,6 +22,22 @@ def test_a_factor_of_two_products_is_taken_out() -> None:
     ((product, _),) = factor_out(((multiply(X, sine), 2.0), (multiply(X, cosine), 3.0)))
     assert isinstance(product, Product)
     assert X in dict(product.factors)
+
+
+def test_all_common_factors_are_taken_out_at_once() -> None:
+    sine, cosine = apply_function("sin", Y), apply_function("cos", Y)
+    ((product, _),) = factor_out(((multiply(X, sine, Y), 2.0), (multiply(X, cosine, Y), 3.0)))
+    assert isinstance(product, Product)
+    assert {X, Y} < dict(product.factors).keys()
+
+
+def test_sums_that_differ_by_a_power_of_two_are_a_common_factor() -> None:
+    one, double = (linear_combination([(c, X), (0.3 * c, number(1.0))]) for c in (1.0, 2.0))
+    ((product, _),) = factor_out(
+        ((multiply(one, apply_function("sin", Y)), 2.0), (multiply(double, apply_function("cos", Y)), 3.0))
+    )
+    assert isinstance(product, Product)
+    assert one in dict(product.factors)
 
 
 def test_the_graph_does_not_depend_on_hashes() -> None:

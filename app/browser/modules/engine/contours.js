@@ -46,9 +46,12 @@ export function levelLines({window, values}, level) {
  * @param {(one: number, other: number) => void} join
  */
 function joinCell(values, level, corner, join) {
-  const corners = [corner, corner + 1, corner + SAMPLES + 1, corner + SAMPLES]
-  const inside = corners.map(sample => values[sample] <= level)
-  if (inside.every(Boolean) || !inside.some(Boolean)) return
+  const isInside = (/** @type {number} */ sample) => values[sample] <= level
+  const [right, opposite, above] = [corner + 1, corner + SAMPLES + 1, corner + SAMPLES]
+  const first = isInside(corner)
+  // Nearly all cells are left here.
+  if (isInside(right) === first && isInside(opposite) === first && isInside(above) === first) return
+  const inside = [corner, right, opposite, above].map(isInside)
   const sides = [2 * corner, 2 * (corner + 1) + 1, 2 * (corner + SAMPLES), 2 * corner + 1]
   const crossed = sides.filter((_, k) => inside[k] !== inside[(k + 1) % 4])
   // Two lines pass a saddle.

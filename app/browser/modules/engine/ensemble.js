@@ -9,7 +9,7 @@ import {Integrator} from "./integrator.js"
 import {findAllEnds} from "./orbits.js"
 
 /** Orbits are followed for this long beyond an exit that is no disc, in units of the well. */
-export const FOLLOWED_BEYOND = 1.5
+const FOLLOWED_BEYOND = 1.5
 /** Orbits whose outcomes are found at a time. */
 const PORTION = 256
 

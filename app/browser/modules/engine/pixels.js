@@ -43,7 +43,7 @@ const LARGEST_TOLERANCE = 1e-9
  * @param {import("./system.js").System} system
  * @param {View} view
  */
-export function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
+function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
   const width = (window.xHigh - window.xLow) / columns / slice.units[0]
   const height = (window.ordinateHigh - window.ordinateLow) / rows / slice.units[1]
   const smallest = Math.min(1, ...exits.flatMap(exit => ("row" in exit && exit.side < 0 ? [exit.radius] : [])))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from app.runtime.health import StateCollector
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import Settings
-from app.runtime.state_collector import StateCollector
 
 
 def test_gauges_show_the_current_state() -> None:
