@@ -9,7 +9,7 @@ fixed time step.
 
 The weight exp(−1/(s(1 − s))), s = t/T, of these papers converges faster than any power of T. Eight digits are enough here, and
 the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105) reaches them for motion that completes 7 or more revolutions
-within T, against 30 for the other.
+within T, whereas the former weight needs 30 revolutions.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from engine.systems.compiled import fixed_step_size, kernels_of
 from engine.systems.potential import Potential
 
 WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
-"""Window lengths T to try in turn, dimensionless; the first one is enough for most tori."""
+"""Window lengths T to try in turn, dimensionless; the first one suffices for most tori."""
 
 TORUS_DIGITS = 8.0
 """Number of agreeing digits from which an orbit counts as quasi-periodic.
@@ -77,7 +77,7 @@ def compare_averages(
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
-    """(n, 2) digits to which the averages over the two consecutive windows agree, and those to which all three agree.
+    """Return (n, 2) digits to which the averages over the two consecutive windows agree, and to which all three averages agree.
 
     The parameters are those of `count_agreeing_digits`.
     """
@@ -85,7 +85,7 @@ def compare_averages(
 
 
 def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
-    """The digits to which weighted averages of x² and y² over both halves of one orbit, and one between them, agree.
+    """Return the digits to which weighted averages of x² and y² over both halves of one orbit, and one between them, agree.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
 
 
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
-    """(lanes, 2) digits of the orbits in a tile (4, lanes)."""
+    """Return (lanes, 2) digits of the orbits in a tile (4, lanes)."""
     energy, step = potential.energy(tile.T), fixed_step_size(potential)
     averages = np.zeros((3, 2, tile.shape[1]))
     kernels_of(potential).birkhoff_averages(step, window_weights(window, step), tile, averages)
@@ -113,7 +113,7 @@ def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> n
 
 
 def _digits(averages: np.ndarray) -> np.ndarray:
-    """(2, n) digits to which the first two, and all three, of the averages (3, 2, n) of two observables of n orbits agree."""
+    """Return (2, n) digits to which the first two, and all three, averages (3, 2, n) of two observables agree, for n orbits."""
     with np.errstate(all="ignore"):
         difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])
         digits = -np.log10(np.maximum(difference.max(axis=1), 10.0**-_MOST_DIGITS))

@@ -22,19 +22,19 @@ from engine.systems.potential import Potential
 
 # An orbit is tested with the next window if its averages over the previous one agreed to at least this many digits.
 _PROMISING_DIGITS = 3.5
-# A window that takes longer than the time left is used only on the few most promising orbits, for the curves they give, and only
-# if that costs less than this share of the work left.
+# A window that takes longer than the time left is used on the few most promising orbits alone, because their curves can enclose
+# other orbits, and only if its cost is less than this share of the work left.
 _MAX_WORK_SHARE = 0.15
 _MAX_SEEDS = 2 * LANES
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)
-# A coarse lattice with fewer candidates is left out, as a round with few orbits does not keep all workers busy.
+# A coarse lattice with fewer candidates is skipped, because a round with few orbits does not keep all workers busy.
 _SMALLEST_ROUND = 16
 # Section points per orbit and the time to collect them; orbits per round for which an invariant curve is computed.
 _CURVE_POINTS = 800
 _CURVE_TIME = 8000.0
 _MAX_CURVES_PER_ROUND = 192
 _FIRST_POINT_TIME = 30.0
-# With so few points it takes longer to share barriers among workers than to apply them.
+# With so few points, sharing barriers among workers takes longer than applying them.
 _FEW_POINTS = 2000
 
 
@@ -46,7 +46,8 @@ class BoundedOrbitSearch:
     potential
         The `Potential`.
     energy
-        The common energy; None when the energies differ, as the invariant curves of one orbit then do not bound another.
+        The energy of all orbits; None if the energies differ, in which case the invariant curves of one orbit do not bound
+        another.
     states
         (n, 4) current states x, y, px, py, finite.
     grid_indices
@@ -56,16 +57,16 @@ class BoundedOrbitSearch:
     execution
         How the computation runs.
     tested_for
-        `time_left` of an earlier test of the same orbits, whose windows are not used again; 0 without one.
+        `time_left` of an earlier test of the same orbits, whose windows are not used again; 0 if there was no earlier test.
     digits
-        (n,) digits found by the earlier test; None without one.
+        (n,) digits found by the earlier test; None if there was no earlier test.
 
     Attributes
     ----------
     evidence
         (n,) int8 `Evidence` codes found so far.
     digits
-        (n,) digits to which the averages over two windows of the greatest length tried agree; infinite before any.
+        (n,) digits to which the averages over two windows agree, for the longest windows tested; infinite before the first test.
     """
 
     def __init__(
@@ -103,13 +104,13 @@ class BoundedOrbitSearch:
             self.digits[tested] = two
             self.evidence[tested[three >= TORUS_DIGITS]] = Evidence.QUASI_PERIODIC
             if self._use_curves:
-                # Two averages are enough here, since the curve is evidence of a torus as well.
+                # Two averages suffice here, because the invariant curve is itself evidence of a torus.
                 self._find_enclosed(tested[two >= TORUS_DIGITS])
             on_round()
         return not self._execution.is_cancelled
 
     def _rounds(self) -> Iterator[tuple[float, np.ndarray]]:
-        """(window, orbits) of each round; orbits with evidence from one round are left out of the next."""
+        """Yield (window, orbits) for each round; orbits for which a round finds evidence are left out of the next round."""
         for window in WINDOWS:
             promising = self.digits >= _PROMISING_DIGITS
             duration = 2.0 * window
@@ -119,7 +120,7 @@ class BoundedOrbitSearch:
                 yield from ((window, tested) for tested in self._most_promising(promising, duration))
 
     def _lattices(self, candidates: np.ndarray) -> Iterator[np.ndarray]:
-        """All candidates, pixels of a coarse lattice first, as the curves of a few orbits can enclose many others."""
+        """Yield groups of candidates, first a coarse lattice, because the curves of a few orbits can enclose many others."""
         for stride in _LATTICE_STRIDES:
             on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
             tested = np.flatnonzero(self._without_evidence() & candidates & on_lattice)
@@ -127,7 +128,7 @@ class BoundedOrbitSearch:
                 yield tested
 
     def _most_promising(self, candidates: np.ndarray, duration: float) -> Iterator[np.ndarray]:
-        """Small groups of candidates with the most digits, until a group costs more than it saves."""
+        """Yield small groups of the candidates with the most digits, until a group costs more than it saves."""
         candidates = candidates.copy()
         while True:
             before = np.count_nonzero(self._without_evidence())
@@ -144,7 +145,7 @@ class BoundedOrbitSearch:
                 return
 
     def _without_evidence(self) -> np.ndarray:
-        """(n,) bool: orbits without evidence."""
+        """Return (n,) bool: orbits without evidence."""
         without_evidence: np.ndarray = self.evidence == Evidence.NONE
         return without_evidence
 
@@ -186,16 +187,16 @@ class _Barrier:
     curve
         The curve.
     exit_sides
-        For the curve, 1.0, and its mirror image, −1.0: the side on which each exit lies, see `InvariantCurve.find_side`; 0 if
-        unknown.
+        The side of the curve on which each exit lies, see `InvariantCurve.find_side`; 0 if it is unknown. The key is 1.0 for the
+        curve and −1.0 for its mirror image.
     """
 
     curve: InvariantCurve
     exit_sides: dict[float, np.ndarray]
 
     def find_separated(self, points: np.ndarray) -> np.ndarray:
-        """(n, channels) bool: the exits on the other side of the curve, or of its mirror image, than each point (n, 2)."""
-        # The mirror image is rotated by 180°; instead the points are.
+        """Return (n, channels) bool: whether the curve or its mirror image separates each point (n, 2) from each exit."""
+        # Rotating the points by 180° is equivalent to rotating the curve into its mirror image.
         sides = [self.curve.find_side(sign * points)[:, None] * exit_side for sign, exit_side in self.exit_sides.items()]
         separated: np.ndarray = np.any(np.equal(sides, -1), axis=0)
         return separated
@@ -204,7 +205,7 @@ class _Barrier:
 def _find_barriers(
     potential: Potential, tile: np.ndarray, mirror: bool, entry_points: tuple[np.ndarray, ...]
 ) -> list[_Barrier | None]:
-    """The barrier of each orbit in a tile (4, lanes), None where it has no curve; runs in a worker."""
+    """Return the barrier of each orbit in a tile (4, lanes), or None for an orbit without a curve; runs in a worker."""
     barriers: list[_Barrier | None] = []
     for points in trace_section_points(potential, tile, _CURVE_POINTS, _CURVE_TIME):
         curve = find_invariant_curve(points[np.isfinite(points).all(axis=1)])
@@ -221,7 +222,7 @@ def _exit_sides(curve: InvariantCurve, mirror: bool, entry_points: tuple[np.ndar
 
 
 def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separated: np.ndarray) -> list[_Barrier]:
-    """The barriers of orbits (n, 2) that the barriers before them do not separate from all exits, and that add nothing then."""
+    """Return the barriers of those orbits (n, 2) that the preceding barriers do not already separate from all exits."""
     kept = []
     for number in _alternating_by_size([0.0 if barrier is None else barrier.curve.area for barrier in barriers]):
         barrier = barriers[number]
@@ -237,7 +238,7 @@ def _separated_by_pickled(barriers: bytes, points: np.ndarray, separated: np.nda
 
 
 def _separated_by_any(barriers: list[_Barrier], points: np.ndarray, separated: np.ndarray) -> np.ndarray:
-    """(n, channels) bool: the exits from which any barrier separates each point (n, 2), and those known before."""
+    """Return (n, channels) bool: whether any barrier separates each point (n, 2) from each exit, or was known to do so."""
     for barrier in barriers:
         left = np.flatnonzero(~separated.all(axis=1))
         separated[left] |= barrier.find_separated(points[left])
@@ -245,7 +246,7 @@ def _separated_by_any(barriers: list[_Barrier], points: np.ndarray, separated: n
 
 
 def _alternating_by_size(sizes: list[float]) -> Iterator[int]:
-    """Indices of the largest, the smallest, the second largest, …: of nested curves the outermost and innermost come first."""
+    """Yield the indices of the largest, the smallest, the second largest, …, so that the extremes of nested curves come first."""
     order = np.argsort(sizes, kind="stable")[::-1]
     for k in range(order.size):
         yield int(order[k // 2] if k % 2 == 0 else order[-1 - k // 2])

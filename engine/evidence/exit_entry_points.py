@@ -1,4 +1,4 @@
-"""Section points of orbits that enter through an exit; they tell on which side of an invariant torus each exit lies."""
+"""Section points of orbits that enter through an exit, which show on which side of an invariant torus each exit lies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from engine.propagation.section_points import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.potential import Potential
 
-# Starts on each exit: every tenth sample of the Lyapunov orbit except near its ends, and angles to the inward direction.
+# Starts on each exit: every tenth sample of the Lyapunov orbit except near its ends, and angles from the inward direction.
 _POSITIONS = slice(10, -10, 10)
 _ANGLES = np.radians([-60.0, -30.0, 0.0, 30.0, 60.0])
 _MAX_ENTRY_TIME = 30.0
@@ -55,7 +55,7 @@ def _entry_points(potential: Potential, energy: float, orbit: LyapunovOrbit) -> 
 
 
 def _inward_states(potential: Potential, energy: float, orbit: LyapunovOrbit) -> np.ndarray:
-    """(n, 4) states on a Lyapunov orbit's path with momenta that point inward."""
+    """Return (n, 4) states on a Lyapunov orbit's path with momenta that point inward."""
     x, y = np.repeat(orbit.half_path[_POSITIONS], _ANGLES.size, axis=0).T
     speed = np.sqrt(2.0 * np.maximum(energy - potential.value(x, y), 0.0))
     inward = -orbit.outward
@@ -64,7 +64,7 @@ def _inward_states(potential: Potential, energy: float, orbit: LyapunovOrbit) ->
 
 
 def _is_interior(potential: Potential, energy: float, points: np.ndarray) -> np.ndarray:
-    """(n,) bool: points (n, 2) allowed at this energy and inside all exits; NaN points and orbits that left again are neither."""
+    """Return (n,) bool: whether points (n, 2) are allowed and inside all exits; False for NaN and for orbits that left again."""
     x, px = points.T
     with np.errstate(invalid="ignore"):
         allowed = SECTION.required_energy(potential, x, px) <= energy

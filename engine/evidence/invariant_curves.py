@@ -112,7 +112,7 @@ def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
 
 
 def _find_loops(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon, float]]:
-    """The loop around each island of a chain with its margin; an empty list if any loop is not closed."""
+    """Return the loop around each island of a chain with its margin; an empty list if any loop is not closed."""
     loops = []
     for first in range(islands):
         loop = _find_loop(np.ascontiguousarray(points[first::islands]))
@@ -123,7 +123,7 @@ def _find_loops(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon,
 
 
 def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
-    """The loop through successive points of a rotation and its margin; None when they are not on a closed curve."""
+    """Return the loop through successive points of a rotation and its margin; None when they are not on a closed curve."""
     import shapely
 
     loop = np.empty_like(points)

@@ -2,7 +2,8 @@
 
 At an energy h above the saddle such an orbit oscillates between two points at rest (Contopoulos 1990, Astron. Astrophys. 231,
 41). An orbit that starts at rest on the zero-velocity curve too close to the well moves inward, one that starts too far out moves
-outward. The orbit in between is the root of the velocity along the channel at the turning point. All in units of the well.
+outward. The orbit in between is the root of the velocity along the channel at the turning point. All quantities are in units of
+the well.
 """
 
 from __future__ import annotations
@@ -19,31 +20,32 @@ from engine.integrator.source.series import ORDER
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Lengths along the channel, in units of the distance of the saddle from the origin: where a trial orbit has left the saddle for
-# good, the first step of the bracket search, and where this search ends.
+# Lengths along the channel, in units of the distance of the saddle from the origin: the distance beyond which a trial orbit has
+# left the saddle, the first step of the bracket search, and the end of this search.
 _LARGEST_EXCURSION = 1.0
 _FIRST_STRIDE = 0.01
 _LARGEST_OFFSET = 2.0
 
-# Search from outside: starts, the farthest one along the channel, and where a trial orbit has left for good.
+# Search from outside: number of starts, farthest start along the channel, and distance beyond which a trial orbit has left.
 _STARTS, _FARTHEST_START, _LARGEST_MOVE = 241, 1.5, 0.6
 
-# Steps of the continuation. Lengths are in units of the distance between the ends of the orbit before: where the line to the
-# zero-velocity curve begins, the first step of the bracket search, and where it ends.
+# Steps of the continuation, in units of the distance between the ends of the preceding orbit: where the line to the zero-velocity
+# curve begins, the first step of the bracket search, and the end of this search.
 _LINE_START = 0.1
 _FIRST_SHIFT = 1e-4
 _LARGEST_SHIFT = 0.2
-# Largest relative move of the ends and change of the period; a larger one can be a jump to another orbit.
+# Largest relative change of the ends and of the period; a larger change can be a jump to another orbit.
 _LARGEST_CHANGE = 0.15
 # First and smallest step of the energy, in units of its height above the saddle.
 _FIRST_ENERGY_STEP = 2.0**-4
 _SMALLEST_ENERGY_STEP = 2.0**-14
 _MOST_ENERGY_STEPS = 256
 
-# Largest speed at the second end, in units of the well: a root at a jump of the velocity is no orbit.
+# Largest speed at the second end, in units of the well; a root with a larger speed is a discontinuity of the velocity, not an
+# orbit.
 _REST = 1e-8
-# The same for orbits joined from two: there `_REST` is the largest distance between them, in this part of the half period around
-# the middle.
+# Limits for orbits joined from two shots: `_REST` is the largest distance between the shots in this part of the half period
+# around the middle.
 _NEARLY_AT_REST = 1e-3
 _OVERLAP = 0.05
 _SAMPLES_PER_HALF_PERIOD = 100
@@ -101,7 +103,7 @@ class _Shot(NamedTuple):
         return self.positions(np.linspace(0.0, self.half_period, _SAMPLES_PER_HALF_PERIOD + 1))
 
     def positions(self, times: np.ndarray) -> np.ndarray:
-        """(2, m) x and y at `times` (m,)."""
+        """Return (2, m) x and y at `times` (m,)."""
         step = np.searchsorted(self.begins, times, side="right") - 1
         powers = (times - self.begins[step]) ** np.arange(ORDER + 1)[:, None]
         path: np.ndarray = (self.coefficients[:, :, step] * powers).sum(axis=1)
@@ -109,24 +111,24 @@ class _Shot(NamedTuple):
 
 
 def saddle_axes(potential: Potential, channel: int) -> Axes:
-    """The saddle and its unstable direction."""
+    """Return the saddle and its unstable direction."""
     return Axes(potential.saddles[channel - 1], potential.well.outward_directions[channel - 1])
 
 
 def chord_axes(path: np.ndarray) -> Axes:
-    """Axes across and along the line between the ends of a path (2, n), near its first end."""
+    """Return axes across and along the line between the ends of a path (2, n), near its first end."""
     chord = path[:, -1] - path[:, 0]
     return Axes(path[:, 0] + _LINE_START * chord, np.array([chord[1], -chord[0]]) / np.hypot(*chord))
 
 
 def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
-    """The orbit over a saddle at one energy, searched from the saddle; None if it is not found."""
+    """Return the orbit over a saddle at one energy, searched from the saddle; None if it is not found."""
     shot = _find_from_saddle(potential, energy, channel, saddle_axes(potential, channel), _REST)
     return None if shot is None else shot.orbit
 
 
 def find_from_both_ends(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
-    """The orbit over a saddle at one energy, shot from both ends and joined in its middle; None if it is not found.
+    """Return the orbit over a saddle at one energy, shot from both ends and joined in its middle; None if it is not found.
 
     Errors grow over a quarter of a period only, and the zero-velocity curve may bend away at the first end.
     """
@@ -140,7 +142,7 @@ def find_from_both_ends(potential: Potential, energy: float, channel: int) -> Br
 
 
 def find_from_outside(potential: Potential, energy: float, axes: Axes, size: float) -> Iterator[BrakeOrbit]:
-    """The orbits from a wall at q < 0 to one at q > 0, the outermost first; `size` is the scale of the search."""
+    """Yield the orbits from a wall at q < 0 to one at q > 0, the outermost first; `size` is the scale of the search."""
     trials = _Trials(potential, energy, axes, _LARGEST_MOVE * size)
     offsets = _FARTHEST_START * size * np.linspace(1.0, -1.0, _STARTS)
     velocities = [trials.outward_velocity(u) for u in offsets.tolist()]
@@ -164,13 +166,13 @@ def continue_in_energy(potential: Potential, energy: float, channel: int) -> Bra
 
 
 def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, rest: float) -> _Shot | None:
-    """The orbit from a point with q < 0 in axes at the saddle to one with q > 0; None if it is not found."""
+    """Return the orbit from a point with q < 0 in axes at the saddle to one with q > 0; None if it is not found."""
     distance = _distance(potential, channel)
     search = _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
     shot = _shoot(potential, energy, channel, axes, search, rest)
     if shot is None:
         return None
-    # A start on a wall of another channel leads to an orbit across that one.
+    # A start on a wall of another channel leads to an orbit across that channel.
     _, q = axes.coordinates(shot.path)
     return shot if q[0] < 0.0 < q[-1] else None
 
@@ -191,7 +193,7 @@ def _join(there: _Shot, back: _Shot, axes: Axes) -> BrakeOrbit | None:
 
 
 def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
-    """The time at which a trial orbit passes q."""
+    """Return the time at which a trial orbit passes q."""
 
     def distance(time: float) -> float:
         return float(axes.coordinates(shot.positions(np.array([time])))[1][0]) - q
@@ -225,25 +227,25 @@ def _distance(potential: Potential, channel: int) -> float:
 
 
 def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, rest: float) -> _Shot | None:
-    """Find the orbit that starts nearest to the origin of the axes along the channel; None if there is none."""
+    """Find the orbit whose start is nearest to the origin of the axes along the channel; None if there is none."""
     trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _distance(potential, channel))
     bracket = _find_bracket(trials.outward_velocity, search)
     return None if bracket is None else trials.solve(bracket, rest)
 
 
 class _Trials:
-    """Orbits that start at rest on the wall at q < 0 in some axes, and may move along the channel as far as `reach`."""
+    """Orbits that start at rest on the wall at q < 0 in some axes; they are followed along the channel as far as `reach`."""
 
     def __init__(self, potential: Potential, energy: float, axes: Axes, reach: float) -> None:
         self._kernels, self._steps = kernels_of(potential), np.empty((_MOST_STEPS, 5))
         self._arguments = (*axes.origin, *axes.outward, energy, reach, TOLERANCE, self._steps)
 
     def outward_velocity(self, u: float) -> float:
-        """The velocity along the channel at the turning point, after a start at rest at offset u."""
+        """Return the velocity along the channel at the turning point, after a start at rest at offset u."""
         return float(self._kernels.shoot(u, *self._arguments)[0])
 
     def solve(self, bracket: tuple[float, float], rest: float) -> _Shot | None:
-        """The orbit that starts between two offsets and comes to rest; None if there is none."""
+        """Return the orbit that starts between two offsets and comes to rest; None if there is none."""
         u = find_root(self.outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
         if not (np.isfinite(half_period) and abs(velocity) < rest):
@@ -254,7 +256,7 @@ class _Trials:
 
 
 def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:
-    """Search, with growing steps, an inner start that moves inward and an outer one that moves outward."""
+    """Search, with growing steps, for an inner start that moves inward and an outer start that moves outward."""
     here, stride = 0.0, search.stride
     first = outward_velocity(here)
     if np.isnan(first):

@@ -1,4 +1,4 @@
-"""Following a solution along a parameter."""
+"""Continuation of a solution along a parameter."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ def follow[Solution](
     Parameters
     ----------
     advance
-        Returns the solution at a value, from the one reached; None if it finds none close to that one. Then the step is halved,
-        otherwise doubled.
+        A function of a value and of the solution at the value reached. It returns the solution at the new value, or None if it
+        finds none close to the given one. After None the step is halved; otherwise it is doubled.
     solution
-        What is known at `begin`.
+        The solution at `begin`.
     begin, end
         The first and the last value.
     steps

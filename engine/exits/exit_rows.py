@@ -17,17 +17,17 @@ from engine.systems.review.hill_region import check_closed_well
 from engine.systems.review.singularity_check import check_defined
 from engine.systems.well_units import nearest_power_of_two
 
-# Distance of a gate from the exit, in units of the distance of the saddle rounded to a power of 2.
+# Distance of a gate from the exit, in units of the distance of the saddle from the origin, rounded to a power of 2.
 _GATE_MARGIN = 1e-3
 
 
 def closed_exits(potential: Potential) -> np.ndarray:
-    """(outcomes, columns) the exits below all saddles: short lines across these, and the other ends.
+    """Return (outcomes, columns) the exits below all saddles: short lines across the saddles, and the ends besides saddles.
 
     Raises
     ------
     ValueError
-        If there are no exits, but the well is not closed either: it is not defined which orbits escape. Or if V is not defined
+        If there are no exits although the well is not closed, so that it is undefined which orbits escape, or if V is not defined
         somewhere within the escape radius.
     """
     if potential.escape_radius is not None:
@@ -42,7 +42,7 @@ def closed_exits(potential: Potential) -> np.ndarray:
 
 
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
-    """(outcomes, columns) exits of a potential in units of its well at one energy, for the kernels."""
+    """Return (outcomes, columns) exits of a potential in units of its well at one energy, for the kernels."""
     curves = closed_exits(potential)
     for orbit in find_orbits_in_well_units(potential, energy):
         curves[orbit.channel - 1] = orbit.curve
@@ -52,7 +52,7 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
 
 
 def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execution = DEFAULT_EXECUTION) -> np.ndarray:
-    """(n, outcomes, columns) `exit_curves` at energies (n,)."""
+    """Return (n, outcomes, columns) `exit_curves` at energies (n,)."""
     curves = np.repeat(closed_exits(potential)[None], len(energies), axis=0)
     for row, energy in enumerate(energies.tolist()):
         execution.raise_if_cancelled()
@@ -61,9 +61,9 @@ def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execut
 
 
 def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
-    """Return the `exit_curves` for one orbit, and why they are not known, or ""; orbits are also integrated without exits.
+    """Return the `exit_curves` for one orbit, and the reason why exits over saddles are unknown, or "" if they are known.
 
-    Where they are not defined at the energy no orbit crosses one and no start lies beyond one; other ends stay.
+    Where the exits are unknown, no orbit crosses one and no start lies beyond one; other ends remain.
     """
     try:
         return exit_curves(potential, energy), ""
@@ -75,10 +75,10 @@ def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:
-    """(outcomes, 3) the gates of exits (…, outcomes, columns): no orbit ends before a gate, which the kernels test first.
+    """Return (outcomes, 3) gates of exits (…, outcomes, columns). No orbit ends before it passes a gate, which is cheap to test.
 
-    Across a channel it is the line a x + b y = c slightly inside its exits at all energies; of a circle it is the centre and the
-    radius.
+    The gate of a channel is the line a x + b y = c slightly inside its exits at all energies. The gate of a circle is its centre
+    and its radius.
     """
     outcomes, columns = curves.shape[-2:]
     rows = curves.reshape(math.prod(curves.shape[:-2]), outcomes, columns)
@@ -89,7 +89,7 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
 
 
 def _lines_inside(rows: np.ndarray) -> np.ndarray:
-    """(channels, 3) lines across channels, slightly inside their exits (energies, channels, columns)."""
+    """Return (channels, 3) lines across channels, slightly inside their exits (energies, channels, columns)."""
     s = np.linspace(-1.0, 1.0, 201)
     u = chebyshev.chebval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0))
     q = rows[..., events.MIDDLE, None] + rows[..., events.HALF_WIDTH, None] * s

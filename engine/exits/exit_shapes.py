@@ -12,26 +12,28 @@ from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9
-# The lines beyond the ends of an exit are sampled from this |s| − 1 on, up to this multiple of the distance of the saddle.
+# The lines beyond the ends of an exit are sampled from this |s| − 1 to this multiple of the distance of the saddle.
 _FIRST_BEYOND, _FARTHEST_BEYOND, _SAMPLES_BEYOND = 1e-3, 2.0, 400
 # Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
 _CLOSED_HALF_WIDTH = 1e-3
-# How far it lies beyond the saddle, in the same unit: an orbit at rest on the saddle starts inside, wherever rounding puts it.
+# Distance of the line beyond the saddle, in the same unit. An orbit at rest on the saddle then starts inside in spite of
+# rounding.
 _CLOSED_OFFSET = 1e-9
-# Walls are followed from the saddle to the line in this many steps. A wall is searched up to this multiple of the distance of the
-# saddle from the origin, at this many points.
+# Number of steps in which walls are followed from the saddle to the line. A wall is searched up to this multiple of the distance
+# of the saddle from the origin, at this number of points.
 _WALL_STEPS = 32
 _FARTHEST_WALL, _WALL_POINTS, _BISECTIONS = 5.0, 400, 60
 # Points along a line for drawings; step along the ridge, in units of the distance of the saddle from the origin.
 _LINE_POINTS, _RIDGE_STEP = 41, 1e-3
-# Largest change of the position of a wall in a step, in units of the width of the neck; a larger one is a jump to another wall.
+# Largest change of the position of a wall in a step, in units of the width of the neck; a larger change can be a jump to another
+# wall.
 _LARGEST_WALL_STEP = 0.25
 # Ends of two orbits closer than this, in units of the well, are the same.
 _SAME_END = 1e-6
 
 
 def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
-    """(columns,) the exit of a closed channel: a short straight line just beyond the origin of the axes."""
+    """Return (columns,) the exit of a closed channel: a short straight line just beyond the origin of the axes."""
     curve = np.zeros(events.CURVE_COLUMNS)
     curve[events.ORIGIN_X : events.OUTWARD_Y + 1] = *axes.origin, *axes.outward
     curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
@@ -42,16 +44,16 @@ def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
 
 
 def absent_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
-    """(columns,) the exit of a channel that is part of another exit: one that no orbit crosses."""
+    """Return (columns,) a row that no orbit crosses, for a channel that is part of another exit."""
     curve = closed_channel(axes, saddle)
     curve[events.REACH] = -1.0
     return curve
 
 
 def ridge_bend(potential: Potential, channel: int) -> float:
-    """a of u = a q², which the ridge of V across a channel follows at its saddle, in the axes of this: V_u = 0 there.
+    """Return a of u = a q², the ridge of V near the saddle, on which V_u = 0, in the axes of the saddle.
 
-    From V_uqq and V_uu; V_uqq by a central difference, as any a near this one gives an exit.
+    It follows from V_uqq and V_uu. A central difference suffices for V_uqq, because any a near the exact one gives an exit.
     """
     axes = saddle_axes(potential, channel)
     step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * np.array([-axes.outward[1], axes.outward[0]])
@@ -64,12 +66,12 @@ def ridge_bend(potential: Potential, channel: int) -> float:
 def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
     """(columns,) the exit u = edge + a q² in the axes of a saddle, between the walls of its neck, V = energy; a: `ridge_bend`.
 
-    The walls beside the saddle are followed to the line. None if they do not lead there.
+    The walls beside the saddle are followed to the line. The result is None if they do not lead to it.
     """
     axes, bend = saddle_axes(potential, channel), ridge_bend(potential, channel)
     walls = _find_walls(potential, energy, axes, np.linspace(0.0, edge, _WALL_STEPS + 1), bend)
     widths = walls[:, 1] - walls[:, 0]
-    # Not a number where there is no wall.
+    # NaN marks points without a wall.
     if not np.all(np.abs(np.diff(walls, axis=0)) < _LARGEST_WALL_STEP * widths[1:, None]):
         return None
     low, high = walls[-1]
@@ -86,7 +88,7 @@ def line_across(potential: Potential, energy: float, channel: int, edge: float) 
 
 
 def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray | None:
-    """(columns,) the path (2, n) as a graph u = f(s), s ∈ [−1, 1], without its reach; None if it is not a smooth graph."""
+    """Return (columns,) the path (2, n) as a graph u = f(s), s ∈ [−1, 1], without its reach; None if it is not a smooth graph."""
     u, q = axes.coordinates(path)
     middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
     s = (q - middle) / half_width
@@ -105,7 +107,7 @@ def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray 
 
 
 def mirrored_curve(curve: np.ndarray) -> np.ndarray:
-    """An exit curve in the axes of the mirrored saddle, where u is unchanged and q has the opposite sign."""
+    """Return an exit curve in the axes of the mirrored saddle, where u is unchanged and q has the opposite sign."""
     image = curve.copy()
     image[[events.ORIGIN_X, events.OUTWARD_X, events.BEARING_X, events.MIDDLE]] *= -1.0
     image[[events.SLOPE_LOW, events.SLOPE_HIGH]] = -curve[[events.SLOPE_HIGH, events.SLOPE_LOW]]
@@ -114,7 +116,7 @@ def mirrored_curve(curve: np.ndarray) -> np.ndarray:
 
 
 def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
-    """The |s| up to which a crossing counts: half of the way along the straight lines beyond the ends to where V ≤ h again."""
+    """Return the largest |s| at which a crossing counts: half the way along straight lines from the ends to where V ≤ h."""
     reach = np.inf
     saddle, outward = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
     farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
@@ -128,7 +130,7 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
 
 
 def line_points(curve: np.ndarray) -> np.ndarray:
-    """(41, 2) x and y along an exit that is a line, from wall to wall."""
+    """Return (41, 2) x and y along an exit that is a line, from wall to wall."""
     origin, outward = curve[events.ORIGIN_X : events.ORIGIN_Y + 1], curve[events.OUTWARD_X : events.OUTWARD_Y + 1]
     s = np.linspace(-1.0, 1.0, _LINE_POINTS)
     u, q = chebyshev.chebval(s, curve[events.COEFFICIENTS :]), curve[events.MIDDLE] + curve[events.HALF_WIDTH] * s
@@ -137,17 +139,17 @@ def line_points(curve: np.ndarray) -> np.ndarray:
 
 
 def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndarray, bend: float) -> np.ndarray:
-    """(n, 2) the q of the walls on both sides of q = 0 on u = offset + bend q², by bisection; NaN where there is none."""
+    """Return (n, 2) the q of the walls on both sides of q = 0 on u = offset + bend q², by bisection; NaN without a wall."""
     across = np.array([-axes.outward[1], axes.outward[0]])
 
     def is_beyond(q: np.ndarray) -> np.ndarray:
-        """Whether V > energy at q (n, 2, m)."""
+        """Return whether V > energy at q (n, 2, m)."""
         u = offset[:, None, None] + bend * q * q
         points = axes.origin + u[..., None] * axes.outward + q[..., None] * across
         beyond: np.ndarray = potential.value(points[..., 0], points[..., 1]) > energy
         return beyond
 
-    # Denser near the saddle.
+    # The points are denser near the saddle.
     grid = np.linspace(0.0, 1.0, _WALL_POINTS) ** 2 * _FARTHEST_WALL * float(np.hypot(*axes.origin))
     q = np.broadcast_to(np.array([-1.0, 1.0])[:, None] * grid, (offset.size, 2, grid.size))
     with np.errstate(all="ignore"):
@@ -164,12 +166,12 @@ def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two polygonal lines, (n, 2) and (m, 2), intersect."""
+    """Return whether two polygonal lines, (n, 2) and (m, 2), intersect."""
     if np.any(one.max(axis=0) < other.min(axis=0)) or np.any(other.max(axis=0) < one.min(axis=0)):
         return False
 
     def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """(segments, points) on which side of each segment of a line the points lie."""
+        """Return (segments, points) the side of each segment of a line on which each point lies."""
         along, apart = np.diff(line, axis=0)[:, None], points - line[:-1, None]
         left: np.ndarray = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
         return left

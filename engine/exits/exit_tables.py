@@ -25,15 +25,15 @@ from engine.systems.potential import Potential
 LARGEST_ERROR = 1e-6
 """Largest distance of an interpolated exit from the exit, in units of the well."""
 
-# Nodes of a table: the fewest of these with which the error, measured between the nodes, is small enough.
+# Numbers of nodes to try, in turn, until the error measured between the nodes is small enough.
 _NODES = (10, 20, 40)
-# Shares of the range of energies to try: near a maximum between two exits the exits change too fast.
+# Shares of the range of energies to try; a smaller share is needed near a maximum between two exits, where they change too fast.
 _SHARES = (1.0, 0.9, 0.75, 0.5)
 # Share of the largest error that the error between the nodes may have.
 _SAFETY = 0.1
-# Smaller coefficients are left out at the end of the series, in units of the well.
+# Smaller coefficients at the end of the series are dropped, in units of the well.
 _NEGLIGIBLE = 1e-9
-# Stands for an infinite reach, which cannot be interpolated.
+# This value represents an infinite reach, which cannot be interpolated.
 _FARTHEST_REACH = 1e6
 _POSITIONS = np.linspace(-1.0, 1.0, 21)
 # Columns of a row after gate and reach, see `engine.integrator.kernels.exit_curves`.
@@ -69,12 +69,12 @@ class ExitTable:
             read_only(array)
 
     def points_at(self, energy: float, positions: np.ndarray) -> np.ndarray:
-        """(2, m) the points of the exit at an energy above the saddle, at s (m,) from −1 to 1."""
+        """Return (2, m) the points of the exit at an energy above the saddle, at s (m,) from −1 to 1."""
         return _points(_interpolate(self.nodes, self.rows, energy - self.saddle), positions)
 
 
 def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...]:
-    """Tables of the exits of all channels for energies up to `highest`.
+    """Tabulate the exits of all channels for energies up to `highest`.
 
     Parameters
     ----------
@@ -86,8 +86,8 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
     Returns
     -------
     One table for each channel, valid up to `highest`, or up to its saddle if its exits cannot be interpolated. No table is valid
-    above the lowest maximum between exits, where several channels form one exit. Interpolated exits differ from exits by at most
-    `LARGEST_ERROR`, as tested at energies between the nodes.
+    above the lowest maximum between exits, where several channels form one exit. Interpolated exits differ from the computed ones
+    by at most `LARGEST_ERROR`, as tested at energies between the nodes.
     """
     curves: dict[float, dict[int, np.ndarray]] = {}
 
@@ -102,7 +102,7 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
 
 
 def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
-    """The exit curves at one energy, by channel; ValueError if one is not a graph over its chord."""
+    """Return the exit curves at one energy, by channel; ValueError if one is not a graph over its chord."""
     curves = {}
     for orbit in find_orbits_in_well_units(potential, energy):
         curve = _exit_over_chord(orbit)
@@ -113,16 +113,17 @@ def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
 
 
 def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
-    """(columns,) the exit of an orbit in units of the well, in axes which depend smoothly on the energy: those of its chord.
+    """Return (columns,) the exit of an orbit in units of the well, in the axes of its chord, which depend smoothly on the energy.
 
-    None if the path is not a smooth graph over the chord. The line of a rotating system keeps its own axes, those of the saddle.
+    The result is None if the path is not a smooth graph over the chord. In a rotating frame the line keeps the axes of the
+    saddle.
     """
     potential = orbit.potential
     if potential.rotation:
         return orbit.curve
     path = orbit.half_path.T
     if chord_axes(path).outward @ potential.well.outward_directions[orbit.channel - 1] < 0.0:
-        # Mirrored orbits have the well on the other side of their path.
+        # A mirrored orbit has the well on the other side of its path.
         path = path[:, ::-1]
     curve = curve_along(chord_axes(path), potential.saddles[orbit.channel - 1], path)
     if curve is not None:
@@ -131,7 +132,7 @@ def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
 
 
 def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -> ExitTable:
-    """The table of one channel."""
+    """Return the table of one channel."""
     none = np.zeros(0), np.zeros((0, MIDDLE_COLUMN))
     if highest <= saddle:
         return ExitTable(saddle, highest, *none)
@@ -159,18 +160,18 @@ def _nodes(count: int, largest: float) -> np.ndarray:
 
 
 def _between(count: int, largest: float) -> np.ndarray:
-    """Places between the nodes, and the end of the range."""
+    """Return positions between the nodes, and the end of the range."""
     return 0.5 * largest * (1.0 - np.cos(np.pi * (np.arange(count) + 1) / count))
 
 
 def _row(curve: np.ndarray) -> np.ndarray:
-    """The row of a table for an exit curve."""
+    """Return the row of a table for an exit curve."""
     gate, reach = exit_gates(curve[None])[0, 2], min(curve[events.REACH], _FARTHEST_REACH)
     return np.concatenate([[gate, reach], curve[_CURVE_COLUMNS]])
 
 
 def _interpolate(nodes: np.ndarray, rows: np.ndarray, above: float) -> np.ndarray:
-    """(columns,) the exit at an energy above its saddle."""
+    """Return (columns,) the exit at an energy above its saddle."""
     curves, gates = np.zeros((1, 1, events.CURVE_COLUMNS)), np.zeros((1, 3))
     interpolate_exit(nodes, rows, 0.0, events.CURVE, np.array([above]), 0, curves, gates)
     found: np.ndarray = curves[0, 0]
@@ -178,7 +179,7 @@ def _interpolate(nodes: np.ndarray, rows: np.ndarray, above: float) -> np.ndarra
 
 
 def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """(2, m) the points of an exit at s (m,)."""
+    """Return (2, m) the points of an exit at s (m,)."""
     points = np.empty((2, positions.size))
     exit_points(curve, positions, points)
     return points

@@ -1,6 +1,6 @@
 """The interior of a potential at one energy: all points connected to the origin below the energy without crossing an exit.
 
-With an escape radius, all points within it. Other ends belong to no interior.
+With an escape radius the interior consists of all points within it. No point beyond another end belongs to it.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from engine.systems.potential import Potential
 
 
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """int8, shaped like x and y: 0 for points inside or forbidden, else the number of an outcome.
+    """Return int8 codes, shaped like x and y: 0 for points inside or forbidden, otherwise the number of an outcome.
 
-    Beyond the exits it is the channel nearest in direction.
+    For points beyond the exits over saddles, the outcome is the channel nearest in direction.
     """
     units = potential.units
     return find_outside_in_well_units(potential.in_well_units, energy / units.energy, x / units.length, y / units.length)
@@ -39,7 +39,7 @@ def find_outside_in_well_units(potential: Potential, energy: float, x: np.ndarra
 def find_outside_starts(
     potential: Potential, x: np.ndarray, y: np.ndarray, energy: np.ndarray, curves: np.ndarray, curve_row: np.ndarray
 ) -> np.ndarray:
-    """(n,) int8: `find_outside_channels` for points of several energies, in units of the well.
+    """Return (n,) int8: `find_outside_channels` for points of several energies, in units of the well.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def find_outside_starts(
     x, y, energy
         (n,) each.
     curves
-        (rows, outcomes, columns) exits, see `exit_curves`. Where all are absent, no point is beyond one.
+        (rows, outcomes, columns) exits, see `exit_curves`. If all of them are absent, no point lies beyond an exit.
     curve_row
         (n,) the row of `curves` for each point.
     """
@@ -61,13 +61,13 @@ def find_outside_starts(
 
 
 def find_inner_radius(potential: Potential) -> float:
-    """Radius of the gap at the origin; 0.0 for a well there."""
+    """Return the radius of the gap at the origin; 0.0 if the well is at the origin."""
     return max((gap.radius for gap in potential.gaps if gap.x == gap.y == 0.0), default=0.0)
 
 
 @functools.singledispatch
 def _finder(form: Any, potential: Potential) -> Callable[..., None]:
-    """The kernel for a form of potentials, with its first arguments."""
+    """Return the kernel for a form of potentials, with its first arguments."""
     raise TypeError(form)
 
 
@@ -85,8 +85,8 @@ def _finder_of_polynomial(form: PolynomialForm, _potential: Potential) -> Callab
 class PolynomialTable(NamedTuple):
     """A polynomial as `engine.integrator.kernels.interior` takes it.
 
-    powers (terms, 2), coefficients (terms,): of V; bernstein (n, n): from the coefficients of a power series on [0, 1] to those
-    of Bernstein polynomials.
+    powers (terms, 2) and coefficients (terms,) describe V; bernstein (n, n) converts the coefficients of a power series on [0, 1]
+    to those of Bernstein polynomials.
     """
 
     powers: np.ndarray
@@ -95,7 +95,7 @@ class PolynomialTable(NamedTuple):
 
 
 def tabulate_polynomial(form: PolynomialForm) -> PolynomialTable:
-    """The terms of a polynomial for kernels."""
+    """Return the terms of a polynomial for kernels."""
     powers = np.array([term[:2] for term in form.terms], np.int64).reshape(-1, 2)
     coefficients = np.array([term[2] for term in form.terms])
     degree = max(int(powers.sum(axis=1).max(initial=0)), int(powers.max(initial=0)))
@@ -104,6 +104,6 @@ def tabulate_polynomial(form: PolynomialForm) -> PolynomialTable:
 
 @functools.cache
 def _bernstein_matrix(degree: int) -> np.ndarray:
-    """(degree + 1, degree + 1)."""
+    """Return the (degree + 1, degree + 1) matrix `PolynomialTable.bernstein`."""
     n = degree + 1
     return read_only(np.array([[comb(i, k) / comb(degree, k) for k in range(n)] for i in range(n)]))

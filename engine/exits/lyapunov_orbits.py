@@ -34,7 +34,7 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
-# What an exit of several channels has not, from what its search finds first.
+# Reasons why an exit of several channels is not defined, numbered from what its search finds first.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
 _MISSING = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
@@ -70,9 +70,9 @@ class LyapunovOrbit(Result):
         (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
         last point are equal.
     curve
-        (columns,) the exit as the integrator takes it.
+        (columns,) row of the exit for the kernels of the integrator.
     velocity
-        (2,) px and py at the first point: at rest, unless the frame rotates.
+        (2,) px and py at the first point; 0 unless the frame rotates.
     others
         Other channels that are part of the same exit, above the maxima between them; `channel` is the lowest number.
     potential
@@ -94,11 +94,11 @@ class LyapunovOrbit(Result):
             read_only(array)
 
     def find_multipliers(self) -> np.ndarray:
-        """The stability of the orbit: the eigenvalues of the flow linearised along one period, the largest modulus first.
+        """Return the stability of the orbit: the eigenvalues of the flow linearised along one period, the largest modulus first.
 
-        (4,) complex. Two of them are 1, and the others are λ and 1/λ: if the modulus of λ is not 1, the orbit is unstable. As
-        there is only one eigenvector for the eigenvalue 1, rounding changes this pair by the square root of the error of the
-        matrix, 1e-8 to 1e-6.
+        (4,) complex. Two of them are 1, and the others are λ and 1/λ: if the modulus of λ is not 1, the orbit is unstable. The
+        eigenvalue 1 has only one eigenvector, so that rounding changes this pair by the square root of the error of the matrix,
+        1e-8 to 1e-6.
 
         Examples
         --------
@@ -118,16 +118,16 @@ class LyapunovOrbit(Result):
         return np.array([self.x[0], self.y[0], *self.velocity])
 
     def provenance(self) -> dict[str, Any]:
-        """The potential, the energy, the integrator and the version."""
+        """Return the potential, the energy, the integrator and the version."""
         return describe_run(self.potential, energy=self.energy)
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """The path and its times."""
+        """Return the path and its times."""
         return {"t": np.linspace(0.0, self.period, self.x.size), "x": self.x, "y": self.y}
 
     @property
     def name(self) -> str:
-        """The name of its exit: "L1" if it has one, or the numbers of its channels, "1", or "1+3" where two are one exit."""
+        """The name of the exit, "L1", if it has one, otherwise its channel number, "1", or "1+3" if two channels form it."""
         named = self.potential.exit_names if len(self.potential.exit_names) == self.potential.channels else ()
         return name_channels((self.channel, *self.others), named)
 
@@ -138,16 +138,16 @@ class LyapunovOrbit(Result):
 
     @property
     def half_path(self) -> np.ndarray:
-        """(101, 2) the path for plots: half a period from one side of the channel to the other; the other half is its return.
+        """(101, 2) half a period of the path, from one side of the channel to the other, for plots; the other half retraces it.
 
-        In a rotating frame (201, 2) the whole closed path.
+        In a rotating frame it is the whole closed path, (201, 2).
         """
         path = np.column_stack([self.x, self.y])
         return path if self._is_closed_curve else path[: self.x.size // 2 + 1]
 
     @property
     def exit_path(self) -> np.ndarray:
-        """(n, 2) the exit from one side of the channel to the other: half the path, or the two ends of the line beside it."""
+        """(n, 2) the exit across the channel: half the path, or in a rotating frame points of the tangent line."""
         return line_points(self.curve) if self._is_closed_curve else self.half_path
 
     @property
@@ -157,10 +157,10 @@ class LyapunovOrbit(Result):
 
 @checks_types(potential=Potential)
 def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """The Lyapunov orbit over each saddle below `energy`.
+    """Return the Lyapunov orbit over each saddle below `energy`.
 
-    In a frame that does not rotate it oscillates between two points at rest. In a rotating frame it is a closed curve around the
-    saddle, found by Newton's method and followed from the small oscillations; H is the Jacobi integral.
+    In a frame that does not rotate the orbit oscillates between two points at rest. In a rotating frame it is a closed curve
+    around the saddle, found by Newton's method and followed from the small oscillations; H is the Jacobi integral.
 
     Parameters
     ----------
@@ -171,15 +171,15 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
 
     Returns
     -------
-    The orbits in channel order; empty at or below the escape energy. Above a maximum between two exits these are one, with one
-    orbit from one of its outer walls to the other.
+    The orbits in channel order; empty at or below the escape energy. Above a maximum of V between two channels, these form one
+    exit with one orbit, from one outer wall to the other.
 
     Raises
     ------
     ValueError
-        If `energy` is not finite, or if a Lyapunov orbit is not found or not a graph over a line, or the line beside it does not
-        end on the walls of its channel, or if exits meet, or if those above a maximum between them are one exit all around the
-        well or one in a rotating frame.
+        If `energy` is not finite, or if the exits are not defined at this energy: a Lyapunov orbit is not found or is not a graph
+        over a line; in a rotating frame, its tangent line does not end on the walls of its channel, or channels form one exit;
+        exits meet; or the channels above a maximum form one exit all around the well.
 
     Examples
     --------
@@ -195,7 +195,7 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
 
 
 def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """`find_lyapunov_orbits` for a potential in units of its well; errors state the energy in the units of the user."""
+    """Apply `find_lyapunov_orbits` to a potential in units of its well; errors state the energy in the units of the user."""
     try:
         orbits = _find_orbits(potential, energy)
     except _SearchError as error:
@@ -205,7 +205,7 @@ def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[Lyap
 
 
 def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """`find_lyapunov_orbits`, but no orbits where the exits are not defined at the energy."""
+    """Apply `find_lyapunov_orbits`, but return no orbits where the exits are not defined at the energy."""
     try:
         return find_lyapunov_orbits(potential, energy)
     except UndefinedExitsError:
@@ -213,12 +213,12 @@ def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit
 
 
 class _SearchError(Exception):
-    """A Lyapunov orbit that was not found or cannot be used as an exit."""
+    """No Lyapunov orbit was found, or the orbit found cannot be used as an exit."""
 
 
 @functools.lru_cache(maxsize=4096)
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """The orbits of a potential in units of its well."""
+    """Return the orbits of a potential in units of its well."""
     if potential.rotation:
         _check_separate(potential, energy)
         channels = potential.well.open_channels(energy)
@@ -232,7 +232,7 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 
 
 def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> tuple[LyapunovOrbit, ...]:
-    """Orbits that do not meet, searched at this energy or followed up to it; those of mirror channels are exact mirror images."""
+    """Find orbits that do not meet, directly or by continuation in energy; orbits of mirror channels are exact mirror images."""
     found: dict[int, LyapunovOrbit] = {}
     merged = {exit.channels[0]: exit for exit in potential.well.merged_exits(energy)}
     numbers = potential.well.exit_numbers(energy)
@@ -270,7 +270,7 @@ def _describe(potential: Potential, merged: MergedExit) -> str:
 
 
 def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> LyapunovOrbit:
-    """The orbit between the outer walls of an exit of several channels."""
+    """Return the orbit between the outer walls of an exit of several channels."""
     if merged.closes_ring:
         raise _SearchError(f"{_describe(potential, merged)}, and it leads all around the well; choose a lower energy")
     axes, saddle = axes_between(potential, merged.channels), potential.saddles[merged.channels[0] - 1]
@@ -288,7 +288,7 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
 
 
 def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
-    """An orbit in units of the well, in the units of its potential; in its exit curve, directions have no unit."""
+    """Convert an orbit from units of the well to those of its potential; the directions in its exit curve have no unit."""
     if units == WellUnits():
         return orbit
     curve = orbit.curve * units.length
@@ -304,17 +304,17 @@ def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
 
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
-    """The exact image under x → −x, so that mirror images of orbits escape at exactly the same time."""
+    """Return the exact image under x → −x, so that mirror images of orbits escape at exactly the same time."""
     return replace(orbit, channel=channel, x=-orbit.x, curve=mirrored_curve(orbit.curve))
 
 
 def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
-    """An orbit over a saddle on the y axis, with an exit curve that is exactly symmetric."""
+    """Return an orbit over a saddle on the y axis, with an exit curve that is exactly symmetric."""
     return replace(orbit, curve=0.5 * (orbit.curve + mirrored_curve(orbit.curve)))
 
 
 def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
-    """The orbit over a saddle in a rotating frame, and the line that touches it on the outer side."""
+    """Return the orbit over a saddle in a rotating frame, and the line that touches it on the outer side."""
     orbit = find_orbit_in_rotating_frame(potential, energy, channel)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
@@ -341,7 +341,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
 
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
-    """An orbit between two points at rest, with its exit (columns,) whose reach is set here."""
+    """Return an orbit between two points at rest, with its exit (columns,), whose reach is set here."""
     curve[events.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])

@@ -1,7 +1,7 @@
 """Orbits between the outer walls of an exit of several channels, above the maxima of V between these.
 
-At the energies just below a maximum two orbits lead from an outer wall to the forbidden region around it. Above it there is none,
-and an orbit leads from one outer wall to the other.
+Just below a maximum, two orbits lead from an outer wall to the forbidden region around the maximum. Above it this region is gone,
+and one orbit leads from one outer wall to the other.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _LINES = (0.5, 0.25, 0.75, 0.0, 1.0)
 _POINTS = np.arange(5, 100, 10)
 _ANGLES = np.radians([-75.0, -40.0, 0.0, 40.0, 75.0])
 _FOLLOWED = 30.0
-# Every point is past this gate.
+# All points are beyond this gate.
 _NO_GATES = np.array([[0.0, 0.0, -1.0]])
 
 
@@ -39,7 +39,7 @@ def axes_between(potential: Potential, channels: tuple[int, ...], share: float =
 
 
 def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int, ...]) -> Iterator[BrakeOrbit]:
-    """The orbits that can be the exit of several channels: all their saddles lie between its ends."""
+    """Yield the orbits that can be the exit of several channels: all their saddles lie between its ends."""
     saddles = potential.saddles[np.array(channels) - 1].T
     size = float(np.hypot(*saddles).max())
     for share in _LINES:
@@ -52,11 +52,11 @@ def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int,
 
 
 def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: np.ndarray) -> bool:
-    """Whether any of 50 orbits that leave across an exit (columns,) returns through it."""
+    """Return whether any of 50 orbits that leave across an exit (columns,) returns through it."""
     kernels = kernels_of(potential)
     for start in _leaving_states(potential, energy, orbit.path):
         steps, _ = next(trace_pieces(kernels, start, _FOLLOWED, len(potential.outcomes)))
-        # Backward in time an orbit that returns leaves. The first step begins on the exit.
+        # In backward time an orbit that returns is an orbit that leaves. The first step begins on the exit.
         for (x0, y0), (x1, y1) in zip(steps[1:-1, :2], steps[2:, :2], strict=True):
             if events.crossed_exit(x1, y1, x0, y0, curve[None], _NO_GATES):
                 return True
@@ -64,7 +64,7 @@ def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: n
 
 
 def _leaving_states(potential: Potential, energy: float, path: np.ndarray) -> np.ndarray:
-    """(50, 4) states on a path (2, 101), which has the well on its left."""
+    """Return (50, 4) states on a path (2, 101), which has the well on its left."""
     along = np.arctan2(*(path[:, _POINTS + 1] - path[:, _POINTS - 1])[::-1])
     angle = (along - 0.5 * np.pi)[:, None] + _ANGLES
     speed = np.sqrt(2.0 * (energy - potential.value(*path[:, _POINTS])))[:, None]

@@ -5,7 +5,7 @@ centre direction. By Lyapunov's centre theorem a family of periodic orbits begin
 the saddle, orbits are proportional to σ at first, and (position − saddle)/σ and the period depend smoothly on σ. They are
 predicted from those at smaller σ and corrected by Newton's method for several states of one period at once, so that errors grow
 over a part of the period only (multiple shooting; Stoer & Bulirsch 2002, Introduction to Numerical Analysis, section 7.3.5). All
-in units of the well.
+quantities are in units of the well.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from engine.integrator.kernels.dense_output import advance_states, sample_path, 
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# States of one period that are corrected together, and points of the path between two of them.
+# Number of states of one period that are corrected together, and number of points of the path between two of them.
 _NODES = 8
 _POINTS_PER_NODE = 25
 _MOST_CORRECTIONS = 12
-# Relative size of a correction from which on the next ones are rounding errors as soon as they do not shrink any more; near the
-# saddle this many roundings of the energy.
+# Relative size of a correction below which further corrections are rounding errors once they no longer decrease. Near the saddle
+# the limit is this number of roundings of the energy.
 _NEARLY_EXACT = 1e-6
 _ROUNDINGS = 64
-# Largest relative change by the corrections of a prediction; a larger one can be a jump to another orbit.
+# Largest relative change of a prediction by its corrections; a larger change can be a jump to another orbit.
 _LARGEST_CHANGE = 0.1
-# Orbits from which the next one is predicted; smallest step of σ, in units of that of the orbit to be found, and most steps.
+# Number of orbits from which the next one is predicted; smallest step of σ, in units of the final σ; largest number of steps.
 _PREDICTED_FROM = 4
 _SMALLEST_STEP = 2.0**-10
 _MOST_STEPS = 400
-# Steps of the integrator in a part of an orbit: one with more passes close to a centre.
+# Largest number of integrator steps in a part of an orbit; an orbit with more steps passes close to a centre.
 _MOST_STEPS_PER_PART = 400
-# How closely the edge follows the largest values of an orbit.
+# Sharpness of the smooth maximum that defines the edge of an orbit, see `_edge`.
 _SHARPNESS = 50.0
 # Largest distance between the ends of neighbouring parts of an orbit, in units of the well.
 _LARGEST_GAP = 1e-10
@@ -48,7 +48,7 @@ _Known = list[tuple[float, np.ndarray]]
 
 
 class PeriodicOrbit(NamedTuple):
-    """One period of an orbit over a saddle, from where it turns around at its end with the smallest q in the axes of the saddle.
+    """One period of an orbit over a saddle, starting at the turning point with the smallest q in the axes of the saddle.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class PeriodicOrbit(NamedTuple):
     path
         (4, 201) x, y, ẋ, ẏ, evenly spaced in time; the last point is the first one.
     edge
-        The u − a q² of a line just outside the orbit, in the axes of the saddle, dimensionless; a: `ridge_bend`.
+        The value of u − a q² on a line just outside the orbit, in the axes of the saddle, dimensionless; for a see `ridge_bend`.
     multipliers
         (4,) complex eigenvalues of the monodromy matrix, the largest modulus first.
     """
@@ -87,15 +87,15 @@ class _Parts(NamedTuple):
 
 
 def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: int) -> PeriodicOrbit | None:
-    """The orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
+    """Return the orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
 
-    In a frame at rest it is the orbit that `brake_orbits` finds, up to rounding errors. Exits there are made from that one, which
-    is at rest at its ends exactly; an orbit over several saddles does not begin with small oscillations.
+    In a frame at rest the result is the orbit that `brake_orbits` finds, up to rounding errors. There the exits are made from the
+    orbits of `brake_orbits`, whose ends are exactly at rest. Orbits over several saddles do not begin as small oscillations.
 
     Parameters
     ----------
     potential
-        The potential in units of its well; tests compare orbits in a frame at rest, too.
+        The potential in units of its well. The frame may be at rest, which tests use for comparison.
     energy
         h, above the energy of the saddle, dimensionless.
     channel
@@ -112,14 +112,14 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
 
 
 def multipliers_of(matrix: np.ndarray) -> np.ndarray:
-    """(4,) complex eigenvalues of a monodromy matrix, the largest modulus first."""
+    """Return (4,) complex eigenvalues of a monodromy matrix, the largest modulus first."""
     values = np.linalg.eigvals(matrix).astype(complex)
     ordered: np.ndarray = values[np.argsort(-np.abs(values), kind="stable")]
     return ordered
 
 
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
-    """(4, 4) the flow linearised along one period from a state (4,), in units of the well."""
+    """Return (4, 4) the flow linearised along one period from a state (4,), in units of the well."""
     kernels = kernels_of(potential)
     steps = trace_steps(kernels, start, period, len(potential.outcomes))
     durations = np.diff(steps[:, 4], append=period)
@@ -130,7 +130,7 @@ def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> 
 
 
 def _follow(family: _Family, sigma: float) -> np.ndarray | None:
-    """The unknowns of the orbit at σ, see `_correct`, followed from σ = 0 with an adaptive step; None if this fails."""
+    """Return the unknowns of the orbit at σ, see `_correct`, followed from σ = 0 with an adaptive step; None if this fails."""
 
     def advance(known: _Known, target: float) -> _Known | None:
         corrected = _correct(family, target, _extrapolate(known, target))
@@ -141,7 +141,7 @@ def _follow(family: _Family, sigma: float) -> np.ndarray | None:
 
 
 def _small_oscillation(family: _Family) -> np.ndarray:
-    """The unknowns of `_correct` in the limit σ = 0."""
+    """Return the unknowns of `_correct` in the limit σ = 0."""
     rotation, axes = family.potential.rotation, family.axes
     flow = np.zeros((4, 4))
     flow[:2, 2:] = np.eye(2)
@@ -150,7 +150,7 @@ def _small_oscillation(family: _Family) -> np.ndarray:
     values, vectors = np.linalg.eig(flow)
     centre = int(np.argmax(values.imag))
     frequency, vector = float(values[centre].imag), vectors[:, centre]
-    # Turned so that q is at its minimum at t = 0.
+    # The phase is chosen so that q has its minimum at t = 0.
     across = axes.outward[0] * vector[1] - axes.outward[1] * vector[0]
     turned = -vector * np.conj(across) / np.abs(across)
     start = turned.real
@@ -161,7 +161,7 @@ def _small_oscillation(family: _Family) -> np.ndarray:
 
 
 def _extrapolate(known: _Known, target: float) -> np.ndarray:
-    """Evaluate the polynomial through the unknowns at some σ at the target."""
+    """Evaluate, at the target, the polynomial that interpolates the unknowns at known values of σ."""
     points = np.array([place for place, _ in known])
     weights = [np.prod((target - np.delete(points, k)) / (place - np.delete(points, k))) for k, place in enumerate(points)]
     predicted: np.ndarray = np.array(weights) @ np.array([unknowns for _, unknowns in known])
@@ -169,7 +169,7 @@ def _extrapolate(known: _Known, target: float) -> np.ndarray:
 
 
 def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray | None:
-    """The orbit at σ near a predicted one by Newton's method; None if it does not converge to one nearby.
+    """Return the orbit at σ near a predicted one by Newton's method; None if it does not converge to one nearby.
 
     Unknowns (4 nodes + 1,): (state − saddle)/σ at the nodes, evenly spaced over the period, and the period.
     """
@@ -191,13 +191,13 @@ def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray
 
 
 def _relative_size(change: np.ndarray, unknowns: np.ndarray) -> float:
-    """The largest change of a state, in units of the largest one, or of the period."""
+    """Return the largest change, of a state relative to the largest state or of the period relative to itself."""
     states = np.abs(change[:-1]).max() / np.abs(unknowns[:-1]).max()
     return float(max(states, np.abs(change[-1] / unknowns[-1])))
 
 
 def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndarray | None:
-    """The least-squares solution of the linearised equations; None where the trial orbit cannot be integrated.
+    """Return the least-squares solution of the linearised equations; None where the trial orbit cannot be integrated.
 
     The equations: each part ends where the next one begins, the energy is that of the saddle plus σ², and q̇ = 0 at the start.
     """
@@ -224,7 +224,7 @@ def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndar
 
 
 def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
-    """(n, 4) time derivatives of states (n, 4)."""
+    """Return (n, 4) time derivatives of states (n, 4)."""
     x, y, vx, vy = states.T
     slope_x, slope_y = potential.gradient(x, y)
     twice = 2.0 * potential.rotation
@@ -232,7 +232,7 @@ def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
 
 
 def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | None:
-    """The parts of an orbit that start at its nodes (nodes, 4), each as long as the distance in time of two nodes."""
+    """Return the parts of an orbit that start at its nodes (nodes, 4); each part lasts as long as the time between two nodes."""
     if not (np.isfinite(states).all() and 0.0 < period < np.inf):
         return None
     kernels, duration = kernels_of(potential), period / _NODES
@@ -251,13 +251,13 @@ def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | 
 
 
 def _product(matrices: np.ndarray) -> np.ndarray:
-    """(4, 4) the product of transition matrices (n, 4, 4), the first one applied first."""
+    """Return (4, 4) the product of transition matrices (n, 4, 4), the first one applied first."""
     product: np.ndarray = functools.reduce(lambda before, matrix: matrix @ before, matrices)
     return product
 
 
 def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
-    """The path, the edge and the multipliers of an orbit; None if its parts do not fit."""
+    """Return the path, the edge and the multipliers of an orbit; None if its parts do not fit."""
     sigma, period = float(np.sqrt(energy - family.energy)), float(unknowns[-1])
     states = family.state + sigma * unknowns[:-1].reshape(_NODES, 4)
     parts = _trace(family.potential, states, period)
@@ -272,9 +272,9 @@ def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrb
 
 
 def _edge(family: _Family, path: np.ndarray) -> float:
-    """A little more than the largest u − a q² on the path (4, points) of an orbit; a: `ridge_bend`.
+    """Return a little more than the largest u − a q² on the path (4, points) of an orbit; for a see `ridge_bend`.
 
-    The largest value itself is not a smooth function of the energy where the place of the largest value jumps.
+    The largest value itself is not a smooth function of the energy where its position jumps.
     """
     u, q = family.axes.coordinates(path[:2, :-1])
     offset = u - family.bend * q * q

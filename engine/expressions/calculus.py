@@ -1,4 +1,4 @@
-"""Derivatives of expressions, and expressions with other coordinates."""
+"""Derivatives of expressions, and substitution of their coordinates."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from engine.expressions.nodes import (
     power,
 )
 
-# Relative error up to which coefficients count as equal.
+# Coefficients count as equal if their relative difference is at most this.
 _ROUNDING = 1e-14
-# Cached derivatives, 1 kB each.
+# Number of cached derivatives, of 1 kB each.
 _DERIVATIVES = 4096
 
 
@@ -47,18 +47,18 @@ def derivative(expression: Expression, axis: int) -> Expression:
 
 
 def slopes(expression: Expression) -> tuple[Expression, Expression]:
-    """The derivatives along x and y."""
+    """Return the derivatives along x and y."""
     return derivative(expression, 0), derivative(expression, 1)
 
 
 def curvatures(expression: Expression) -> tuple[Expression, Expression, Expression]:
-    """The derivatives along x x, x y and y y."""
+    """Return the second derivatives along x x, x y and y y."""
     along_x, along_y = slopes(expression)
     return derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1)
 
 
 def _factor_derived(factors: tuple[tuple[Expression, float], ...], k: int, axis: int) -> Expression:
-    """A product with factor k, b^n, replaced by b^(n − 1) b'."""
+    """Return a product with factor k, b^n, replaced by b^(n − 1) b'."""
     base, n = factors[k]
     others = (power(other, m) for place, (other, m) in enumerate(factors) if place != k)
     return multiply(power(base, n - 1.0), derivative(base, axis), *others)
@@ -76,9 +76,9 @@ def _outer_derivative(name: str, argument: Expression) -> Expression:
 
 
 def _of_inverse_hyperbolic_sine(argument: Expression, axis: int) -> Expression | None:
-    """(p'/c) b^(−½), the derivative of log(p + c b^½) if c² b' = 2 p' p with a number p' ≠ 0; None for other arguments.
+    """Return (p'/c) b^(−½), the derivative of log(p + c b^½) if c² b' = 2 p' p with a number p' ≠ 0; None for other arguments.
 
-    Where p < 0, p + c b^½ loses digits, and so would u'/u.
+    Where p < 0, cancellation would cost digits in p + c b^½, and therefore in u'/u.
     """
     terms = argument.terms if isinstance(argument, Sum) else ()
     roots = [(part, c) for part, c in terms if isinstance(part, Product) and [n for _, n in part.factors] == [0.5]]
@@ -97,12 +97,12 @@ def _of_inverse_hyperbolic_sine(argument: Expression, axis: int) -> Expression |
 
 
 def substitute(expression: Expression, x: Expression, y: Expression) -> Expression:
-    """The expression with x and y replaced by two other expressions."""
+    """Replace x and y in an expression by two other expressions."""
     return replace_parts(expression, {X: x, Y: y})
 
 
 def replace_parts(expression: Expression, parts: Mapping[Expression, Expression]) -> Expression:
-    """The expression with some of its parts replaced by others."""
+    """Replace some parts of an expression by others."""
     if expression in parts:
         return parts[expression]
     match expression:

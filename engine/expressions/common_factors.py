@@ -1,4 +1,4 @@
-"""Sums with fewer products: x u + x v as x (u + v)."""
+"""Sums rewritten with fewer products: x u + x v as x (u + v)."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _POWER_OF_TWO = 0.5
 
 
 def factor_out(terms: Terms) -> Terms:
-    """Σ c m with the factors that most products have in common taken out of them; the constants of new sums are 0.
+    """Rewrite Σ c m with the most common factors of its products factored out; the constants of new sums are 0.
 
-    Sums among factors have the first coefficient 1 where that is exact, so that u (2x + 1) + v (x + ½) has a common factor.
+    Sums among the factors get the first coefficient 1 if that is exact, so that u (2x + 1) + v (x + ½) has a common factor.
     """
     terms = _terms_of(linear_combination(_with_unit_sums(part, c) for part, c in terms))
     while (factor := _most_common_factor(terms)) is not None:
@@ -33,7 +33,7 @@ def _terms_of(total: Expression) -> Terms:
 
 
 def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
-    """(d, e) with d e = c m, where the sums among the factors of e have the first coefficient 1 if it was a power of two."""
+    """Return (d, e) with d e = c m; the sums among the factors of e have the first coefficient 1 if it was a power of two."""
     factors = []
     for base, n in part.factors if isinstance(part, Product) else ():
         scale = base.terms[0][1] if isinstance(base, Sum) and n == int(n) else 1.0
@@ -45,9 +45,9 @@ def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
 
 
 def _most_common_factor(terms: Terms) -> Expression | None:
-    """The factor of the most products, at least two, with all others that these have in common.
+    """Return the product of all factors shared by those products that share the most common one, at least two of them.
 
-    Among equals it is the first, so that a program never depends on hashes.
+    Of several most common factors the first is taken, so that a program never depends on hashes.
     """
     counts = Counter(factor for part, _ in terms for factor in _factors(part))
     factor, count = max(counts.items(), key=lambda item: item[1], default=(None, 0))
@@ -58,12 +58,12 @@ def _most_common_factor(terms: Terms) -> Expression | None:
 
 
 def _contains(part: Expression, factor: Expression) -> bool:
-    """Whether all factors of one product are among those of another one."""
+    """Return whether a product has all factors of another one."""
     return all(each in _factors(part) for each in _factors(factor) or (factor,))
 
 
 def _factors(part: Expression) -> tuple[Expression, ...]:
-    """The factors of a product of at least two, in its order; of a positive integer power of b it is b."""
+    """Return the factors of a product of at least two, in order; a positive integer power of b has the factor b."""
     if not isinstance(part, Product):
         return ()
     found = tuple(base if n > 0.0 and n == int(n) else power(base, n) for base, n in part.factors)

@@ -1,4 +1,4 @@
-"""Values of a graph, for any kind of numbers: one walk through its nodes, and a table of operations for each kind."""
+"""Evaluation of a graph for any kind of numbers: one walk through its nodes, with a table of operations for each kind."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Operations[Value]:
     linear
         A constant plus the products of coefficients and values.
     product
-        Of two values; the same object twice for a square.
+        Product of two values; the square if both are the same object.
     power
-        A value to a constant power.
+        Power of a value with a constant exponent.
     functions
-        exp, log, sin and cos by name.
+        The functions exp, log, sin and cos by name.
     """
 
     linear: Callable[[float, Sequence[float], Sequence[Value]], Value]
@@ -37,7 +37,7 @@ class Operations[Value]:
 
 
 def node_values[Value](graph: Graph, numbers: Sequence[float], x: Value, y: Value, operations: Operations[Value]) -> list[Value]:
-    """The values of all nodes of a graph."""
+    """Return the values of all nodes of a graph."""
     values: list[Value] = []
     for node in graph.nodes:
         values.append({"x": x, "y": y}[node.kind] if node.kind in ("x", "y") else _value(node, values, numbers, operations))
@@ -72,7 +72,7 @@ _ARRAYS = Operations[np.ndarray](_linear, operator.mul, np.power, {"exp": np.exp
 
 
 def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.ndarray]:
-    """The values of the expressions at (x, y), which broadcast; NaN or infinite where one is not defined."""
+    """Evaluate the expressions at (x, y), which broadcast; NaN or infinite where an expression is not defined."""
     x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     with np.errstate(all="ignore"):
         values = node_values(graph, numbers, x, y, _ARRAYS)
@@ -80,15 +80,15 @@ def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.
 
 
 def _filled(value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """A value as an array; that of a constant is one number."""
+    """Return a value as an array of a shape; the value of a constant is one number."""
     return np.asarray(value) if np.shape(value) == shape else np.full(shape, value)
 
 
 def evaluate_at(graph: Graph, numbers: Sequence[float], x: float, y: float) -> list[float]:
-    """The values at one point, as `evaluate` computes them to rounding, in a tenth of the time."""
+    """Return the values at one point, equal to those of `evaluate` up to rounding, in a tenth of the time."""
     try:
         values = node_values(graph, numbers, x, y, _FLOATS)
     except (ArithmeticError, ValueError):
-        # Infinite, or not defined.
+        # The value is infinite or not defined.
         return [float(value) for value in evaluate(graph, numbers, x, y)]
     return [values[index] for index in graph.results]

@@ -1,7 +1,8 @@
-"""Expressions as a list of operations in which no part occurs twice; what is evaluated, compiled and sent to the browser.
+"""Expressions as a list of operations without repeated parts; this form is evaluated, compiled and sent to the browser.
 
-The graph of an expression has places for its numbers, so that expressions that differ in numbers only have the same graph, and
-share compiled code. It is made for few products and powers, as the series of each costs a sum over all lower orders.
+The graph of an expression refers to its numbers by position, so that expressions that differ only in their numbers have the same
+graph and share compiled code. The graph has few products and powers, because the series of each needs a sum over all lower
+orders.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import Any, NamedTuple
 from engine.expressions.common_factors import factor_out
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_terms
 
-# Cached graphs, some kB each.
+# Number of cached graphs, of some kB each.
 _GRAPHS = 256
 
 
@@ -25,12 +26,13 @@ class Node(NamedTuple):
         ``x``, ``y``, ``sum``, ``shift``, which adds a number, ``product`` of two, ``power``, ``exp``, ``log``, ``sin`` or
         ``cos``.
     operands
-        Indices of nodes. The second one of a sine is the cosine of the same argument, and that of a cosine is the sine: the
-        derivative of each is the other one. The second one of a power u^a is u^(a + 1), if that is also a node.
+        Indices of nodes. A sine has as its second operand the cosine of the same argument, and a cosine the sine, because each is
+        the derivative of the other, up to a sign. A power u^a has as its second operand u^(a + 1), if that is also a node.
     numbers
-        Places of the coefficients of a sum, one for each operand, and of its constant if that is not 0; of the number of a shift.
+        Positions of the coefficients of a sum, one for each operand, and of its constant if that is not 0; of the number of a
+        shift.
     exponent
-        Of a power.
+        The exponent of a power.
     """
 
     kind: str
@@ -40,20 +42,20 @@ class Node(NamedTuple):
 
 
 class Graph(NamedTuple):
-    """The operations, and the indices of those that are the values of the expressions."""
+    """The operations, and the indices of the nodes whose values are those of the expressions."""
 
     nodes: tuple[Node, ...]
     results: tuple[int, ...]
 
     @property
     def convolutions(self) -> int:
-        """How many nodes need a sum over all lower orders for each coefficient of their series."""
+        """Return the number of nodes whose series need a sum over all lower orders for each coefficient."""
         return sum(node.kind not in ("x", "y", "sum", "shift") for node in self.nodes)
 
 
 @lru_cache(maxsize=_GRAPHS)
 def make_graph(expressions: tuple[Expression, ...]) -> tuple[Graph, tuple[float, ...]]:
-    """The graph of expressions, and its numbers."""
+    """Return the graph of expressions, and its numbers."""
     builder = _Builder()
     results = tuple(builder.add(each) for each in expressions)
     return Graph(tuple(builder.nodes), results), tuple(builder.numbers)
@@ -68,11 +70,11 @@ class _Builder:
         self.nodes: list[Node] = []
         self.numbers: list[float] = []
         self._places: dict[Any, int] = {}
-        # Of (base, exponent).
+        # The keys are (base, exponent).
         self._powers: dict[tuple[int, float], int] = {}
 
     def add(self, expression: Expression) -> int:
-        """The index of the node of an expression."""
+        """Return the index of the node of an expression."""
         if expression not in self._places:
             self._places[expression] = self._add_new(expression)
         return self._places[expression]
@@ -82,7 +84,7 @@ class _Builder:
             case Coordinate(axis):
                 return self._append(Node("xy"[axis]))
             case Sum(constant, terms) if constant and (len(terms) > 1 or (terms and terms[0][1] == 1.0)):
-                # Sums that differ in their constants have a node in common.
+                # Sums that differ only in their constants share a node.
                 if len(terms) == 1:
                     return self._append(Node("shift", (self.add(terms[0][0]),), self._numbers_at([constant])))
                 return self._append(Node("shift", (self.add(Sum(0.0, terms)),), self._numbers_at([constant])))
@@ -105,7 +107,7 @@ class _Builder:
         raise TypeError(expression)
 
     def _raised(self, base: int, exponent: float) -> int:
-        """A power; positive integer ones are products, which have no singularity where the base is 0."""
+        """Return a power; positive integer powers are products, which have no singularity where the base is 0."""
         if exponent == 1.0:
             return base
         if exponent != int(exponent):
@@ -117,7 +119,7 @@ class _Builder:
         return square if int(exponent) % 2 == 0 else self._node(Node("product", (square, base)))
 
     def _real_power(self, base: int, exponent: float) -> int:
-        """A power that is not an integer, from the next higher one of the base if there is one; an inverse root has its root."""
+        """Return a power that is not an integer, from the next higher power if that exists; an inverse root uses the root."""
         if exponent == -0.5:
             self._real_power(base, 0.5)
         key = base, exponent
@@ -127,7 +129,7 @@ class _Builder:
         return self._powers[key]
 
     def _numbers_at(self, values: list[float]) -> tuple[int, ...]:
-        """The places of new numbers."""
+        """Return the places of new numbers."""
         first = len(self.numbers)
         self.numbers += values
         return tuple(range(first, first + len(values)))
@@ -140,7 +142,7 @@ class _Builder:
         return sine if name == "sin" else cosine
 
     def _node(self, node: Node) -> int:
-        """The index of a node, which is added unless it is there."""
+        """Return the index of a node, adding the node if it is new."""
         if node not in self._places:
             self._places[node] = self._append(node)
         return self._places[node]

@@ -1,4 +1,4 @@
-"""Intervals that contain all values of an expression on boxes; they prove that it has no zero in a box, or only one.
+"""Intervals that contain all values of an expression on boxes, to prove that it has no zero in a box, or exactly one.
 
 In interval arithmetic (Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis) each operation of a graph is replaced by
 one on lower and upper ends, widened by its rounding error. The functions of NumPy are assumed to be accurate to four units in the
@@ -17,9 +17,9 @@ import numpy as np
 from engine.expressions.evaluation import Operations, node_values
 from engine.expressions.graph import Graph, Node
 
-# Relative and absolute widening that covers the rounding error of an operation.
+# Relative and absolute widening of an interval that covers the rounding error of an operation.
 _RELATIVE, _ABSOLUTE = 4.0 * 2.0**-52, 1e-300
-# Larger angles are not known accurately enough within their period.
+# For larger angles the position within a period is not accurate enough.
 _LARGEST_ANGLE = 1e8
 
 
@@ -36,7 +36,7 @@ class Interval:
         return np.maximum(np.abs(self.low), np.abs(self.high))
 
     def excludes_zero(self) -> np.ndarray:
-        """(n,) whether 0 lies outside the interval."""
+        """Return (n,) whether 0 lies outside the interval."""
         excluded: np.ndarray = (self.low > 0.0) | (self.high < 0.0)
         return excluded
 
@@ -50,9 +50,9 @@ class Enclosure:
     values
         An interval for each expression.
     defined
-        (n,) whether all are defined and bounded on the whole box.
+        (n,) whether all expressions are defined and bounded on the whole box.
     nowhere
-        (n,) whether one is defined nowhere in the box.
+        (n,) whether an expression is defined nowhere in the box.
     """
 
     values: list[Interval]
@@ -61,7 +61,7 @@ class Enclosure:
 
 
 def enclose(graph: Graph, numbers: Sequence[float], x: Interval, y: Interval) -> Enclosure:
-    """Intervals of the expressions of a graph on boxes x × y."""
+    """Return intervals of the expressions of a graph on boxes x × y."""
     nowhere, defined = np.zeros(x.low.shape, bool), np.ones(x.low.shape, bool)
     with np.errstate(all="ignore"):
         found = node_values(graph, numbers, x, y, _OPERATIONS)
@@ -86,13 +86,13 @@ Ends = tuple[np.ndarray, np.ndarray]
 
 
 def _interval(ends: Ends) -> Interval:
-    """Make an interval of its ends; NaN stands for the whole line."""
+    """Make an interval of its ends; NaN represents the whole line."""
     low, high = ends
     return Interval(np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high))
 
 
 def _widened(operation: Callable[..., Ends]) -> Callable[..., Interval]:
-    """Add the rounding error to an operation on intervals that leaves it out."""
+    """Widen the result of an operation on intervals by the rounding error."""
 
     @functools.wraps(operation)
     def widened(*operands: Any) -> Interval:
@@ -117,7 +117,7 @@ def _linear(constant: float, coefficients: Sequence[float], operands: Sequence[I
 def _product(one: Interval, other: Interval) -> Ends:
     if one is other:
         return _square(one)
-    # An end of 0 times an infinite one gives NaN, which `_interval` replaces by the whole line.
+    # The product of 0 and an infinite end is NaN, which `_interval` replaces by the whole line.
     products = np.array([a * b for a in (one.low, one.high) for b in (other.low, other.high)])
     return products.min(axis=0), products.max(axis=0)
 
@@ -129,10 +129,10 @@ def _square(base: Interval) -> Ends:
 
 @_widened
 def _power(base: Interval, exponent: float) -> Ends:
-    """The power −1, or one that is not an integer, for which only the part of the base from 0 on counts."""
+    """Return the power −1, or a power that is not an integer, for which only the nonnegative part of the base counts."""
     if exponent == -1.0:
         across = (base.low < 0.0) & (base.high > 0.0)
-        # An end that is 0 is approached from within.
+        # An end that is 0 is approached from inside the interval.
         low, high = 1.0 / np.where(base.high == 0.0, -0.0, base.high), 1.0 / np.where(base.low == 0.0, 0.0, base.low)
         return np.where(across, -np.inf, low), np.where(across, np.inf, high)
     ends = np.maximum(base.low, 0.0) ** exponent, np.maximum(base.high, 0.0) ** exponent

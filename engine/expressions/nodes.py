@@ -1,7 +1,7 @@
 """Expressions in x and y: immutable trees in canonical form, so that equal formulas are equal objects.
 
 An expression is a coordinate, a sum Σ c m + constant, a product Π b^a with real exponents, or a function exp, log, sin or cos of
-an expression. Numbers are the coefficients of sums, and a number alone is a sum without terms. Parameters have their values.
+an expression. Numbers are the coefficients of sums; a single number is a sum without terms. Parameters are replaced by values.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from engine.expressions.polynomials import Powers, Terms
 
 
 class Expression:
-    """A node with all below it.
+    """A node of an expression together with everything below it.
 
     Attributes
     ----------
     key
-        A tuple that is different for each expression, for comparisons and for the order of the parts of sums and products.
+        A tuple that is unique to each expression, used for comparisons and for the order of the parts of sums and products.
     """
 
     @cached_property
     def key(self) -> tuple[Any, ...]:
-        """Set by each kind of node."""
+        """The key; each kind of node defines it."""
         raise NotImplementedError
 
     @cached_property
@@ -41,7 +41,7 @@ class Expression:
         return self._hash
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the hash, which is another one in another process."""
+        """Return the state without the hash, which differs between processes."""
         return {name: value for name, value in self.__dict__.items() if name not in ("key", "_hash")}
 
 
@@ -100,16 +100,16 @@ X, Y = Coordinate(0), Coordinate(1)
 FUNCTIONS: Mapping[str, Callable[[float], float]] = MappingProxyType(
     {"cos": math.cos, "exp": math.exp, "log": math.log, "sin": math.sin}
 )
-"""The functions of expressions, for numbers."""
+"""The functions of expressions, applied to numbers."""
 
 
 def number(value: float) -> Sum:
-    """A constant."""
+    """Return a number as an expression."""
     return Sum(float(value), ())
 
 
 def as_number(expression: Expression) -> float | None:
-    """The value of a constant; None for others."""
+    """Return the value of a constant; None for other expressions."""
     return expression.constant if isinstance(expression, Sum) and not expression.terms else None
 
 
@@ -128,7 +128,7 @@ def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
 
 
 def multiply(*factors: Expression) -> Expression:
-    """The product of expressions; products of sums are not expanded."""
+    """Return the product of expressions; sums are not expanded."""
     coefficient, collected = 1.0, dict[Expression, float]()
     for factor in factors:
         scale, rest = _split_coefficient(factor)
@@ -151,7 +151,7 @@ def multiply(*factors: Expression) -> Expression:
 
 
 def expand(factor: Expression, total: Expression) -> Expression:
-    """The product with each term of a sum."""
+    """Multiply a factor by each term of a sum."""
     if not isinstance(total, Sum):
         return multiply(factor, total)
     terms = ((c, multiply(factor, part)) for part, c in total.terms)
@@ -159,7 +159,7 @@ def expand(factor: Expression, total: Expression) -> Expression:
 
 
 def power(base: Expression, exponent: float) -> Expression:
-    """A real power; ArithmeticError or ValueError for one of a number that is not a finite real number."""
+    """Return a real power; ArithmeticError or ValueError if a power of a number is not a finite real number."""
     coefficient, rest = _split_coefficient(base)
     integer = exponent == int(exponent)
     if exponent == 0.0:
@@ -176,23 +176,23 @@ def power(base: Expression, exponent: float) -> Expression:
 
 
 def _keeps_domain(inner: float) -> bool:
-    """Whether (b^inner)^a = b^(inner a) for all b for which the left side is real: not for even powers of negative numbers."""
+    """Return whether (b^inner)^a = b^(inner a) wherever the left side is real; False for even powers of negative numbers."""
     return inner != int(inner) or (int(inner) % 2 != 0 and abs(inner) == 1.0)
 
 
 def apply_function(name: str, argument: Expression) -> Expression:
-    """A function of an expression; ArithmeticError or ValueError for a number outside its domain."""
+    """Return a function of an expression; ArithmeticError or ValueError for a number outside its domain."""
     value = as_number(argument)
     return Function(name, argument) if value is None else number(_finite(FUNCTIONS[name](value)))
 
 
 def from_terms(terms: Terms) -> Expression:
-    """A polynomial {(i, j): c} as an expression."""
+    """Return a polynomial {(i, j): c} as an expression."""
     return linear_combination((c, multiply(power(X, i), power(Y, j))) for (i, j), c in terms.items())
 
 
 def as_terms(expression: Expression) -> dict[Powers, float] | None:
-    """{(i, j): c} of an expression that is a polynomial, expanded; None for others."""
+    """Return {(i, j): c} of an expression that is a polynomial, expanded; None for other expressions."""
     whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
     terms = {(0, 0): whole.constant} if whole.constant else {}
     for part, c in whole.terms:
@@ -204,7 +204,7 @@ def as_terms(expression: Expression) -> dict[Powers, float] | None:
 
 
 def powers_of(expression: Expression) -> Powers | None:
-    """(i, j) of x^i y^j; None for other expressions."""
+    """Return (i, j) of x^i y^j; None for other expressions."""
     powers = [0, 0]
     for base, exponent in expression.factors if isinstance(expression, Product) else ((expression, 1.0),):
         if not isinstance(base, Coordinate) or exponent < 0.0 or exponent != int(exponent):
@@ -214,7 +214,7 @@ def powers_of(expression: Expression) -> Powers | None:
 
 
 def _split_coefficient(expression: Expression) -> tuple[float, Expression]:
-    """(c, e) with expression = c e, where e has no coefficient of its own."""
+    """Return (c, e) with expression = c e, where e has no coefficient of its own."""
     value = as_number(expression)
     if value is not None:
         return value, number(1.0)
@@ -225,7 +225,7 @@ def _split_coefficient(expression: Expression) -> tuple[float, Expression]:
 
 
 def _order(part: Expression) -> tuple[Any, ...]:
-    """Sort key of the terms of a sum: x^i y^j by degree and by the power of y, then others."""
+    """Return the sort key of a term of a sum: x^i y^j by degree and by the power of y, then other terms."""
     powers = powers_of(part)
     return (1, part.key) if powers is None else (0, sum(powers), powers[1])
 

@@ -7,17 +7,17 @@ from functools import lru_cache
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 
 EVEN, ODD, NEITHER = 1, -1, 0
-"""Sign of f(−x)/f(x), 0 if it is not constant."""
+"""The sign of f(−x)/f(x); 0 if it is not constant."""
 
 _PARITIES = 1024
 
 
 @lru_cache(maxsize=_PARITIES)
 def parity(expression: Expression, axis: int) -> int:
-    """`EVEN`, `ODD` or `NEITHER` under the change of sign of a coordinate.
+    """Return `EVEN`, `ODD` or `NEITHER`, the parity under a change of sign of a coordinate.
 
-    A sum whose terms are exchanged by the mirror, as those of two equal centres, is `NEITHER`: in floating point its values are
-    not those of the mirror image to the last bit.
+    A sum whose terms are exchanged by the reflection, such as the terms of two equal centres, is `NEITHER`: in floating point its
+    value and that at the mirror image can differ in the last bit.
     """
     match expression:
         case Coordinate(own):

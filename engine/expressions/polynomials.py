@@ -13,18 +13,18 @@ Terms = Mapping[Powers, float]
 ExactTerms = Mapping[Powers, Fraction]
 
 HIGHEST_DEGREE = 12
-"""Highest degree of a potential: critical points are tested up to it, and the cost of a Taylor step grows with it."""
+"""Highest degree of a potential. Critical points are tested up to it, and the cost of a Taylor step grows with it."""
 
 # Limit on the bits of a numerator or denominator, so that a short formula cannot cause long computations.
 _MOST_BITS = 1000
 
 
 class TooLargeError(ValueError):
-    """A polynomial whose degree is too high, or that has a number with too many digits."""
+    """The degree of a polynomial is too high, or one of its numbers has too many digits."""
 
 
 def degree(terms: Mapping[Powers, object]) -> int:
-    """The highest i + j of a term x^i y^j; 0 for a constant."""
+    """Return the highest i + j of a term x^i y^j; 0 for a constant."""
     return max((i + j for i, j in terms), default=0)
 
 
@@ -38,7 +38,7 @@ def largest_coefficients(*polynomials: Terms) -> dict[int, float]:
 
 
 def evaluate(terms: Terms, x: Any, y: Any) -> Any:
-    """The polynomial at (x, y); arrays broadcast."""
+    """Return the polynomial at (x, y); arrays broadcast."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
     for (i, j), c in terms.items():
@@ -47,21 +47,21 @@ def evaluate(terms: Terms, x: Any, y: Any) -> Any:
 
 
 def _power(x: np.ndarray, i: int) -> np.ndarray:
-    """x to an integer power, with results for x and −x equal up to sign; NumPy's powers above 3 are not."""
+    """Return x to an integer power, equal for x and −x up to sign; NumPy's powers above 3 are not."""
     if i < 4:
         return x**i
     return np.abs(x) ** i if i % 2 == 0 else x * np.abs(x) ** (i - 1)
 
 
 def derivative(terms: Terms, axis: int) -> dict[Powers, float]:
-    """The terms of ∂/∂x (axis 0) or ∂/∂y (axis 1)."""
+    """Return the terms of ∂/∂x (axis 0) or ∂/∂y (axis 1)."""
     if axis == 0:
         return {(i - 1, j): i * c for (i, j), c in terms.items() if i}
     return {(i, j - 1): j * c for (i, j), c in terms.items() if j}
 
 
 def multiply[C: (float, complex, Fraction)](a: Mapping[Powers, C], b: Mapping[Powers, C]) -> dict[Powers, C]:
-    """a · b; terms that cancel stay as zeros."""
+    """Return a · b; terms that cancel remain as zeros."""
     total: dict[Powers, C] = {}
     for (i, j), c in a.items():
         for (k, m), d in b.items():
@@ -71,7 +71,7 @@ def multiply[C: (float, complex, Fraction)](a: Mapping[Powers, C], b: Mapping[Po
 
 
 def substitute[C: (float, complex)](terms: Terms, x: Mapping[Powers, C], y: Mapping[Powers, C]) -> dict[Powers, C]:
-    """The polynomial with x and y replaced by two other polynomials; terms that cancel stay as zeros or rounding errors."""
+    """Replace x and y in a polynomial by two polynomials; terms that cancel remain as zeros or rounding errors."""
     total: dict[Powers, C] = {}
     for (i, j), c in terms.items():
         monomial: dict[Powers, C] = {(0, 0): 1.0}
@@ -83,7 +83,7 @@ def substitute[C: (float, complex)](terms: Terms, x: Mapping[Powers, C], y: Mapp
 
 
 def exact_sum(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
-    """a + b, without the terms that cancel."""
+    """Return a + b, without the terms that cancel."""
     zero = Fraction(0)
     return _checked({powers: a.get(powers, zero) + b.get(powers, zero) for powers in {**a, **b}})
 
@@ -94,7 +94,7 @@ def exact_negative(a: ExactTerms) -> dict[Powers, Fraction]:
 
 
 def exact_product(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
-    """a · b, without the terms that cancel; raises `TooLargeError` before multiplying if the degree would be too high."""
+    """Return a · b, without the terms that cancel; raise `TooLargeError` before multiplying if the degree would be too high."""
     if a and b and degree(a) + degree(b) > HIGHEST_DEGREE:
         raise TooLargeError(f"degree {degree(a) + degree(b)}; the highest degree is {HIGHEST_DEGREE}")
     return _checked(multiply(a, b))
@@ -109,7 +109,7 @@ def exact_power(a: ExactTerms, exponent: int) -> dict[Powers, Fraction]:
 
 
 def _checked(a: ExactTerms) -> dict[Powers, Fraction]:
-    """The nonzero terms; raises `TooLargeError` if a number has too many digits."""
+    """Return the nonzero terms; raise `TooLargeError` if a number has too many digits."""
     nonzero = {powers: c for powers, c in a.items() if c}
     for c in nonzero.values():
         if max(c.numerator.bit_length(), c.denominator.bit_length()) > _MOST_BITS:

@@ -1,4 +1,4 @@
-"""Which numbers a formula shows as fractions."""
+"""The choice of numbers that formulas show as fractions."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ _LARGEST_OF_DECIMALS = 8
 
 
 def short_fraction(value: float, tolerance: float) -> Fraction | None:
-    """The fraction that texts show in place of a number of at least 0; None if a decimal number is clearer.
+    """Return the fraction shown in place of a number of at least 0; None if a decimal number is clearer.
 
-    Fractions have denominators up to 1000; those with a finite decimal expansion, up to 8. `tolerance` is the largest error.
+    Fractions have denominators up to 1000, or up to 8 if their decimal expansion is finite. `tolerance` is the largest error.
     """
     fraction = Fraction(value).limit_denominator(_LARGEST_DENOMINATOR)
     is_decimal = 10**9 % fraction.denominator == 0

@@ -1,4 +1,4 @@
-"""Parts of an expression whose zeros are singularities of it."""
+"""Parts of an expression whose zeros are its singularities."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from engine.expressions.polynomials import Powers, degree
 
 
 def singular_bases(expression: Expression) -> tuple[Expression, ...]:
-    """Divisors and arguments of roots and logarithms, each once."""
+    """Return the divisors, and the arguments of roots and logarithms, each once."""
     return tuple(dict.fromkeys(_bases(expression)))
 
 
@@ -24,27 +24,27 @@ def _bases(expression: Expression) -> list[Expression]:
 
 
 def has_central_part(expression: Expression) -> bool:
-    """Whether a singular base is a multiple of x² + y²."""
+    """Return whether a singular base is a multiple of x² + y²."""
     return any(
         terms is not None and terms == {(2, 0): c, (0, 2): c} for terms, c in map(_with_square, singular_bases(expression))
     )
 
 
 def _with_square(base: Expression) -> tuple[dict[Powers, float] | None, float]:
-    """The terms of a polynomial, and the coefficient of x²."""
+    """Return the terms of a polynomial, and the coefficient of x²."""
     terms = as_terms(base)
     return terms, (terms or {}).get((2, 0), 0.0)
 
 
 def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:
-    """(a, b) of each linear a x + b y + c, with a and b not 0, that is a base or the argument of a function; each once."""
+    """Return (a, b) of each linear a x + b y + c with a, b ≠ 0 that is a base or the argument of a function, each once."""
     found = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
     gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in found if terms and degree(terms) == 1)
     return tuple(dict.fromkeys((a, b) for a, b in gradients if a and b))
 
 
 def _inner_parts(expression: Expression) -> list[Expression]:
-    """What powers and functions are taken of, at all depths."""
+    """Return the bases of powers and the arguments of functions, at all depths."""
     match expression:
         case Sum(_, terms):
             return [inner for part, _ in terms for inner in _inner_parts(part)]

@@ -1,4 +1,4 @@
-"""Expressions as plain text that the parser of formulas reads back."""
+"""Expressions as plain text, which the parser of formulas can read."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def write_expression(expression: Expression, digits: int | None = None) -> str:
-    """An expression as text, such as "x²/2 + y²/2 − x²y exp(−y²)".
+    """Return an expression as text, such as "x²/2 + y²/2 − x²y exp(−y²)".
 
-    digits: significant digits of numbers; None for as many as they need to be read back exactly.
+    digits: significant digits of numbers; None for as many as the parser needs to read the same numbers.
     """
     whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
     parts: list[tuple[float, str]] = [(c, _term(part, abs(c), digits)) for part, c in whole.terms]
@@ -21,7 +21,7 @@ def write_expression(expression: Expression, digits: int | None = None) -> str:
 
 
 def join_signed(parts: list[tuple[float, str]]) -> str:
-    """A sum of texts, each with a number that has its sign."""
+    """Join texts, each with a number that gives its sign, to a sum."""
     text = ""
     for c, part in parts:
         sign = ("−" if c < 0 else "") if not text else (" − " if c < 0 else " + ")
@@ -30,7 +30,7 @@ def join_signed(parts: list[tuple[float, str]]) -> str:
 
 
 def _term(part: Expression, size: float, digits: int | None) -> str:
-    """A positive multiple of a term; the number of one with functions is in front of it, where it is read back exactly."""
+    """Return a positive multiple of a term; the number precedes functions, so that it is read back exactly."""
     powers = powers_of(part)
     if powers is not None:
         return monomial_term(*powers, size, digits)
@@ -39,7 +39,7 @@ def _term(part: Expression, size: float, digits: int | None) -> str:
 
 
 def monomial_term(i: int, j: int, size: float, digits: int | None) -> str:
-    """A positive multiple of x^i y^j, such as "2x²/3"."""
+    """Return a positive multiple of x^i y^j, such as "2x²/3"."""
     numerator, denominator = write_ratio(size, digits)
     powers = monomial(i, j)
     factor = "" if numerator == "1" and powers else numerator
@@ -52,7 +52,7 @@ def monomial(i: int, j: int) -> str:
 
 
 def write_ratio(size: float, digits: int | None) -> tuple[str, str]:
-    """Numerator and denominator of a number, as a `short_fraction`, otherwise as decimals over 1."""
+    """Return the numerator and the denominator of a number, as a `short_fraction` or as decimals over 1."""
     fraction = short_fraction(size, 0.0 if digits is None else 5.0 * 10.0**-digits * size)
     if fraction is not None:
         return str(fraction.numerator), str(fraction.denominator)
@@ -60,7 +60,7 @@ def write_ratio(size: float, digits: int | None) -> tuple[str, str]:
 
 
 def raised(name: str, exponent: float) -> str:
-    """A base to a power, with superscripts where it is an integer."""
+    """Return a base to a power, with superscripts if the exponent is an integer."""
     if exponent == 1.0:
         return name
     if exponent == int(exponent):
@@ -69,7 +69,7 @@ def raised(name: str, exponent: float) -> str:
 
 
 def _product(expression: Expression, digits: int | None) -> str:
-    """A factor or a product of them: coordinates first, then brackets, then functions."""
+    """Return a factor or a product as text: coordinates first, then brackets, then functions."""
     factors = expression.factors if isinstance(expression, Product) else ((expression, 1.0),)
     text = ""
     for base, exponent in sorted(factors, key=lambda factor: _place(factor[0])):

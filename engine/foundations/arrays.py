@@ -15,7 +15,7 @@ def read_only(array: np.ndarray) -> np.ndarray:
 
 
 class ReadOnlyArrays:
-    """Base of dataclasses whose arrays are read-only: NumPy forgets it in a pickle, and so in results of other processes."""
+    """Base of dataclasses whose arrays are read-only, also after unpickling, for which NumPy does not keep the flag."""
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         vars(self).update({name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in state.items()})

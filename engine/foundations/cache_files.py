@@ -1,7 +1,7 @@
 """The cache on disk: files in a private folder of limited size, verified on reading and written atomically.
 
 It contains compiled kernels, as pickles with machine code, and points of potentials. The hash at the start of each file detects
-accidents, such as an incomplete copy. It does not detect attacks, because whoever can write a file can also write its hash. A
+accidents, such as an incomplete copy. It does not detect attacks, because anyone who can write a file can also write its hash. A
 file is therefore read only if no other user can have written it.
 """
 
@@ -39,7 +39,7 @@ log = logging.getLogger(__name__)
 
 
 def cache_folder() -> Path:
-    """The folder for compiled kernels, which may not exist yet."""
+    """Return the folder for compiled kernels, which may not exist yet."""
     return Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("escape-explorer")) / "kernels"
 
 
@@ -48,7 +48,7 @@ def read_cached(path: Path) -> bytes | None:
 
     Returns
     -------
-    None if there is no file, or if another user owns or may write the file or its folder. A warning is logged then.
+    The content; None if there is no file, or if another user owns or can write the file or its folder, which logs a warning.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def delete_cached(name: str) -> None:
 
 
 def _is_private_folder(folder: Path) -> bool:
-    """Whether a folder is missing or only this user may write to it; a warning is logged otherwise."""
+    """Return whether a folder is missing or only this user can write to it; log a warning otherwise."""
     try:
         problem = _find_other_user(folder.stat())
     except OSError:
@@ -106,7 +106,7 @@ def _is_private_folder(folder: Path) -> bool:
 
 
 def _find_other_user(status: os.stat_result) -> str:
-    """Describe who else may have written a file or folder, and what to do about it; empty if nobody can have."""
+    """Describe which other users may have written a file or folder, and the remedy; empty if there are none."""
     if os.name != "posix":
         return ""
     if status.st_uid not in (os.geteuid(), _SUPERUSER):
@@ -127,7 +127,7 @@ def _delete_least_recently_used(folder: Path, largest_size: int, most_files: int
     files = []
     with os.scandir(folder) as entries:
         for entry in entries:
-            # Another process may delete it first.
+            # Another process may have deleted the file.
             with contextlib.suppress(FileNotFoundError):
                 if entry.name.endswith((SUFFIX, _PART)):
                     status = entry.stat()

@@ -18,20 +18,20 @@ from typing import Any
 
 import numpy as np
 
-# Smallest part of an index array that is worth a task.
+# Smallest part of an index array that is computed as a separate task.
 _LEAST_PART = 1000
-# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. With idle priority
-# they could be stopped by another program while they hold the interpreter lock, for which all other threads would wait.
+# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. Idle priority is not
+# used, because another program could stop such a thread while it holds the interpreter lock, for which all other threads wait.
 _NICE_VALUE = 10
-# Shorter calls show no bar, in seconds.
+# Calls shorter than this, in seconds, show no progress bar.
 _DELAY = 1.0
 _FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}<{remaining}"
-# Whether a bar is shown: calls within a call show none.
+# Whether a progress bar is shown; nested calls show none.
 _shown = threading.Event()
 
 
 def count_cores() -> int:
-    """How many cores this process may use."""
+    """Return the number of cores that this process may use."""
     # os.process_cpu_count is new in Python 3.13.
     count = getattr(os, "process_cpu_count", os.cpu_count)
     return count() or 1
@@ -39,29 +39,29 @@ def count_cores() -> int:
 
 @functools.cache
 def default_executor() -> ThreadPoolExecutor:
-    """The thread pool shared by this process, one thread per core; kernels release the GIL."""
+    """Return the thread pool shared by this process, one thread per core; kernels release the GIL."""
     return create_thread_pool(count_cores())
 
 
 if hasattr(os, "register_at_fork"):
-    # A child process has none of the threads of its parent, and would wait for them.
+    # A child process inherits the pool but not its threads, for which it would wait.
     os.register_at_fork(after_in_child=default_executor.cache_clear)
 
 
 def create_thread_pool(threads: int) -> ThreadPoolExecutor:
-    """A thread pool for kernels, of lower priority than the threads of this process that serve requests."""
+    """Return a thread pool for kernels, of lower priority than the threads of this process that serve requests."""
     return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
 
 
 def _lower_priority() -> None:
-    """Raise the nice value of the calling thread; on other systems than Linux it belongs to the whole process."""
+    """Raise the nice value of the calling thread, on Linux only: on other systems it applies to the whole process."""
     if sys.platform == "linux":
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE_VALUE)
 
 
 def count_workers(executor: Executor) -> int:
-    """Number of calls that an executor runs at once; 2 if it is unknown."""
-    # Dask's executor: ask its client each time, as the number of workers may change.
+    """Return the number of calls that an executor runs at once; 2 if it is unknown."""
+    # The number of workers of Dask's executor may change, so its client is asked each time.
     threads = getattr(getattr(executor, "_client", None), "nthreads", None)
     if threads is not None:
         return sum(threads().values()) or 2
@@ -69,7 +69,7 @@ def count_workers(executor: Executor) -> int:
 
 
 class SerialExecutor(Executor):
-    """Runs each call at once in the calling thread: for single orbits, or inside a worker of another pool."""
+    """An executor that runs each call at once in the calling thread, for single orbits or inside a worker of another pool."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Call the function and return its completed future."""
@@ -83,18 +83,18 @@ class SerialExecutor(Executor):
 
 @dataclass(frozen=True)
 class Execution:
-    """How a computation runs: where its parts are computed, how it is cancelled, and who follows it.
+    """Options of a computation: its executor, its cancellation, and the receiver of its progress.
 
-    Complete results do not depend on it, to the last bit. A cancelled computation raises
-    `concurrent.futures.CancelledError`, except where the result says what is missing: `compute_map`, `compute_trust` and
-    `compute_regularity` return a map whose ``complete`` is False, and `classify_orbits` codes of orbits that were not computed.
+    Complete results do not depend on them, to the last bit. A cancelled computation raises `concurrent.futures.CancelledError`,
+    except where the result marks what is missing: `compute_map`, `compute_trust` and `compute_regularity` return a map whose
+    ``complete`` is False, and `classify_orbits` returns codes of orbits that were not computed.
 
     Parameters
     ----------
     executor
         Any `concurrent.futures.Executor`, including that of a Dask client; None for the thread pool of this process.
     cancel
-        When set, the computation ends within about 0.2 s; None for one that cannot be cancelled.
+        When it is set, the computation ends within about 0.2 s; None for a computation that cannot be cancelled.
     on_progress
         Called in the calling thread with the share done, 0 to 1; None for a progress bar in a terminal or a notebook.
     """
@@ -133,16 +133,16 @@ class Execution:
             raise CancelledError
 
     def in_this_thread(self) -> Execution:
-        """The same without other threads, for single orbits, or inside a worker of another pool."""
+        """Return the same options without other threads, for single orbits or inside a worker of another pool."""
         return replace(self, executor=SerialExecutor())
 
     def report(self, share: Callable[[], float]) -> None:
-        """Tell the share done, 0 to 1, which is only computed if somebody follows."""
+        """Report the share done, 0 to 1; `share` is only evaluated if progress is followed or shown."""
         if self.on_progress is not None:
             self.on_progress(share())
 
     def part(self, number: int, count: int) -> Execution:
-        """The execution of one of `count` parts of equal work, which reports its share of the progress."""
+        """Return the execution of one of `count` parts of equal work, which reports its share of the progress."""
         report = self.on_progress
         return self if report is None else replace(self, on_progress=lambda share: report((number + share) / count))
 
@@ -151,12 +151,12 @@ class Execution:
         return self._pool.submit(function, *arguments)
 
     def collect[T](self, future: Future[T]) -> T | None:
-        """The result of a call, after waiting for it; None if it never ran because the computation was cancelled.
+        """Wait for a call and return its result; None if it never ran because the computation was cancelled.
 
         Raises
         ------
         concurrent.futures.BrokenExecutor
-            When the executor has dropped a call that was not cancelled, as a cluster does that loses its scheduler.
+            When the executor dropped a call that was not cancelled, for example because a cluster lost its scheduler.
         """
         try:
             return future.result()
@@ -179,7 +179,7 @@ def run_parts(
     select: Callable[[np.ndarray], tuple[Any, ...]],
     execution: Execution,
 ) -> Iterator[tuple[np.ndarray, Any]]:
-    """Run ``work(*select(part))`` in parallel for the parts of an index array; each part of `indices` with its result.
+    """Run ``work(*select(part))`` in parallel for parts of an index array, and yield each part of `indices` with its result.
 
     Parts that never ran because of a cancellation are left out. `work` must
     be a module-level function, so that it can be pickled for other processes, and should release the GIL.
@@ -194,10 +194,10 @@ def run_parts(
 
 
 def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorator for functions with a parameter ``execution``: they show a bar unless the caller follows the progress.
+    """Decorate a function with a parameter ``execution`` so that it shows a progress bar, unless the caller follows the progress.
 
-    Calls of the main thread in a terminal or a notebook show it after a second. The environment variable ``TQDM_DISABLE=1`` turns
-    all bars off.
+    In the main thread of a terminal or a notebook, a bar appears after a second. The environment variable ``TQDM_DISABLE=1``
+    disables all bars.
     """
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
@@ -211,7 +211,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
                 raise TypeError(f"{function.__name__}() {error}") from None
             execution = given.get("execution", DEFAULT_EXECUTION)
             if not isinstance(execution, Execution):
-                # The function itself refuses it.
+                # The function itself raises the error.
                 return function(*args, **kwargs)
             follows = any(one is not None for one in (execution.on_progress, given.get("on_progress"), given.get("on_frame")))
             if follows or _shown.is_set() or not _is_interactive():
@@ -227,7 +227,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
 
 
 def _is_interactive() -> bool:
-    """Whether a person waits for this call."""
+    """Return whether a person waits for this call."""
     if threading.current_thread() is not threading.main_thread():
         return False
     return "ipykernel" in sys.modules or (sys.stderr is not None and sys.stderr.isatty())
@@ -236,7 +236,7 @@ def _is_interactive() -> bool:
 @contextmanager
 def _bar(label: str) -> Iterator[Callable[[float], None]]:
     with warnings.catch_warnings():
-        # Without Jupyter's widgets a bar of text is shown, with a warning.
+        # Without Jupyter's widgets, tqdm shows a bar of text and a warning.
         warnings.simplefilter("ignore")
         from tqdm.auto import tqdm
 

@@ -1,4 +1,4 @@
-"""What only some installations have: packages of the extras, and what draws results."""
+"""Optional parts of an installation: packages of the extras, and the package that draws results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 GROUP = "escape_explorer.pictures"
-"""Group of the entry point with a module that has the functions of `Pictures`."""
+"""Group of the entry point of a module with the functions of `Pictures`."""
 
 
 def require_package(package: str, extra: str) -> None:
@@ -23,38 +23,38 @@ def require_package(package: str, extra: str) -> None:
     package
         Name under which the package is imported.
     extra
-        The extra of the distribution that has it: files, page, cluster or movies.
+        The extra of the distribution that includes it: files, page, cluster or movies.
 
     Raises
     ------
     ModuleNotFoundError
-        If it is not installed; the message is the command that installs it.
+        If it is not installed; the message contains the command that installs it.
     """
     if importlib.util.find_spec(package) is None:
         raise ModuleNotFoundError(f"{package} is not installed: pip install 'escape-explorer[{extra}]'", name=package)
 
 
 class Pictures(Protocol):
-    """Functions that show a `Result`."""
+    """Functions that draw a `Result`."""
 
     def plot_result(self, result: Any, ax: Axes | None = None, **options: Any) -> Axes:
         """Draw a result, as `Result.plot` describes."""
 
     def to_html(self, result: Any) -> str:
-        """The result as HTML for a notebook."""
+        """Return the result as HTML for a notebook."""
 
     def to_holoviews(self, result: Any) -> Any:
-        """The result as a HoloViews element."""
+        """Return the result as a HoloViews element."""
 
 
 @functools.cache
 def load_pictures(group: str = GROUP) -> Pictures:
-    """The functions of the entry point in a group, imported at the first call: drawing libraries are slow to import.
+    """Import the functions of the entry point in a group at the first call, because drawing libraries are slow to import.
 
     Raises
     ------
     RuntimeError
-        If there is no entry point, as in sources that are not installed.
+        If there is no entry point, for example in sources that are not installed.
     """
     for entry in entry_points(group=group):
         pictures: Pictures = entry.load()

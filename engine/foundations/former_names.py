@@ -1,4 +1,4 @@
-"""Former names of what the library offers, which are deprecated: those of the package, of fields, and of what files hold."""
+"""Deprecated names of the public objects of the package, of their fields, and of variables in files."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
         ),
     }
 )
-"""Former public names: the new name, and the module, as seen from this package, and object that stand for the former one."""
+"""Former public names, each with the new name and the "module:object" that it returns, relative to this package."""
 
 FORMER_FIELDS: Mapping[str, str] = MappingProxyType(
     {
@@ -48,13 +48,13 @@ FORMER_FIELDS: Mapping[str, str] = MappingProxyType(
         "certifies_tori": "tori_are_evidence",
     }
 )
-"""Former names of attributes and parameters of the public classes, and of variables and attributes in files."""
+"""Former names of attributes and parameters of public classes, and of variables and attributes in files."""
 
 
 def find_former_name(name: str, stacklevel: int = 2) -> Any:
-    """Return what stands for a former public name, with a warning; AttributeError for any other name.
+    """Return the object of a former public name, with a warning; AttributeError for any other name.
 
-    stacklevel: whom to warn, as of `warnings.warn`; by default the caller.
+    stacklevel: the frame to which the warning refers, as in `warnings.warn`; by default the caller.
     """
     results = import_module("..results", __package__)
     if name in results.__all__:
@@ -69,7 +69,7 @@ def find_former_name(name: str, stacklevel: int = 2) -> Any:
 
 
 def with_former_fields[T](cls: type[T]) -> type[T]:
-    """Add the former names of its attributes and parameters, each with a warning, to a dataclass."""
+    """Add the former names of its attributes and parameters to a dataclass; the use of each gives a warning."""
     names = {each.name for each in fields(cls)}  # type: ignore[arg-type]
     for old, new in FORMER_FIELDS.items():
         if hasattr(cls, new) or new in names:
@@ -93,7 +93,7 @@ def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
     def __init__(self: Any, *args: Any, **options: Any) -> None:  # noqa: N807
         for old in former.keys() & options.keys():
             _warn(old, former[old])
-            # `dataclasses.replace` also passes the present value by its new name.
+            # `dataclasses.replace` also passes the current value under its new name.
             options[former[old]] = options.pop(old)
         initialize(self, *args, **options)
 
@@ -101,12 +101,12 @@ def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
 
 
 def _warn(old: str, new: str, stacklevel: int = 3) -> None:
-    """Warn, by default the caller of the function that calls this one."""
+    """Warn; the warning refers by default to the caller of the function that calls this one."""
     warnings.warn(f"{old} is deprecated: use {new}", DeprecationWarning, stacklevel=stacklevel)
 
 
 def rename_stored(dataset: xr.Dataset) -> xr.Dataset:
-    """Return a dataset of an earlier version with the present names of its variables and attributes."""
+    """Rename the variables and attributes of a dataset of an earlier version to their current names."""
     renamed = dataset.rename({old: new for old, new in FORMER_FIELDS.items() if old in dataset.variables})
     renamed.attrs = {FORMER_FIELDS.get(name, name): value for name, value in dataset.attrs.items()}
     return renamed

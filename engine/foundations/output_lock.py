@@ -1,4 +1,4 @@
-"""A lock for output that takes long to write: one process holds it, and another learns which one."""
+"""A lock for output that takes long to write: one process holds it, and other processes are told which one."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from filelock import FileLock
 
-# Attempts while others take turns: the last holder may delete the file between its opening and its locking.
+# Number of attempts. Each fails if the previous holder deletes the file between its opening and its locking.
 _MOST_ATTEMPTS = 100
-# Errors of file systems that have no locks.
+# Errors of file systems without locks.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 
 
@@ -25,8 +25,8 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 def hold_lock(path: Path) -> Iterator[None]:
     """Reserve a path for this process, with a file `.NAME.lock` beside it that is deleted at the end.
 
-    The operating system releases the lock when the process ends, even if it is killed. Windows, and file systems that have no
-    locks, give none: nothing is reserved there.
+    The operating system releases the lock when the process ends, even if it is killed. On Windows, and on file systems without
+    locks, nothing is reserved.
 
     Parameters
     ----------
@@ -36,12 +36,12 @@ def hold_lock(path: Path) -> Iterator[None]:
     Raises
     ------
     BlockingIOError
-        When another process holds it; one sentence with its number, its machine and since when.
+        When another process holds it; the message names its number, its machine and the time since when.
     OSError
         When the lock file cannot be written.
     """
     if sys.platform == "win32":
-        # A locked file can neither be read there, to learn who holds it, nor be deleted by its holder.
+        # On Windows a locked file can neither be read, to find its holder, nor be deleted by its holder.
         yield
         return
     from filelock import FileLock
@@ -54,7 +54,7 @@ def hold_lock(path: Path) -> Iterator[None]:
         file.write_text(f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}")
         yield
     finally:
-        # While the lock is held: afterwards the file may be that of another process.
+        # The file is deleted while the lock is held, because later it may belong to another process.
         file.unlink(missing_ok=True)
         lock.release()
 

@@ -1,6 +1,6 @@
-"""Results show themselves: pictures on Matplotlib axes and in notebooks, tables for pandas and xarray.
+"""Results of computations, with methods for pictures on Matplotlib axes and in notebooks, and tables for pandas and xarray.
 
-The pictures are drawn by another package, which is imported at the first of them; see `engine.foundations.extras`.
+Another package draws the pictures, and is imported when the first picture is drawn; see `engine.foundations.extras`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class _NamesForUsers(type):
-    """Metaclass of results: the completion of names, which reads classes too, shows what is for users."""
+    """Metaclass of results, which hides names of internal use from `dir` of a class, and thus from completion."""
 
     def __dir__(cls) -> list[str]:
         return [name for name in super().__dir__() if name not in cls.inner_names]  # type: ignore[attr-defined]
@@ -47,9 +47,9 @@ class Chart:
     logarithmic
         The letters of the axes with a logarithmic scale.
     title
-        Above the axes, with the numbers of the result in braces; empty for none.
+        Title above the axes, with attributes of the result in braces; empty for no title.
     by_channel
-        Whether x are channels: bars in their colours instead of a line.
+        Whether x contains channel numbers; the chart then has bars in the colours of the channels instead of a line.
     """
 
     x: str
@@ -71,23 +71,23 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
             *FORMER_FIELDS,
         }
     )
-    """The attributes that `dir` leaves out: they are for the modules of this package."""
+    """Attributes that `dir` omits, because they are for internal use."""
 
     chart: ClassVar[Chart | None] = None
-    """The picture of a result that is a line or bars."""
+    """The chart of a result that is drawn as a line or bars."""
 
     codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
-    """The attributes that are codes, with the meaning of these."""
+    """Attributes that contain codes, with the enumeration that defines them."""
 
     row_dimension: ClassVar[str] = ""
-    """Name of the dimension of the columns in files; empty if the first column, whose values are different, is its coordinate."""
+    """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
 
     held_as: ClassVar[dict[str, str]] = {}
-    """The fields that files hold under another name, or as parts, with the name of a part."""
+    """Fields that files store under another name, or as parts, with that name or the name of a part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:
-        """Labels of the fates from 1 on, for `codes`; empty if they are not known."""
+        """Labels of the fates from 1 on, which explain `codes`; empty if they are not known."""
         return ()
 
     def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
@@ -104,19 +104,19 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
         Returns
         -------
-        The axes, in the coordinates of the result: whatever is drawn on them later lies in front.
+        The axes, in the coordinates of the result, so that more can be drawn on top.
 
         Raises
         ------
         TypeError
             If the result has no picture, or an option does not apply to it.
         ValueError
-            If an option has no such value.
+            If an option does not have the given value.
         """
         return load_pictures().plot_result(self, ax, **options)
 
     def to_holoviews(self) -> Any:
-        """The result as an interactive HoloViews element, for the extension that is loaded: an image of a map, else curves."""
+        """Return the result as an interactive HoloViews element of the loaded extension: an image for a map, otherwise curves."""
         return load_pictures().to_holoviews(self)
 
     def _repr_html_(self) -> str:
@@ -131,15 +131,15 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return summarize(type(self).__name__, describe() if describe is not None else "", self.shown_numbers(), arrays)
 
     def shown_numbers(self) -> dict[str, str]:
-        """The scalar attributes as text: codes in words, other numbers to four digits."""
+        """Return the scalar attributes as text: codes in words, other numbers to four digits."""
         return show_numbers(self.numbers(), self.codes, self.fate_labels)
 
     def numbers(self) -> dict[str, Any]:
-        """The scalar attributes by name."""
+        """Return the scalar attributes by name."""
         return {name: value for name, value in self._attributes().items() if isinstance(value, bool | int | float | str)}
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """The one-dimensional arrays by name that are as long as the first of them; empty if there are none."""
+        """Return the one-dimensional arrays of the same length as the first of them, by name; empty if there are none."""
         arrays = {name: a for name, a in self._attributes().items() if isinstance(a, np.ndarray) and a.ndim == 1}
         length = next(iter(arrays.values())).size if arrays else 0
         return {name: array for name, array in arrays.items() if array.size == length}
@@ -148,7 +148,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
 
     def to_pandas(self) -> pd.DataFrame:
-        """The columns as a table with the scalars in ``attrs``; without columns one row of the scalars."""
+        """Return the columns as a table with the scalars in ``attrs``; a result without columns gives one row of scalars."""
         import pandas as pd
 
         numbers, columns = self.numbers(), self.columns()
@@ -157,13 +157,13 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return table
 
     def provenance(self) -> dict[str, Any]:
-        """How the result was made, in plain values, as far as it is known: the version, the potential, the request."""
+        """Return how the result was made, in plain values, as far as it is known: the version, the potential, the request."""
         return {"version": metadata.version("escape-explorer")}
 
     def to_xarray(self) -> xr.Dataset:
-        """The columns along one dimension, with the scalars and the provenance as attributes; without columns the scalars.
+        """Return the columns along one dimension, with the scalars and the provenance as attributes; without columns the scalars.
 
-        It can be written as NetCDF and Zarr.
+        The dataset can be written as NetCDF and Zarr.
         """
         import xarray as xr
 
@@ -183,7 +183,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return xr.Dataset(rows | entries, attrs=attributes | scalars)
 
     def _remaining_fields(self, stored: set[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """The fields that are neither columns nor shown numbers: arrays, and attributes; a potential is in the provenance."""
+        """Return the other fields as arrays and attributes: neither columns, nor shown numbers, nor potentials."""
         fields_left = {name: value for name, value in self._attributes().items() if name not in stored}
         arrays = {name: value for name, value in fields_left.items() if isinstance(value, np.ndarray)}
         others = {
@@ -194,12 +194,12 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return arrays, others
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the result as a NetCDF file, which `open_result` reads; tables are written by ``to_pandas().to_csv(path)``.
+        """Write the result as a NetCDF file, which `open_result` reads; for a table use ``to_pandas().to_csv(path)``.
 
         Parameters
         ----------
         path
-            The file, which ends in ".nc"; one that exists is replaced.
+            The file, whose name ends in ".nc"; an existing file is replaced.
 
         Raises
         ------
@@ -211,7 +211,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         wanted = Path(path)
         if wanted.suffix != ".nc":
             raise ValueError(f"path={path}: must end in .nc")
-        # An interrupted call leaves the file that it would replace as it is.
+        # If the call is interrupted, the file to be replaced remains unchanged.
         part = wanted.with_name(f".{wanted.name}.{os.getpid()}.part")
         try:
             self.to_xarray().to_netcdf(part)
@@ -220,7 +220,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
             part.unlink(missing_ok=True)
 
     def _meaning(self, name: str, values: Any) -> dict[str, str]:
-        """Attributes of a variable: what its codes are, or that its numbers are dimensionless."""
+        """Return the attributes of a variable: the meaning of its codes, or that its numbers are dimensionless."""
         if name in self.codes:
             return describe_codes(self.codes[name], self.fate_labels)
         return {"units": "1"} if np.asarray(values).dtype.kind in "iuf" else {}
@@ -228,7 +228,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RecordedResult(Result):
-    """Base of results that keep how they were made.
+    """Base of results that record how they were made.
 
     Attributes
     ----------
@@ -244,10 +244,10 @@ class RecordedResult(Result):
 
 
 class MapResult(Result):
-    """Base of results with a value for each pixel of a map; `to_xarray` has named axes."""
+    """Base of results with a value for each pixel of a map; their `to_xarray` has named axes."""
 
     def to_pandas(self) -> pd.DataFrame:
-        """One row per pixel, with its coordinates as index."""
+        """Return a table with one row per pixel and its coordinates as index."""
         table = self.to_xarray().to_dataframe()
         table.attrs = self.numbers()
         return table

@@ -1,4 +1,4 @@
-"""Roots of functions of one variable, and many boundaries at once."""
+"""Roots of functions of one variable, and bisection of many intervals at once."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ _MOST_STEPS = 100
 
 
 def find_root(function: Callable[[float], float], low: float, high: float, *, absolute: float, relative: float) -> float:
-    """A root by Brent's method (Brent 1973, Algorithms for Minimization without Derivatives, chapter 4).
+    """Find a root by Brent's method (Brent 1973, Algorithms for Minimization without Derivatives, chapter 4).
 
-    It makes the same steps as `scipy.optimize.brentq`, which takes longer to import than a whole search takes.
+    It makes the same steps as `scipy.optimize.brentq`, whose import takes longer than a whole search.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
 
 
 def _interpolate(before: tuple[float, float], here: tuple[float, float], across: tuple[float, float]) -> float:
-    """The step to the root of the line through two points, or of the inverse parabola through three; infinite if undefined."""
+    """Return the step to the root of a line through two points or an inverse parabola through three; infinite if undefined."""
     (x0, f0), (x, f), (x1, f1) = before, here, across
     if x0 == x1:
         return -f * (x - x0) / (f - f0)
@@ -80,11 +80,11 @@ def bisect(
     Parameters
     ----------
     is_beyond
-        Returns for each point whether it is beyond its boundary.
+        A function that returns whether each point is beyond its boundary.
     within, beyond
         The ends of the intervals, of any shape, on the two sides of their boundaries.
     halvings
-        How often the intervals are halved.
+        Number of times that the intervals are halved.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Fields of results as attributes of files: numbers and texts as they are, tuples and dataclasses as JSON."""
+"""Fields of results as attributes of files: numbers and texts unchanged, tuples and dataclasses as JSON."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from engine.foundations.arrays import read_only
 
 
 def write_field(value: Any) -> Any:
-    """A value as an attribute; `read_field` makes it again."""
+    """Convert a value to an attribute, from which `read_field` restores it."""
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, bool):
@@ -24,7 +24,7 @@ def write_field(value: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """What JSON has for a value of a kind that it does not know."""
+    """Convert a value that JSON does not support to one that it does."""
     if is_dataclass(value):
         return {each.name: getattr(value, each.name) for each in fields(value)}
     if isinstance(value, Enum):
@@ -33,7 +33,7 @@ def _plain(value: Any) -> Any:
 
 
 def read_field(hint: Any, found: Any) -> Any:
-    """The value of a field of a type from what a file holds: an array, a number, a text, or JSON."""
+    """Restore the value of a field of a type from the content of a file: an array, a number, a text, or JSON."""
     if hint is np.ndarray:
         return read_only(np.array(found))
     hint = _present(hint)
@@ -42,14 +42,14 @@ def read_field(hint: Any, found: Any) -> Any:
 
 
 def _present(hint: Any) -> Any:
-    """The type of a value that is there, where there may be none."""
+    """Return the type of a value that may be None, without None."""
     if get_origin(hint) not in (Union, UnionType):
         return hint
     return next(kind for kind in get_args(hint) if kind is not NoneType)
 
 
 def _build(hint: Any, plain: Any) -> Any:
-    """A value of a type from numbers, texts, lists and mappings."""
+    """Build a value of a type from numbers, texts, lists and mappings."""
     if plain is None:
         return None
     hint = _present(hint)
@@ -64,7 +64,7 @@ def _build(hint: Any, plain: Any) -> Any:
 
 
 def plain_attributes(attributes: Mapping[Any, Any]) -> dict[str, Any]:
-    """Attributes of a file as they were written: numbers of Python, and tuples where files have arrays or lists."""
+    """Convert attributes read from a file to numbers of Python, and to tuples where files have arrays or lists."""
     return {str(name): _plain_attribute(value) for name, value in attributes.items()}
 
 

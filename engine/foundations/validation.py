@@ -1,6 +1,6 @@
 """Checks of arguments: each function returns the value as a plain type, or raises a ValueError that names the parameter.
 
-A value of a wrong type raises a ValueError too, like one out of range.
+A value of a wrong type also raises a ValueError.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 
 LARGEST_NUMBER = 1e9
-"""Largest magnitude of an energy, a coordinate or a momentum: far beyond all exits, and its powers do not overflow."""
+"""Largest magnitude of an energy, a coordinate or a momentum. It is far beyond all exits, and its powers do not overflow."""
 
 LARGEST_COEFFICIENT = 1e90
-"""Largest magnitude of a coefficient: with a unit of length of 1e-6 terms of degree 12 have a factor of 1e72."""
+"""Largest magnitude of a coefficient. With a unit of length of 1e-6, terms of degree 12 have a factor of 1e72."""
 
 LONGEST_TIME = 1e8
-"""Largest t_max, in units of the well where these are longer than 1; at this time the rounding error of t itself reaches 1e-8."""
+"""Largest t_max, in units of the well if these are longer than 1; at this time the rounding error of t itself reaches 1e-8."""
 
 
 _LINE_BREAK = re.compile(r"\s*\n\s*")
@@ -39,12 +39,12 @@ _TYPE_NAMES = {
 
 
 def short_repr(value: Any) -> str:
-    """`repr` of a value, shortened for an error message, in one line."""
+    """Return `repr` of a value on one line, shortened for an error message."""
     return _LINE_BREAK.sub(" ", reprlib.repr(value))
 
 
 def checks_types[**P, T](**kinds: Any) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorator that raises a ValueError for an argument that is not of its type, or of none of several; by name."""
+    """Decorate a function so that an argument of a wrong type raises a ValueError; `kinds` gives a type, or several, by name."""
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         places = [(place, name) for place, name in enumerate(inspect.signature(function).parameters) if name in kinds]
@@ -64,7 +64,7 @@ def checks_types[**P, T](**kinds: Any) -> Callable[[Callable[P, T]], Callable[P,
 
 
 def check_type(name: str, value: Any, kind: Any) -> None:
-    """Raise a ValueError unless a value is of a type, or of one of several."""
+    """Raise a ValueError unless a value has a type, or one of several types."""
     if not isinstance(value, kind):
         kinds = kind if isinstance(kind, tuple) else (kind,)
         raise ValueError(f"{name}={short_repr(value)}: must be {' or '.join(map(_describe_type, kinds))}")
@@ -76,7 +76,7 @@ def _describe_type(kind: type) -> str:
 
 
 def replace_unchecked[T](instance: T, **values: Any) -> T:
-    """`dataclasses.replace` for a frozen dataclass without its checks, whose legal ranges are for the units of the user."""
+    """Apply `dataclasses.replace` to a frozen dataclass without its checks, which apply to values in the units of the user."""
     replaced = object.__new__(type(instance))
     for each in dataclasses.fields(instance):  # type: ignore[arg-type]
         object.__setattr__(replaced, each.name, values.get(each.name, getattr(instance, each.name)))
@@ -91,16 +91,16 @@ def checked_flag(name: str, value: Any) -> bool:
 
 
 def checked_number(name: str, value: Any, requirement: str = "a finite number", largest: float = LARGEST_NUMBER) -> float:
-    """A real number of at most `largest` in magnitude, as a float; the error says "must be <requirement>"."""
+    """Return a real number of at most `largest` in magnitude as a float; the error says "must be <requirement>"."""
     is_real = isinstance(value, numbers.Real) and not isinstance(value, bool)
-    # Compared before conversion: an integer may be too large for a float.
+    # The comparison precedes the conversion, because an integer may be too large for a float.
     if not is_real or not -largest <= value <= largest:
         raise ValueError(f"{name}={short_repr(value)}: must be {requirement}, at most {largest:g} in magnitude")
     return float(value)
 
 
 def checked_count(name: str, value: Any, least: int, most: int) -> int:
-    """An integer from `least` to `most`."""
+    """Return an integer from `least` to `most`; ValueError otherwise."""
     try:
         count = operator.index(value) if not isinstance(value, bool) else least - 1
     except TypeError:
@@ -111,7 +111,7 @@ def checked_count(name: str, value: Any, least: int, most: int) -> int:
 
 
 def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarray:
-    """An array of floats, or of its own type with `keep_type`; shape and range are not checked."""
+    """Return an array of floats, or of its own type with `keep_type`; shape and range are not checked."""
     try:
         array: np.ndarray = np.asarray(value, dtype=None if keep_type else float)
     except (TypeError, ValueError, OverflowError):
@@ -120,7 +120,7 @@ def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarr
 
 
 def checked_integers(name: str, value: Any) -> np.ndarray:
-    """An array of int64; an empty one may be of any type."""
+    """Return an array of int64; an empty one may be of any type."""
     array = checked_array(name, value, keep_type=True)
     if array.size and array.dtype.kind not in "iu":
         raise ValueError(f"{name}={short_repr(value)}: must be integers")
@@ -130,19 +130,19 @@ def checked_integers(name: str, value: Any) -> np.ndarray:
 def checked_t_max(
     t_max: float, longest: float = LONGEST_TIME, unit: Callable[[], float] = lambda: 1.0, *, name: str = "t_max"
 ) -> float:
-    """`t_max` as a float, 0 < t_max ≤ longest; in units of a well where its unit of time, that of `unit`, is longer than 1."""
+    """Return `t_max` as a float, 0 < t_max ≤ longest, where the limit is in units of `unit.time` if that is longer than 1."""
     given: Any = t_max
     is_number = isinstance(given, int | float | np.number) and not isinstance(given, bool)
     if is_number and given > longest:
         longest *= max(unit(), 1.0)
-    # Compared before conversion: an integer may be too large for a float.
+    # The comparison precedes the conversion, because an integer may be too large for a float.
     if not (is_number and 0 < given <= longest):
         raise ValueError(f"{name}={short_repr(t_max)}: must be above 0 and at most {longest:g}")
     return float(t_max)
 
 
 def checked_state(name: str, state: Any) -> np.ndarray:
-    """(4,) floats x, y, px, py of at most `LARGEST_NUMBER` in magnitude."""
+    """Return (4,) floats x, y, px, py of at most `LARGEST_NUMBER` in magnitude."""
     array = checked_array(name, state)
     if array.shape != (4,) or not np.all(np.abs(array) <= LARGEST_NUMBER):
         limit = f"at most {LARGEST_NUMBER:g} in magnitude"

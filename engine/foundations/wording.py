@@ -1,4 +1,4 @@
-"""Numbers, counts and codes in sentences and tables, and results in a few lines of text."""
+"""Numbers, counts and codes as text, and summaries of results in a few lines."""
 
 from __future__ import annotations
 
@@ -9,68 +9,74 @@ from typing import Any
 
 import numpy as np
 
-# Of the text of a result.
+# Largest width of the text of a result.
 _WIDTH, _MOST_LINES = 100, 3
-# A space at which lines do not end.
+# A space at which lines are not broken.
 _UNBROKEN = "\u00a0"
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def format_count(count: int, singular: str, plural: str = "") -> str:
-    """A count and its noun, such as "1 box" or "3 boxes"; without `plural`, the noun takes an "s"."""
+    """Return a count and its noun, such as "1 box" or "3 boxes"; without `plural`, the noun takes an "s"."""
     return f"{format_whole(count)} {singular if count == 1 else plural or f'{singular}s'}"
 
 
 def format_whole(value: float) -> str:
-    """A number rounded to a whole one, with spaces between groups of three digits, such as "100 000"."""
+    """Return a number rounded to a whole one, with spaces between groups of three digits, such as "100 000"."""
     return f"{round(value):,}".replace(",", " ")
 
 
 def format_time(t: float, digits: int = 6) -> str:
-    """A time to `digits` significant digits, or all digits of its whole part, with spaces between groups of three of these."""
+    """Return a time to `digits` significant digits, or all digits of its whole part, with spaces between groups of three."""
     if t == round(t) or abs(t) >= 10.0**digits:
         return format_whole(t)
     return f"{t:,.{digits}g}".replace(",", " ")
 
 
 def format_number(value: float, digits: int = 4) -> str:
-    """A number to `digits` significant digits, with typographic minus and infinity signs."""
+    """Return a number to `digits` significant digits, with typographic signs, such as "1.9 × 10⁻¹²"."""
     return _typeset(f"{value:.{digits}g}")
 
 
 def format_decimals(value: float, decimals: int) -> str:
-    """A number to `decimals` decimals, with a typographic minus sign and without a negative zero."""
+    """Return a number to `decimals` decimals, with a typographic minus sign and without a negative zero."""
     return _typeset(f"{round(value, decimals) + 0.0:.{decimals}f}")
 
 
 def _typeset(text: str) -> str:
-    short = text.replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
-    return short.replace("-", "−").replace("inf", "∞")
+    mantissa, _, exponent = text.partition("e")
+    number = mantissa.replace("-", "−").replace("inf", "∞")
+    if not exponent:
+        return number
+    power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+    return power if number == "1" else f"{number} × {power}"
 
 
 def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str, str]:
-    """The dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``.
+    """Return the dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``.
 
     `labels` name the codes from 1 on that are not members of the enumeration, such as the outcomes of a `Fate`. The attribute
-    leaves them out if they are the default ones, "channel 1" and so on.
+    leaves them out if they are the default ones, "exit 1" and so on.
     """
     known = [f"{code.value}: {code.name.lower()}" for code in codes]
-    are_channels = all(label == _channel(code) for code, label in enumerate(labels, 1))
-    return {"codes": "; ".join([*known, *([] if are_channels else (f"{k}: {label}" for k, label in enumerate(labels, 1)))])}
+    are_default = all(label == _exit(code) for code, label in enumerate(labels, 1))
+    return {"codes": "; ".join([*known, *([] if are_default else (f"{k}: {label}" for k, label in enumerate(labels, 1)))])}
 
 
 def name_code(codes: type[IntEnum], code: int, labels: Sequence[str] = ()) -> str:
-    """Return a code in words; `labels` name the codes from 1 on that are not members, which otherwise are channels."""
+    """Return a code in words; `labels` name the codes from 1 on that are not members, which are exits by default."""
     if code in codes:
         return codes(code).name.lower().replace("_", " ")
-    return labels[code - 1] if 1 <= code <= len(labels) else _channel(code)
+    return labels[code - 1] if 1 <= code <= len(labels) else _exit(code)
 
 
-def _channel(code: int) -> str:
-    return f"channel {code}"
+def _exit(code: int) -> str:
+    return f"exit {code}"
 
 
 def show_numbers(numbers: Mapping[str, Any], codes: Mapping[str, type[IntEnum]], labels: Sequence[str] = ()) -> dict[str, str]:
-    """Scalars as text, by name: codes in words, with the labels of fates from 1, other numbers to four digits."""
+    """Return scalars as text, by name: codes in words, with `labels` for the fates from 1 on, other numbers to four digits."""
     return {name: _show(value, codes.get(name), labels) for name, value in numbers.items()}
 
 
@@ -83,21 +89,21 @@ def _show(value: Any, codes: type[IntEnum] | None, labels: Sequence[str]) -> str
 
 
 def summarize(title: str, sentence: str, shown: Mapping[str, str], arrays: Mapping[str, np.ndarray]) -> str:
-    """A title with a sentence, then the scalars and the arrays, each in three lines at most."""
+    """Return a title with a sentence, then the scalars and the arrays, each in at most three lines."""
     lines = _wrap(f"{title}: {sentence}" if sentence else title, indent="")
     lines += _wrap_items(f"{name} {value}" for name, value in shown.items())
     return "\n".join(lines + _wrap_items(_name_arrays(arrays)))
 
 
 def _name_arrays(arrays: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Names of arrays with their shape, those of equal shape together."""
+    """Yield the names of arrays with their shape; arrays of equal shape are grouped."""
     for shape in dict.fromkeys(array.shape for array in arrays.values()):
         names = " ".join(name for name, array in arrays.items() if array.shape == shape)
         yield f"{names} {' × '.join(map(str, shape))}"
 
 
 def _wrap_items(items: Iterable[str]) -> list[str]:
-    """A list of items in lines that end between two of them."""
+    """Wrap a list of items into lines that end between two items."""
     lines = _wrap(", ".join(item.replace(" ", _UNBROKEN) for item in items))
     return [line.replace(_UNBROKEN, " ") for line in lines]
 

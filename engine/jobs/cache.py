@@ -11,7 +11,7 @@ from cachetools import LRUCache
 _SMALL_RESULT = 1024
 
 ABSENT: Any = object()
-"""Stands for no result where None can be one."""
+"""Marks a missing result where None is a possible result."""
 
 
 class ResultCache:
@@ -20,8 +20,8 @@ class ResultCache:
     Parameters
     ----------
     limit
-        Largest total size in bytes, 0 or more; larger results are not stored. The size of a result is its attribute ``nbytes``;
-        without one it is small.
+        Largest total size in bytes, 0 or more; larger results are not stored. The size of a result is its attribute ``nbytes``; a
+        result without it counts as small.
     """
 
     def __init__(self, limit: int) -> None:
@@ -57,5 +57,5 @@ class ResultCache:
 
 
 def _size(result: Any) -> int:
-    """Size of a result in bytes, with that of its key."""
+    """Return the size of a result in bytes, with that of its key."""
     return int(getattr(result, "nbytes", _SMALL_RESULT))

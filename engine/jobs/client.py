@@ -46,7 +46,7 @@ class JobClient:
     def request[Result](
         self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
-        """Request a result as `Jobs.request` does; `on_error` receives a ValueError when too many requests are open."""
+        """Request a result as `Jobs.request` does; `on_error` receives a ValueError if too many requests are open."""
         return self._refuse(on_error) or self._add(
             self._jobs.request(job, on_result, on_error, client=self, account=self._account)
         )

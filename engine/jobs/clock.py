@@ -6,7 +6,7 @@ from typing import Protocol
 
 
 class Clock(Protocol):
-    """What the module `time` has, and a clock that is set by hand."""
+    """The functions of the module `time` that jobs use; tests replace them by a clock that is set by hand."""
 
     def monotonic(self) -> float:
         """Seconds since a fixed moment."""

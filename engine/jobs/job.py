@@ -17,7 +17,7 @@ class Queue(Enum):
     """The queue in which the calls of a job wait for a thread."""
 
     FIRST_FRAME = "first frame"
-    """The function makes many short calls, which come before all others up to its first result."""
+    """The function makes many short calls, which precede all others until its first result."""
 
     BACKGROUND = "background"
     """The function makes many short calls."""
@@ -26,33 +26,34 @@ class Queue(Enum):
     """The function is one call of up to seconds."""
 
     LIMITED = "limited"
-    """The function is one call on what a visitor typed, in a process with limits if there is one; an account has one at once."""
+    """The function makes one call on text typed by a visitor, in a process with limits if any; one per account at a time."""
 
     COMPILATION = "compilation"
-    """The function compiles kernels; one at a time runs in the process."""
+    """The function compiles kernels; only one such call runs at a time in the process."""
 
 
 @dataclass(frozen=True)
 class Job[Result]:
     """A function and its arguments, hashable; equal jobs are computed once.
 
-    The manager adds those of these options that the function has parameters for: ``execution``, ``on_frame`` for partial
+    The manager adds those of the following options for which the function has parameters: ``execution``, ``on_frame`` for partial
     results, ``resume``, and ``find_result``, which returns the result of another job.
 
     Attributes
     ----------
     function
-        Computes the result; raises CancelledError, or returns a result whose ``complete`` is False, when it is cancelled.
+        The function, which returns the result. When cancelled, it raises CancelledError or returns a result whose ``complete`` is
+        False.
     arguments
-        Its positional arguments. A job is replaced by its result, which must be complete.
+        Its positional arguments. A job among them is replaced by its result, which must be complete.
     options
         ((name, value), …): keyword arguments.
     queue
-        How its calls wait for a thread.
+        The queue in which its calls wait for a thread.
     orbits
         Number of orbits that the function holds in memory.
     find_earlier
-        Called with the job and the cache: the cached result that the function continues as ``resume``, or None.
+        Finds a cached result to continue: called with the job and the cache, it returns the value of ``resume`` or None.
     """
 
     function: Callable[..., Result]
@@ -68,7 +69,7 @@ class Job[Result]:
         return self.orbits + sum(argument.orbits_held for argument in self.arguments if isinstance(argument, Job))
 
     def keywords(self, offered: Mapping[str, Any]) -> dict[str, Any]:
-        """The keyword arguments of a call: the options, and the offered values for which the function has parameters."""
+        """Return the keyword arguments of a call: the options, and the offered values for which the function has parameters."""
         names = _parameters(self.function)
         return {**{name: value for name, value in offered.items() if name in names}, **dict(self.options)}
 
@@ -81,9 +82,9 @@ def run_job[Result](job: Job[Result], execution: Execution, known: Mapping[Job[A
     job
         The job.
     execution
-        How it and the jobs among its arguments run.
+        The options with which the job and the jobs among its arguments run.
     known
-        Results of some of these.
+        Known results of some of these jobs.
 
     Raises
     ------

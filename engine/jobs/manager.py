@@ -29,7 +29,7 @@ DEFAULT_CACHE_BYTES = 512 * 2**20
 DEFAULT_ORBITS = 4 * 2**20
 """Default limit on the orbits of large running jobs; about 500 MiB."""
 
-# Coordinating threads mostly wait for the pool; further jobs are queued.
+# Number of coordinating threads, which mostly wait for the pool; further jobs are queued.
 _COORDINATORS = 1024
 
 log = logging.getLogger(__name__)
@@ -37,7 +37,7 @@ log = logging.getLogger(__name__)
 
 @dataclass(eq=False)
 class _Run:
-    """A job under way."""
+    """A job that is queued or running."""
 
     job: Job[Any]
     subscriptions: list[Subscription]
@@ -78,15 +78,15 @@ class Jobs:
     cache_bytes
         Memory limit of complete and interrupted results, in bytes.
     most_orbits
-        Most orbits of all large running jobs together, at about 120 bytes per orbit.
+        Largest number of orbits of all large running jobs together, at about 120 bytes per orbit.
     threads
         Size of a thread pool of its own; None for the default pool of this process.
     limited
-        Calls a function in a process with limits, for `Queue.LIMITED`, until an event is set; None for a thread of this process.
+        Calls a function in a process with limits until an event is set, for `Queue.LIMITED`; None for a thread of this process.
     limited_calls
-        Number of such calls at a time, each of another account.
+        Largest number of such calls at a time, each of a different account.
     clock
-        By default that of this process.
+        The clock; by default the clock of this process.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class Jobs:
         self._limited = limited
         self._clock = clock
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads), clock)
-        # Numba compiles one function at a time: more threads would only wait for each other, and orbits for all of them.
+        # Numba compiles one function at a time, so that more threads would only wait for each other and use memory for orbits.
         self._compilations = FairScheduler(create_thread_pool(1), clock)
         self._limited_calls = FairScheduler(create_thread_pool(limited_calls), clock, one_each=True)
         self._semaphore = OrbitSemaphore(most_orbits)
@@ -138,8 +138,8 @@ class Jobs:
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
             the second frame of any.
         account
-            Whose share of the limit of compiled code the job takes, and whose turn in the queues of limited calls and of
-            compilations; None for no one's, and the turn of the client.
+            The account whose share of the limit of compiled code the job uses, and whose turn it takes in the queues of limited
+            calls and of compilations. With None no account is charged, and the turn is that of the client.
         """
         subscription = Subscription(partial(self._unsubscribe, job), on_result, on_error)
         with self._lock:
@@ -182,7 +182,7 @@ class Jobs:
         return MapPriority(lambda: self._scheduler.first_frames_spared, self._clock)
 
     def spare_first_frames(self, spared: bool) -> None:
-        """Put off what may be replaced before anyone looks at it, or no longer; see `FairScheduler.spare_first_frames`."""
+        """Defer calls whose results may be replaced unseen, or stop doing so; see `FairScheduler.spare_first_frames`."""
         self._scheduler.spare_first_frames(spared)
 
     def pause_background(self, paused: bool) -> None:
@@ -229,7 +229,7 @@ class Jobs:
                 subscription.deliver(result, last=True)
 
     def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
-        """Call the function of a job that `run` has started, or that it needs."""
+        """Call the function of a job that `run` has started, or of a job that it needs."""
         arguments = [self._find_result(run, each) if isinstance(each, Job) else each for each in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
         offered = {
@@ -246,7 +246,7 @@ class Jobs:
         return call()
 
     def _find_result[Result](self, run: _Run, job: Job[Result]) -> Result:
-        """The complete result of a job that another one needs, from the cache or computed now and cached."""
+        """Return the complete result of a job that another job needs, from the cache or computed and then cached."""
         result: Any = self.cache.get(job, ABSENT)
         if not _is_complete(result):
             result = self._compute(job, run, None)
@@ -257,7 +257,7 @@ class Jobs:
         return found
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
-        # All pages of an account share a turn where one call may keep the only thread for seconds.
+        # All pages of an account share a turn if one call may occupy the only thread for seconds.
         turn = run.client if run.account is None else run.account
         calls = self._scheduler.executor(run.client, run.priority)
         return {
@@ -280,7 +280,7 @@ class Jobs:
             return run.release()
 
     def _publish(self, run: _Run, result: Any) -> None:
-        """Deliver a partial result. A complete one is left to `_run_job`, which delivers it with all its data."""
+        """Deliver a partial result. `_run_job` delivers a complete result, with all its data."""
         if result.complete:
             return
         with self._lock:
@@ -293,5 +293,5 @@ class Jobs:
 
 
 def _is_complete(result: Any) -> bool:
-    """Whether a result is final; only results that arrive in parts have an attribute ``complete``."""
+    """Return whether a result is final; only results that arrive in parts have an attribute ``complete``."""
     return result is not ABSENT and getattr(result, "complete", True)

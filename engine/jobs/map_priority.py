@@ -1,4 +1,4 @@
-"""Priority of the calls of a map: its first frame first, and last what the next map may replace before anyone looks at it."""
+"""Priority of the calls of a map: its first frame comes first, and parts that the next map may replace unseen come last."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from engine.jobs.clock import Clock
 from engine.jobs.scheduler import Priority
 
 REST_SECONDS = 1.0
-"""Time after the request of a map within which it is often replaced by another, as its user still searches."""
+"""Time after the request of a map within which it is often replaced, because its user is still searching."""
 
 CROWDED_REST_SECONDS = 3.0
-"""The same while the process is crowded: most maps are then replaced before more than their first frame is computed."""
+"""The same time while the process is crowded; most maps are then replaced before a second frame is computed."""
 
 
 class MapPriority:
     """Priority of one map, from its request on.
 
-    The calls until the first frame have `Priority.FIRST_FRAME`. The longer integration times after that of the first frame, which
-    change few pixels, have `Priority.UNSETTLED` for `REST_SECONDS`: other calls run first, but no thread is idle instead. While
-    the process is crowded, all calls after the first frame have it for `CROWDED_REST_SECONDS`.
+    The calls until the first frame have `Priority.FIRST_FRAME`. Later integration times change few pixels. During the first
+    `REST_SECONDS` they have `Priority.UNSETTLED`, so that other calls run first, but no thread stays idle. While the process is
+    crowded, all calls after the first frame have this priority for `CROWDED_REST_SECONDS`.
 
     Parameters
     ----------
     is_crowded
-        Whether the process is.
+        Whether the process is crowded.
     clock
-        By default that of this process.
+        The clock; by default the clock of this process.
     """
 
     def __init__(self, is_crowded: Callable[[], bool], clock: Clock = time) -> None:

@@ -15,12 +15,12 @@ _CANCEL_POLL_SECONDS = 0.2
 
 
 class OrbitSemaphore:
-    """Weighted semaphore for large jobs: each acquires as many units as it holds orbits.
+    """Weighted semaphore for large jobs: each job acquires one unit for each orbit that it holds.
 
     Parameters
     ----------
     limit
-        Most orbits held at the same time. A job with more than that runs when no other large job does.
+        Largest number of orbits held at the same time. A job with more orbits runs when no other large job does.
     """
 
     def __init__(self, limit: int) -> None:
@@ -30,7 +30,7 @@ class OrbitSemaphore:
 
     @contextmanager
     def acquire(self, orbits: int, execution: Execution) -> Iterator[None]:
-        """Hold this many orbits while the context is active; CancelledError if cancelled during the wait."""
+        """Hold this many orbits while the context is active; CancelledError if the wait is cancelled."""
         orbits = orbits if orbits > SMALL_JOB else 0
         with self._released:
             while orbits and self.held and self.held + orbits > self.limit:

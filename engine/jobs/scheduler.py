@@ -24,16 +24,16 @@ class Priority(IntEnum):
     """Priority of a call; lower values run first."""
 
     FIRST_FRAME = 0
-    """Part of the first frame of a map, before which its page shows nothing."""
+    """Part of the first frame of a map; until it is complete the page shows nothing."""
 
     LONG_CALL = 1
-    """A single call of up to seconds, such as one orbit. If there are several threads, one is kept free of these."""
+    """A single call of up to seconds, such as one orbit. If there are several threads, one is kept free of such calls."""
 
     BACKGROUND = 2
-    """Part of a larger computation, about 50 ms long; under load most calls are of this kind."""
+    """Part of a larger computation, about 50 ms long; under load most calls have this priority."""
 
     UNSETTLED = 3
-    """The same for a result that is likely to be replaced before anyone looks at it."""
+    """Like `BACKGROUND`, for a result that is likely to be replaced before anyone sees it."""
 
 
 class _Call(NamedTuple):
@@ -43,7 +43,7 @@ class _Call(NamedTuple):
 
     def cancel(self) -> None:
         self.future.cancel()
-        # Wakes the threads that wait for the future.
+        # This wakes the threads that wait for the future.
         self.future.set_running_or_notify_cancel()
 
     def run(self) -> None:
@@ -58,16 +58,16 @@ class _Call(NamedTuple):
 
 
 class FairScheduler:
-    """Chooses, whenever a thread is free, the next call: by priority, and within a priority by client, round-robin.
+    """Scheduler that chooses the next call when a thread is free: by priority, and within a priority by client, round-robin.
 
     Parameters
     ----------
     pool
         The threads; None for the default pool of this process.
     clock
-        By default that of this process.
+        The clock; by default the clock of this process.
     one_each
-        Whether a client has one call at a time, so that it leaves the other threads to others.
+        Whether a client may run only one call at a time, which leaves the other threads to other clients.
 
     Attributes
     ----------
@@ -83,10 +83,10 @@ class FairScheduler:
         self._one_each = one_each
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
-        # By client, in round-robin order, then by executor, oldest first; those without pending calls are removed.
+        # The queues by client, in round-robin order, then by executor, oldest first; clients without pending calls are removed.
         self._pending: OrderedDict[Hashable, dict[QueueExecutor, deque[_Call]]] = OrderedDict()
         self._cancelled: WeakSet[QueueExecutor] = WeakSet()
-        # Threads of the pool that run calls.
+        # Number of threads of the pool that run calls.
         self._active_threads = 0
         self._running: Counter[Priority] = Counter()
         self._served: Counter[Hashable] = Counter()
@@ -102,7 +102,7 @@ class FairScheduler:
         Parameters
         ----------
         client
-            Whose job it is. All jobs of one client share its turn.
+            The client of the job. All jobs of one client share its turn.
         priority
             Evaluated for each pending call whenever a thread is free.
         """
@@ -126,10 +126,11 @@ class FairScheduler:
             self._start_threads(self.threads if resumed else 1)
 
     def spare_first_frames(self, spared: bool) -> None:
-        """Let others than first frames leave one thread free, and `Priority.UNSETTLED` calls wait; or end this.
+        """Keep one thread free for first frames and delay `Priority.UNSETTLED` calls; or stop doing so.
 
-        A single thread is not kept free. Beside other programs a short call takes long, and the first frame of a map would wait
-        for some of them in turn. To start the calls that are settled meanwhile, call this method about every 0.1 s.
+        A single thread is not kept free. When other programs use the processor, a short call takes long, and the first frame of a
+        map would wait for several of them in turn. To start delayed calls that have become settled, call this method about every
+        0.1 s.
         """
         with self._lock:
             ended, self.first_frames_spared = self.first_frames_spared and not spared, spared
@@ -148,7 +149,7 @@ class FairScheduler:
             self._start_threads(1)
 
     def cancel_futures(self, executor: QueueExecutor) -> None:
-        """Cancel the calls of an executor that no thread has started, and all later ones."""
+        """Cancel the calls of an executor that no thread has started, and all its later calls."""
         with self._lock:
             self._cancelled.add(executor)
             cancelled = self._pending.get(executor.client, {}).pop(executor, ())
@@ -181,7 +182,7 @@ class FairScheduler:
                 self._next_long_call = self._clock.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
     def _take_next(self) -> tuple[_Call, Priority] | None:
-        """The next call that may start; without one, the thread is no longer active."""
+        """Return the next call that may start; if there is none, the thread is no longer active."""
         with self._lock:
             chosen = self._find_next()
             if chosen is None:

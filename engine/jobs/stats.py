@@ -14,9 +14,9 @@ class JobStats:
     in_flight
         Running and queued jobs.
     calls_waiting
-        Calls of these jobs that no thread has started; 0 when `Jobs` was given an executor of its own.
+        Calls of these jobs that no thread has started; 0 if `Jobs` was given an executor.
     done, failed, cancelled
-        Jobs that ended so far, by outcome.
+        Number of jobs that have ended, by outcome.
     cache_bytes, cache_limit
         Size of the cached results and its limit, in bytes.
     orbits_held, orbits_limit

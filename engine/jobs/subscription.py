@@ -1,4 +1,4 @@
-"""Subscriptions: how the results of a job reach a caller."""
+"""Subscriptions, which deliver the results of a job to a caller."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ log = logging.getLogger(__name__)
 
 
 class Subscription:
-    """One caller's interest in a job. The job is cancelled together with its last subscription.
+    """One caller's subscription to a job. The job is cancelled together with its last subscription.
 
     Parameters
     ----------

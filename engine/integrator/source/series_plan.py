@@ -1,4 +1,4 @@
-"""How the series of the nodes of a graph are found with few sums over all lower orders."""
+"""Plans to compute the series of the nodes of a graph with few sums over all lower orders."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from engine.expressions.graph import Graph, Node
 
 Groups = Mapping[int, Sequence[int]]
-"""{coordinate: products}: those operands of a sum that are products with the same coordinate plus constants."""
+"""{coordinate: products}: the operands of a sum that are products with the same coordinate plus a constant."""
 
 
 @dataclass(frozen=True)
@@ -19,13 +19,13 @@ class SeriesPlan:
     Attributes
     ----------
     nodes
-        The nodes, in which a product with 1/u is a ``quotient`` by u.
+        The nodes; a product with 1/u is replaced by a ``quotient`` by u.
     roots
-        For each node the one from which it differs by a constant, or itself.
+        For each node the node from which it differs by a constant, or itself.
     groups
-        For each node its `Groups` of two or more products that nothing else uses.
+        For each node its `Groups` of two or more products that no other node uses.
     needed
-        The nodes of which more than the first coefficients are needed.
+        The nodes whose higher coefficients are needed, not only the first one.
     """
 
     nodes: tuple[Node, ...]
@@ -35,7 +35,7 @@ class SeriesPlan:
 
 
 def plan_series(graph: Graph) -> SeriesPlan:
-    """The plan for a graph."""
+    """Plan the series of the nodes of a graph."""
     nodes = tuple(_as_quotient(graph, node) for node in graph.nodes)
     roots: list[int] = []
     for index, node in enumerate(nodes):
@@ -46,7 +46,7 @@ def plan_series(graph: Graph) -> SeriesPlan:
 
 
 def _as_quotient(graph: Graph, node: Node) -> Node:
-    """The node, or the quotient that it is."""
+    """Return a product with 1/u as a quotient, and any other node unchanged."""
     if node.kind == "product":
         for one, other in (node.operands, node.operands[::-1]):
             inverse = graph.nodes[other]
