@@ -190,7 +190,7 @@ class Palette:
 
 def short_label(label: str) -> str:
     """A label where there is little room: of a channel its number, and what stands before a colon."""
-    return label.removeprefix("channel ").partition(":")[0]
+    return label.removeprefix("exit ").partition(":")[0]
 
 
 def rgba(colours: Sequence[str]) -> np.ndarray:

@@ -9,10 +9,9 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from engine import CASES, Result
+from engine import Result
 from engine.results import DecayLaws, SampledOrbits
 from plots.pictures.palette import PALETTES
-from plots.printed.curve_figures import draw_shares
 from tests.results import POTENTIAL, RESULTS, SPEC, result_of
 
 LARGEST = 100_000
@@ -80,13 +79,6 @@ def test_paths_have_the_colours_of_their_exits() -> None:
     legend = axes.get_legend()
     assert legend is not None
     assert len(legend.get_texts()) == len(drawn)
-
-
-def test_of_equal_curves_of_shares_the_later_one_is_dashed() -> None:
-    shares = np.array([[0.2, 0.3, 0.3, 0.2], [0.1, 0.4, 0.4, 0.1]])
-    axes = Figure().subplots()
-    draw_shares(axes, np.array([0.2, 0.3]), shares, CASES["II"].outcomes)
-    assert [line.get_linestyle() != "-" for line in axes.lines] == [False, False, True, False]
 
 
 def test_the_survival_is_drawn_until_the_last_escape() -> None:
