@@ -64,6 +64,12 @@ class OrbitQuantity:
         return reduce_history(orbit.t[later], values, logarithmic=self.logarithmic)
 
 
+def _sali_limits(histories: Sequence[History]) -> tuple[float, float]:
+    """At least five powers of ten, so that a regular orbit's curve looks as level as it is."""
+    lowest = min(float(history.line[1].min()) for history in histories)
+    return min(1e-4, max(_LEAST_SALI, find_decades(lowest, _LARGEST_SALI)[0])), _LARGEST_SALI
+
+
 def _exponent_limits(histories: Sequence[History]) -> tuple[float, float]:
     """Limits that begin at the power of ten below the last values."""
     lowest = min(float(history.line[1][-1]) for history in histories)
@@ -80,7 +86,7 @@ ORBIT_QUANTITIES = (
         f"SALI (chaotic at or below {format_number(CHAOS_THRESHOLD)})",
         "SALI",
         lambda orbit: orbit.sali,
-        lambda histories: (_LEAST_SALI, _LARGEST_SALI),
+        _sali_limits,
         least=_LEAST_SALI,
         threshold=CHAOS_THRESHOLD,
         ticks=(1e-16, 1e-12, 1e-8, 1e-4, 1.0),

@@ -189,8 +189,8 @@ class Palette:
 
 
 def short_label(label: str) -> str:
-    """The short form of a label: the number of a channel, or the part before a colon."""
-    return label.removeprefix("channel ").partition(":")[0]
+    """The short form of a label: the number of an exit, or the part before a colon."""
+    return label.removeprefix("exit ").partition(":")[0]
 
 
 def rgba(colours: Sequence[str]) -> np.ndarray:

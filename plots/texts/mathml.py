@@ -69,7 +69,7 @@ def _exits(potential: Potential) -> dict[str, list[str]]:
         return {}
     escape_energy = f"<msub>{var('h')}<mtext>esc</mtext></msub>" + op("=") + number(potential.escape_energy)
     points = (op("(") + number(x) + op(",") + number(y) + op(")") for x, y in potential.saddles)
-    saddles = [f"<mtext>channel {k}:\u00a0</mtext>{point}" for k, point in enumerate(points, start=1)]
+    saddles = [f"<mtext>exit {k}:\u00a0</mtext>{point}" for k, point in enumerate(points, start=1)]
     return {"Escape energy": [escape_energy], "Saddles (x, y) of the potential": saddles}
 
 
