@@ -23,7 +23,7 @@ _SIDE = 120
 def earth_moon() -> Figure:
     """Basins around the Moon with no, one and two open necks."""
     closed, _, one_open, _, both_open = PAPER_MAPS["Earth–Moon system"]
-    return _draw((closed, one_open, both_open), {"channel 1": "L2", "channel 2": "L1"})
+    return _draw((closed, one_open, both_open), {"exit 1": "L2", "exit 2": "L1"})
 
 
 def copenhagen() -> Figure:

@@ -6,7 +6,7 @@ from engine import EscapeMap, MapSpec, Plane, compute_map, parse_formula
 from engine.systems.outcomes import Centre
 
 DISC = parse_formula("½(x² + y²) − xy²").with_outcomes([Centre(0.2, 0.3, 0.05, "a disc")])
-LABELS = ["channel 1", "channel 2", "collision with a disc"]
+LABELS = ["exit 1", "exit 2", "collision with a disc"]
 
 
 def disc_map() -> EscapeMap:

@@ -23,6 +23,6 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "home": state.window is None,
         "resolution": state.resolution,
         "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],
-        "labels": [end.label.replace("channel", "exit", 1) for end in outcomes],
+        "labels": [end.label for end in outcomes],
         "coding": {**pixel_coding(outcomes), "layers": list(LAYER_COLUMNS)},
     }

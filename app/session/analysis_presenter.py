@@ -39,7 +39,7 @@ class AnalysisPresenter:
 
     def __init__(self, context: SessionContext, maps: MapsView) -> None:
         state, jobs, locked = context.state, context.jobs, context.locked
-        self._open_view = context.open_view
+        self._open_view, self._notice = context.open_view, context.notice
         self._state, self._results, self._maps = state, context.results, maps
         self._spec: MapSpec | None = None
         self._swept: SweepSpec | None = None
@@ -55,7 +55,7 @@ class AnalysisPresenter:
         }
         state.param.watch(lambda event: self._stop_measuring_box(), "box")
         self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
-        self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), context.notice.warn, locked)
+        self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), self._fail, locked)
         self._connect()
 
     def _list_follow_ups(self) -> list[FollowUp]:
@@ -71,6 +71,7 @@ class AnalysisPresenter:
         if frame is not None:
             self._begin(frame.spec)
         self._follow_ups.follow(self._results.whole_map)
+        self._mark_computing()
 
     def _begin(self, spec: MapSpec) -> None:
         """Prepare for a new map: remove the results of another one."""
@@ -133,6 +134,19 @@ class AnalysisPresenter:
         for name in event.old - event.new:
             self._remove(name)
         self._explain_refusals()
+        self._mark_computing()
+
+    def _mark_computing(self) -> None:
+        """Say in the pictures which layers of a complete map have no complete result yet."""
+        whole = self._results.whole_map
+        wanted = {layer.name for layer in self._layers_on() if whole is not None and not layer.refusal(whole.spec)}
+        done = {name for name, (_, result, _) in self._found.items() if getattr(result, "complete", True)}
+        self._maps.mark_computing(frozenset(wanted - done))
+
+    def _fail(self, sentence: str) -> None:
+        """Show why an analysis has no result; no other one is known to be under way."""
+        self._maps.mark_computing(frozenset())
+        self._notice.warn(sentence)
 
     def _remove(self, name: str) -> None:
         """Remove the result of a layer."""
@@ -155,6 +169,7 @@ class AnalysisPresenter:
     def _show_result(self, layer: Layer, frame: EscapeMap, result: Any) -> None:
         self._found[layer.name] = frame, result, layer.job(frame.spec, self._state.settings)
         self._show_selected(layer)
+        self._mark_computing()
 
     def _select(self) -> None:
         """Select parts of the results by the settings, and remove those that are no results of these."""
@@ -163,6 +178,7 @@ class AnalysisPresenter:
                 self._show_selected(LAYERS[name])
             else:
                 self._remove(name)
+        self._mark_computing()
 
     def _show_selected(self, layer: Layer) -> None:
         """Show the part of the result of a layer that the settings select."""

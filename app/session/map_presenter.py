@@ -78,6 +78,7 @@ class MapPresenter:
     def _set_palette(self, name: str) -> None:
         with pn.io.hold():
             self.view.set_palette(PALETTES[name])
+            self.progress.set_palette(PALETTES[name])
 
     def begin_touch(self) -> None:
         """The page is used by touch."""

@@ -14,11 +14,13 @@ from app.job_clients.divergent_start_requests import DivergentStartRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.session.context import SessionContext
+from app.state.view import Start
 from app.views.maps.markers import NO_POINTS, Markers
 from app.views.maps.well import WellView
 from app.views.orbits.inspector import Inspector
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
+from app.views.orbits.path_picture import path_picture
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
 from engine.slices.planes import SECTION
@@ -54,7 +56,10 @@ class OrbitPresenter:
     ) -> None:
         state, jobs, locked, latest = context.state, context.jobs, context.locked, context.latest
         self._state, self._results, self._marks, self._well = state, context.results, marks, well
-        self._open_view = context.open_view
+        self._open_view, self._notice = context.open_view, context.notice
+        self._by_touch = False
+        # A start that has been tapped, until its orbit is told of.
+        self._tapped: Start | None = None
         self._shown: tuple[ChosenOrbit, ...] = ()
         # The interval of time in view, and the curves restricted to it; None is the whole duration.
         self._interval: Interval | None = None
@@ -80,6 +85,7 @@ class OrbitPresenter:
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         state.param.watch(self._end_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
         state.param.watch(lambda event: self._show(self._shown), "chosen")
+        state.param.watch(self._take_tapped, "starts")
         state.follow(self._set_palette, "palette")
 
     def begin(self) -> None:
@@ -96,7 +102,19 @@ class OrbitPresenter:
 
     def begin_touch(self) -> None:
         """The page is used by touch."""
+        self._by_touch = True
         self.plots.begin_touch()
+
+    def _take_tapped(self, event: Event) -> None:
+        added = [start for start in event.new if start not in event.old]
+        self._tapped = added[0] if len(added) == 1 and self._by_touch else None
+
+    def _tell_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
+        """Show the verdict and the path of an orbit that has been tapped: on a phone both are out of view."""
+        for one, colour in zip(orbits, PALETTES[self._state.palette].orbits, strict=False):
+            if one.start == self._tapped and one.drawing is not None:
+                self._tapped = None
+                self._notice.show(one.headline(), path_picture(one.drawing, colour))
 
     def close(self) -> None:
         """Cancel all requests at the end of the session."""
@@ -138,6 +156,7 @@ class OrbitPresenter:
                 self._draw()
                 self._separation.follow(orbits)
             self._tell()
+            self._tell_tapped(orbits)
             # Last: Panel links stylesheets of another host when it changes a text that is not in the document yet.
             # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
             self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))

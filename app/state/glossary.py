@@ -20,7 +20,7 @@ GLOSSARY: Mapping[str, str] = MappingProxyType(
             "orbit, or along orbits around it, converge as on an invariant torus, which is numerical evidence."
         ),
         "doubtful": (
-            "Pixels whose fate, crossings or escape time change when the start is shifted by 1e−11: they depend "
+            "Pixels whose fate, crossings or escape time change when the start is shifted by 10⁻¹¹: they depend "
             "on rounding errors."
         ),
         "SALI": (

@@ -21,8 +21,8 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         ),
         "sali": (
             "SALI, the smaller alignment index, follows two small deviations from the orbit. Chaos aligns them, and SALI "
-            "decreases exponentially to the rounding error, about 1e-16. On a regular orbit it stays large or decreases like "
-            "a power of time, a straight line on these axes. A bounded orbit counts as chaotic if SALI is 1e−7 or less."
+            "decreases exponentially to the rounding error, about 10⁻¹⁶. On a regular orbit it stays large or decreases like "
+            "a power of time, a straight line on these axes. A bounded orbit counts as chaotic if SALI is 10⁻⁷ or less."
         ),
         "exponent": (
             "The mean exponential growth rate of a small deviation until t. On a regular orbit it decreases like ln t / t, a "
@@ -71,7 +71,8 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
 """Help texts by the names of the pictures and plots."""
 
 
-def title_with_help(title: str, name: str) -> str:
-    """HTML of the title of a picture or plot, with a button that opens its help text."""
+def title_with_help(title: str, name: str, under_way: str = "") -> str:
+    """HTML of the title of a picture or plot, with a button that opens its help text, and what is being computed."""
     button = f"<button type='button' class='help' popovertarget='help-{name}' aria-label='About: {escape(title)}'>?</button>"
-    return f"<h2>{escape(title)} {button}</h2><p id='help-{name}' class='help-text' popover>{escape(HELP_TEXTS[name])}</p>"
+    note = f" <small role='status'>{escape(under_way)}</small>" if under_way else ""
+    return f"<h2>{escape(title)} {button}{note}</h2><p id='help-{name}' class='help-text' popover>{escape(HELP_TEXTS[name])}</p>"

@@ -14,6 +14,8 @@ _WIDTH, _MOST_LINES = 100, 3
 # A space at which lines are not broken.
 _UNBROKEN = "\u00a0"
 
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 def format_count(count: int, singular: str, plural: str = "") -> str:
     """Return a count and its noun, such as "1 box" or "3 boxes"; without `plural`, the noun takes an "s"."""
@@ -33,7 +35,7 @@ def format_time(t: float, digits: int = 6) -> str:
 
 
 def format_number(value: float, digits: int = 4) -> str:
-    """Return a number to `digits` significant digits, with typographic minus and infinity signs."""
+    """Return a number to `digits` significant digits, with typographic signs, such as "1.9 × 10⁻¹²"."""
     return _typeset(f"{value:.{digits}g}")
 
 
@@ -43,30 +45,34 @@ def format_decimals(value: float, decimals: int) -> str:
 
 
 def _typeset(text: str) -> str:
-    short = text.replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
-    return short.replace("-", "−").replace("inf", "∞")
+    mantissa, _, exponent = text.partition("e")
+    number = mantissa.replace("-", "−").replace("inf", "∞")
+    if not exponent:
+        return number
+    power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+    return power if number == "1" else f"{number} × {power}"
 
 
 def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str, str]:
     """Return the dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``.
 
     `labels` name the codes from 1 on that are not members of the enumeration, such as the outcomes of a `Fate`. The attribute
-    leaves them out if they are the default ones, "channel 1" and so on.
+    leaves them out if they are the default ones, "exit 1" and so on.
     """
     known = [f"{code.value}: {code.name.lower()}" for code in codes]
-    are_channels = all(label == _channel(code) for code, label in enumerate(labels, 1))
-    return {"codes": "; ".join([*known, *([] if are_channels else (f"{k}: {label}" for k, label in enumerate(labels, 1)))])}
+    are_default = all(label == _exit(code) for code, label in enumerate(labels, 1))
+    return {"codes": "; ".join([*known, *([] if are_default else (f"{k}: {label}" for k, label in enumerate(labels, 1)))])}
 
 
 def name_code(codes: type[IntEnum], code: int, labels: Sequence[str] = ()) -> str:
-    """Return a code in words; `labels` name the codes from 1 on that are not members, which are channels by default."""
+    """Return a code in words; `labels` name the codes from 1 on that are not members, which are exits by default."""
     if code in codes:
         return codes(code).name.lower().replace("_", " ")
-    return labels[code - 1] if 1 <= code <= len(labels) else _channel(code)
+    return labels[code - 1] if 1 <= code <= len(labels) else _exit(code)
 
 
-def _channel(code: int) -> str:
-    return f"channel {code}"
+def _exit(code: int) -> str:
+    return f"exit {code}"
 
 
 def show_numbers(numbers: Mapping[str, Any], codes: Mapping[str, type[IntEnum]], labels: Sequence[str] = ()) -> dict[str, str]:

@@ -81,7 +81,7 @@ class Sweep(Result):
         return self[name] - error, self[name] + error
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """All numbers by name, the energy or the parameter first; shares by outcome: ``share_bounded``, ``share_channel_1``."""
+        """All numbers by name, the energy or the parameter first; shares by outcome: ``share_bounded``, ``share_exit_1``."""
         labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in self.outcomes)]
         found = {self.name: self.values}
         for name in map(str, self.dataset.data_vars):
@@ -169,11 +169,11 @@ def compute_sweep(
     --------
     >>> from escape_explorer import CASES, Plane, SweepSpec, compute_sweep
     >>> spec = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.5, 0.6), (40, 40), t_max=1e3, measures=("shares", "basin_entropy"))
-    >>> compute_sweep(spec).to_pandas()[["h", "share_channel_1", "s_b"]].round(3)
-         h  share_channel_1    s_b
-    0  0.4            0.354  0.585
-    1  0.5            0.399  0.494
-    2  0.6            0.441  0.314
+    >>> compute_sweep(spec).to_pandas()[["h", "share_exit_1", "s_b"]].round(3)
+         h  share_exit_1    s_b
+    0  0.4         0.354  0.585
+    1  0.5         0.399  0.494
+    2  0.6         0.441  0.314
     """
     if spec.along is None:
         for energy in (spec.values[0], spec.values[-1]):

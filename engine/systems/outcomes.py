@@ -31,7 +31,7 @@ class Kind:
     key
         Its name in files and in palettes.
     word
-        What one that orbits end at is called: "channel", "centre".
+        What one that orbits end at is called: "exit", "centre".
     label, action
         Those of its outcomes, with the name of one for {}; the verb of the action ends with e.
     event
@@ -49,7 +49,7 @@ class Kind:
 
     @classmethod
     def outcome(cls, number: int, name: str = "", *, occurs: bool = True) -> Outcome:
-        """The outcome of orbits that end at the one of this number, which has a name or is called "channel 1"."""
+        """The outcome of orbits that end at the one of this number, which has a name or is called "exit 1"."""
         name = name or f"{cls.word} {number}"
         return Outcome(cls, cls.label.format(name), cls.action.format(name), occurs, number)
 
@@ -57,7 +57,7 @@ class Kind:
 class Exit(Kind):
     """Through an exit over a saddle, the curve or line across a channel; see `engine.exits`."""
 
-    key, word = "exit", "channel"
+    key = word = "exit"
     label, action = "{}", "escape through {}"
     origin = "entered through {label}"
 
@@ -235,9 +235,9 @@ class Outcome:
     kind
         Through an exit over a saddle, by a collision with a centre, or beyond the escape radius: a class with its words.
     label
-        In legends and tables: "channel 1", "collision with the Moon", "escape".
+        In legends and tables: "exit 1", "collision with the Moon", "escape".
     action
-        What orbits do: "escape through channel 1", "collide with the Moon", "escape beyond the escape radius".
+        What orbits do: "escape through exit 1", "collide with the Moon", "escape beyond the escape radius".
     occurs
         Whether orbits can have it: not a channel that is part of an exit of a lower number.
     number
@@ -252,13 +252,13 @@ class Outcome:
 
     @property
     def present(self) -> str:
-        """What an orbit does: "escapes through channel 1"."""
+        """What an orbit does: "escapes through exit 1"."""
         verb, rest = self.action.split(" ", 1)
         return f"{verb}s {rest}"
 
     @property
     def past(self) -> str:
-        """What an orbit has done, as the beginning of a sentence: "Escaped through channel 1"."""
+        """What an orbit has done, as the beginning of a sentence: "Escaped through exit 1"."""
         verb, rest = self.action.split(" ", 1)
         return f"{verb.capitalize()}d {rest}"
 
@@ -269,12 +269,12 @@ class Outcome:
 
     @property
     def origin(self) -> str:
-        """How an orbit began that ends so backward in time: "entered through channel 1"."""
+        """How an orbit began that ends so backward in time: "entered through exit 1"."""
         return self.kind.origin.format(label=self.label, present=self.present)
 
     @property
     def sentence(self) -> str:
-        """What an orbit has done, as a sentence: "Escaped through channel 1."."""
+        """What an orbit has done, as a sentence: "Escaped through exit 1."."""
         return f"{self.past}."
 
 

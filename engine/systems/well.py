@@ -185,7 +185,7 @@ class Well(ReadOnlyArrays):
     def outcomes_at(self, energy: float | tuple[float, float], given: Sequence[str] = ()) -> tuple[Outcome, ...]:
         """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high).
 
-        given: the names of all channels; without them an exit is called "channel 1".
+        given: the names of all channels; without them an exit is called "exit 1".
         """
         low, high = energy if isinstance(energy, tuple) else (energy, energy)
         if not (given or self.merged_exits(high)):

@@ -156,7 +156,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     --------
     >>> from escape_explorer import CASES, integrate_orbit, judge_orbit
     >>> print(judge_orbit(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), t_max=1e3)).describe())
-    Escaped through channel 1 at t = 15.1781, after 1 upward crossing of y = 0.
+    Escaped through exit 1 at t = 15.1781, after 1 upward crossing of y = 0.
     >>> judge_orbit(integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=1e3)).summarize()
     'bounded for ever, regular'
     >>> for finding in judge_orbit(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.3), t_max=2e3)).findings:

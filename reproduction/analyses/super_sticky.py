@@ -77,7 +77,7 @@ class SuperStickySearch:
         if not escapers.size:
             return f"None of them leaves by t = {self.t_max:.4g}."
         channels, counts = np.unique(self.fate[escapers], return_counts=True)
-        by_channel = ", ".join(f"{count} through channel {channel}" for channel, count in zip(channels, counts, strict=True))
+        by_channel = ", ".join(f"{count} through exit {channel}" for channel, count in zip(channels, counts, strict=True))
         times = self.escape_time[escapers]
         return (
             f"{escapers.size} of them leave by t = {self.t_max:.4g} ({by_channel}): the first at t = {times[0]:.6g}, "

@@ -94,7 +94,7 @@ def _sample_r2(search: SuperStickySearch, place: int, begin: float, cache: MapCa
 def _describe(search: SuperStickySearch, place: int | None) -> str:
     if place is None:
         return f"no chaotic orbit of this map escapes by {search.t_max / 1e6:g} million time units"
-    return f"an orbit that escapes through channel {search.fate[place]} at $t = {search.escape_time[place]:.0f}$"
+    return f"an orbit that escapes through exit {search.fate[place]} at $t = {search.escape_time[place]:.0f}$"
 
 
 def _draw_history(axes: Axes, r2: np.ndarray, end: float, t_max: float) -> None:

@@ -53,8 +53,8 @@ COLUMNS: Mapping[str, Columns] = MappingProxyType(
             **_STAYS,
         },
         "Star cluster": {
-            "channel 1": _share(1),
-            "channel 2": _share(2),
+            "exit 1": _share(1),
+            "exit 2": _share(2),
             **_STAYS,
             "stays, x < 0": (partial(bounded_share_beside, sign=-1), ".1f"),
             "stays, x > 0": (partial(bounded_share_beside, sign=1), ".1f"),

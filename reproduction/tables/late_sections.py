@@ -19,7 +19,7 @@ that are enclosed by invariant tori never leave; where some leave, the others ma
 _SEARCH = """\
 Case III at h = {h:g} on (x, px), {side} × {side} starts. {found} {stays} have not escaped by then.
 
-The paper states that all escape by 3.5e6, and shows one that escapes through channel 2 at about 851 000. At such times rounding
+The paper states that all escape by 3.5e6, and shows one that escapes through exit 2 at about 851 000. At such times rounding
 errors have grown to the size of the well: the escape time of a given orbit depends on rounding, in the paper and here; the number
 of escapes does not."""
 

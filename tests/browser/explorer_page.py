@@ -84,7 +84,7 @@ class ExplorerPage:
 
     def wait_until_done(self) -> None:
         """Wait until the status line says that the map is complete."""
-        expect(self.text("Done, t =")).to_be_visible()
+        expect(self.text("✓ t =")).to_be_visible()
 
     def return_home(self) -> None:
         """Go back to the view that was opened, and wait for its map."""

@@ -111,7 +111,7 @@ def test_an_energy_typed_right_after_choosing_a_case_is_used_and_shown(explorer:
     explorer.type_number("Exact h", "1.1")
     explorer.wait_for_view("case=III", "h=1.1&")
     expect(exact_energy(explorer)).to_have_value("1.1")
-    expect(explorer.text("h = 1.1, beyond the end of the slider")).to_be_visible()
+    expect(explorer.text("h = 1.1, above the slider")).to_be_visible()
 
 
 def test_an_energy_that_is_being_typed_stays_when_the_case_changes(explorer: ExplorerPage) -> None:

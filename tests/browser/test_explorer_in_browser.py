@@ -52,7 +52,7 @@ def test_the_first_map_is_that_of_the_engine(shared: ExplorerPage, first_map: Es
 def test_the_controls_choose_the_map(explorer: ExplorerPage) -> None:
     explorer.pick("III")
     explorer.wait_for_view("case=III&")
-    expect(explorer.text("4 exit channels")).to_be_visible()
+    expect(explorer.text("4 exits above")).to_be_visible()
     explorer.pick(Plane.X_Y.title)
     explorer.wait_for_view("plane=x_y")
     labels = explorer.page.evaluate(_AXIS_NAMES, list(MAPS))
@@ -98,7 +98,7 @@ def test_a_click_integrates_the_orbit_of_that_pixel_and_marks_it(explorer: Explo
     x, px = float(columns[pixel[1]]), float(rows[pixel[0]])
     orbit = integrate_orbit(spec.potential, (x, 0.0, px, np.sqrt(2 * (0.19 - x * x / 2) - px * px)), 100.0)
     explorer.click("times", 0.1, 0.05)
-    expect(explorer.text(f"Escaped through channel {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
+    expect(explorer.text(f"Escaped through exit {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
     marked = explorer.model_data("starts")
     assert [marked["x"], marked["y"]] == [[x], [px]]
 
@@ -118,7 +118,7 @@ def test_a_start_can_be_typed(explorer: ExplorerPage) -> None:
     explorer.type_number("px", "0.2")
     explorer.press("Integrate")
     orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.2, np.sqrt(2 * (0.19 - 0.005) - 0.04)), 100.0)
-    expect(explorer.text(f"Escaped through channel {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
+    expect(explorer.text(f"Escaped through exit {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
 
 
 def test_zooming_one_map_computes_the_region_for_all(explorer: ExplorerPage) -> None:
@@ -138,7 +138,7 @@ def test_zooming_one_map_computes_the_region_for_all(explorer: ExplorerPage) -> 
 def test_hovering_describes_the_pixel(shared: ExplorerPage, first_map: EscapeMap) -> None:
     for picture in MAPS:
         shared.hover(picture, 0.1, 0.05)
-        expect(shared.text("escapes through channel 1")).to_be_visible()
+        expect(shared.text("escapes through exit 1")).to_be_visible()
         expect(shared.text(re.compile(r"escape time 3\.\d+"))).to_be_visible()
         expect(shared.text("0 upward crossings of y = 0")).to_be_visible()
         expect(shared.text(re.compile(r"\(0\.\d+, 0\.0\d+\)"))).to_be_visible()
@@ -180,9 +180,9 @@ def test_the_address_opens_the_same_view(explorer: ExplorerPage, open_explorer: 
     explorer.wait_for_view("h=0.4567")
     explorer.click("basins", 0.1, 0.2)
     explorer.wait_for_view("orbits=")
-    verdict = explorer.text("Escaped through channel 1")
+    verdict = explorer.text("Escaped through exit 1")
     expect(verdict).to_be_visible()
     there = open_explorer(link="?" + urlsplit(explorer.page.url).query)
-    expect(there.text("Escaped through channel 1")).to_have_text(verdict.inner_text())
+    expect(there.text("Escaped through exit 1")).to_have_text(verdict.inner_text())
     np.testing.assert_array_equal(there.column("fate"), explorer.column("fate"))
     expect(there.page.get_by_label("Exact h", exact=True)).to_have_value("0.4567")

@@ -39,10 +39,10 @@ def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplor
     crossings = int(frame.crossings[row, column])
     expect_tooltip(
         explorer,
-        f"escapes through channel {origins.fate[row, column]}",
+        f"escapes through exit {origins.fate[row, column]}",
         f"escape time {frame.escape_time[row, column]:#.5g}",
         f"{crossings} upward crossing",
-        f"entered through channel {origins.origin[row, column]}",
+        f"entered through exit {origins.origin[row, column]}",
     )
     expect(explorer.page.locator(".bk-Tooltip").get_by_text("confirmed").or_(
         explorer.page.locator(".bk-Tooltip").get_by_text("not tested: like")).or_(

@@ -107,7 +107,7 @@ def test_two_by_two_pictures_fill_the_height_beside_the_orbits(
     assert len({place[0] for place in places}) == len({place[1] for place in places}) == 2
     assert max(place[3] for place in places) <= height
     assert min(min(figures(explorer)[name][4:]) for name in PICTURES) >= least
-    hint = explorer.text("Click a map to see the orbit").bounding_box()
+    hint = explorer.text("Click a map: the orbit").bounding_box()
     assert hint is not None
     assert hint["x"] >= max(place[2] for place in places)
     assert hint["y"] < places[2][1]
@@ -135,7 +135,7 @@ def test_titles_legends_and_names_cover_no_picture(page: str, count: int, reques
 def test_the_maps_do_not_move_when_an_orbit_is_clicked(wide: ExplorerPage) -> None:
     before = boxes(wide)
     wide.click("basins", 0.1, 0.05)
-    expect(wide.text("Escaped through channel 1")).to_be_attached()
+    expect(wide.text("Escaped through exit 1")).to_be_attached()
     wide.wait_for_data("paths", "data.xs.length == 1")
     assert boxes(wide) == before
     wide.return_home()
@@ -172,7 +172,7 @@ def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:
     top = figures(phone)["basins"][1]
     phone.page.evaluate("window.scrollTo(0, 200)")
     assert figures(phone)["basins"][1] == top
-    hint = phone.text("Click a map to see the orbit").bounding_box()
+    hint = phone.text("Click a map: the orbit").bounding_box()
     assert hint is not None
     above = phone.page.evaluate("([x, y]) => document.elementFromPoint(x, y).className", [hint["x"] + 5, hint["y"] + 5])
     assert "controls" not in above
@@ -203,9 +203,9 @@ def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, wid
     assert x_high - x_low == pytest.approx(high - low)
 
 
-def test_a_tap_on_a_phone_integrates_an_orbit(phone: ExplorerPage) -> None:
+def test_a_tap_on_a_phone_shows_where_and_when_the_orbit_ends_and_its_path(phone: ExplorerPage) -> None:
     phone.page.touchscreen.tap(*phone.point("basins", 0.1, 0.05))
-    expect(phone.text("Escaped through channel 1")).to_be_attached()
+    expect(phone.page.locator(".notice", has_text="Escaped through exit 1 at t").locator("polyline")).to_be_attached()
     phone.return_home()
 
 

@@ -25,7 +25,7 @@ def test_a_collision_is_named_at_the_mouse_in_the_legend_the_progress_and_the_co
 ) -> None:
     explorer = open_explorer(link=LINK)
     explorer.wait_until_done()
-    expect(explorer.text(re.compile("Done, .* collision with a disc [0-9]"))).to_be_visible()
+    expect(explorer.text(re.compile(r"^collision with a disc\s[0-9.]+"))).to_be_visible()
     expect(explorer.page.get_by_title("collision with a disc").first).to_be_visible()
     expect(explorer.page.get_by_role("cell", name=re.compile(r"^collision with a disc: \d"))).to_be_visible()
     frame = compute_map(MapSpec(DISC, Plane.X_PX, 0.19, (112, 112), t_max=100.0))

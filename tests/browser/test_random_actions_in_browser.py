@@ -17,7 +17,7 @@ from app.state.presets import PRESETS
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.numbers import percent
-from app.views.components.texts import keep_numbers_whole
+from app.views.components.texts import typeset
 from app.views.panels.analysis_choice import ANALYSIS_LABELS
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
 from engine.jobs.job import Job
@@ -161,18 +161,16 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
     """Parts of the legend, of the table of shares and of the verdict, by the selector of their place."""
     texts: dict[str, list[str]] = {}
     if shown.frame is not None:
-        channels = [f"channel {k + 1}" for k in range(state.potential.channels)]
+        channels = [f"exit {k + 1}" for k in range(state.potential.channels)]
         layers = {"bounded and chaotic": "judge" in state.layers, "tones: from": "origins" in state.layers}
         times = state.lock_times or fitted_scale(shown.frame)
         texts[LEGEND] = [f"≤ {times.low:g}", *channels, *(name for name, is_on in layers.items() if is_on)]
     if shown.frame is not None and state.analysis is Analysis.STATISTICS:
         statistics = compute_statistics(shown.frame, state.box)
-        texts[SHARES] = [
-            keep_numbers_whole(percent(share, 2)) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED
-        ]
+        texts[SHARES] = [typeset(percent(share, 2)) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED]
     # What is said of a bounded orbit depends on indicators that follow later.
     if shown.orbit is not None and shown.orbit.fate > Fate.BOUNDED and state.analysis is Analysis.ORBIT:
-        texts[VERDICT] = [keep_numbers_whole(judge_orbit(shown.orbit).headline())]
+        texts[VERDICT] = [typeset(judge_orbit(shown.orbit).headline())]
     return texts
 
 

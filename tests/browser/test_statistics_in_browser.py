@@ -13,6 +13,7 @@ _BAR = """name => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue
         const renderer = view.model.renderers[0]
+        view.el.scrollIntoView({block: "center"})
         const box = view.canvas_view.el.getBoundingClientRect()
         const {data} = renderer.data_source
         const tall = values => [...values].indexOf(Math.max(...values))

@@ -28,7 +28,7 @@ def test_shares_are_those_of_the_engine(run: Run) -> None:
     answer = json.loads(out)
     shares = {row["outcome"]: row["share"] for row in answer["outcomes"]}
     assert code == 0
-    assert shares["channel 2"] == pytest.approx((outcomes.fate == 2).mean())
+    assert shares["exit 2"] == pytest.approx((outcomes.fate == 2).mean())
     assert all(row["interval"][0] <= row["share"] <= row["interval"][1] for row in answer["outcomes"])
     assert answer["flux"]["decay_rate"] == compute_flux(CASES["III"], 0.45).decay_rate
 

@@ -124,7 +124,7 @@ def test_json_contains_shares_and_files(run: Run, tmp_path: Path) -> None:
     wanted = compute_map(spec).fractions(count_outside=True)
     assert (code, err) == (0, "")
     assert answer["files"] == [str(tmp_path / "map.nc")]
-    assert [answer["shares"][f"channel {k}"] for k in (1, 2, 3)] == [wanted[k] for k in (1, 2, 3)]
+    assert [answer["shares"][f"exit {k}"] for k in (1, 2, 3)] == [wanted[k] for k in (1, 2, 3)]
 
 
 def test_by_default_files_are_named_after_the_map_and_the_table_is_printed_alone(

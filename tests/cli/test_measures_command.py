@@ -106,7 +106,7 @@ def test_table_of_curves_is_printed_whole(run: Run, tmp_path: Path) -> None:
     columns = re.split(r" {2,}", head.strip())
     assert code == 0
     assert "…" not in out
-    assert {"h", "share bounded", "share channel 4", "mean escape time", "s bb", "decay rate"} <= set(columns)
+    assert {"h", "share bounded", "share exit 4", "mean escape time", "s bb", "decay rate"} <= set(columns)
     assert [len(re.split(r" {2,}", row.strip())) for row in rows[:3]] == [len(columns)] * 3
 
 
@@ -118,7 +118,7 @@ def test_curves_equal_the_engine_result_as_netcdf_csv_and_json(run: Run, tmp_pat
         xr.testing.assert_equal(found.load(), curves.dataset)
     with (tmp_path / "curves.csv").open() as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    for name, wanted in (("h", curves.values), ("share_channel_2", curves["share"][:, 2]), ("s_b", curves["s_b"])):
+    for name, wanted in (("h", curves.values), ("share_exit_2", curves["share"][:, 2]), ("s_b", curves["s_b"])):
         assert [float(row[name]) for row in rows] == wanted.tolist()
     lowest = json.loads(out)["points"][0]
     assert math.isnan(curves["mean_escape_time"][0])

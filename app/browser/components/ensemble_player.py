@@ -13,15 +13,14 @@ from app.browser.module_files import WATCH_ADDRESS
 from app.state.watched_starts import COUNTS, EXPLANATIONS, LARGEST_RADIUS, SMALLEST_RADIUS
 
 _STYLE = """
-:host { display: block; font-size: 0.8125rem; color: var(--ui-ink) }
+:host { display: block; color: var(--ui-ink) }
 .row { display: flex; flex-wrap: wrap; gap: 6px; align-items: center; margin: 6px 0 }
 [hidden] { display: none !important }
-button, select { font: inherit; color: inherit; background: var(--ui-surface); border: 1px solid var(--ui-edge);
-  border-radius: var(--ui-radius); padding: 5px 10px; min-height: 2rem; cursor: pointer }
-button:disabled { opacity: 0.5; cursor: default }
 button.play { min-width: 11.5rem; font-weight: 600 }
-:is(button, select, input):focus-visible { outline: none; box-shadow: var(--ui-focus) }
-input[type=range] { flex: 1 1 8rem; min-width: 6rem; accent-color: var(--ui-accent) }
+select.bk-input { appearance: none; padding-right: 28px; border: 1px solid var(--ui-edge); border-radius: var(--ui-radius);
+  background-color: var(--ui-surface); background-repeat: no-repeat; color: inherit; font: inherit }
+label { display: inline-flex; align-items: center; gap: 6px; color: inherit; font-size: inherit }
+input[type=range] { flex: 1 1 8rem; min-width: 6rem }
 output { min-width: 4.5rem; font-variant-numeric: tabular-nums }
 .quiet { color: var(--ui-quiet); margin: 6px 0; min-height: 2lh }
 table { border-spacing: 8px 2px; margin: 0 0 0 -8px; font-variant-numeric: tabular-nums }

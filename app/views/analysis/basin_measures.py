@@ -1,7 +1,8 @@
-"""Measures of a map in words: those of each map, and slow ones on demand."""
+"""Measures of a map: those of each map, and slow ones on demand."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 from html import escape
@@ -15,6 +16,8 @@ from app.views.analysis.measure_charts import PairsChart, SurvivalChart
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button, number_rows
 from engine import MEASURES, Measure, Result, Window
+from engine.foundations.wording import format_decimals, format_number
+from engine.measures.measure import Quantity
 from engine.results import DecayLaws, UncertaintyExponent
 
 TOLD: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
@@ -25,7 +28,7 @@ _UNDEFINED = "Not defined for this map."
 
 
 class BasinMeasuresView:
-    """A paragraph for each measure, and charts.
+    """A table with the numbers of each measure, whose sentences open on demand, and charts.
 
     Parameters
     ----------
@@ -107,11 +110,36 @@ class BasinMeasuresView:
         return [row for title, result in found for row in number_rows(title, result.numbers())]
 
     def _write(self) -> None:
-        region = "in the box drawn on the maps" if self.whole.visible else "in the whole view"
-        texts = (
-            f"<p><b>{measure.title}</b>, {measure.meaning}, {measure.place or region}. "
-            f"{escape(self._sentences[measure.name])}</p>"
-            for measure in TOLD
-            if measure.name in self._sentences
-        )
-        self.text.object = with_terms("".join(texts))
+        region = "In the box drawn on the maps" if self.whole.visible else "In the whole view"
+        told = [(measure, self._sentences[measure.name]) for measure in TOLD if measure.name in self._sentences]
+        body = "".join(_rows_of(measure, self._results.get(measure.name), sentence) for measure, sentence in told)
+        table = f"<table aria-label='measures'><caption>{region}</caption>{body}</table>" if body else ""
+        details = (f"<p id='told-{one.name}' class='help-text' popover>{escape(sentence)}</p>" for one, sentence in told)
+        self.text.object = with_terms(f"{table}{''.join(details)}")
+
+
+def _rows_of(measure: Measure, result: Any, sentence: str) -> str:
+    """The title of a measure with its meaning, and a row for each number; without numbers its sentence."""
+    shown = [] if result is None else [(quantity.label, _value(quantity, result)) for quantity in measure.quantities]
+    numbers = {label: text for label, text in shown if label and text}
+    details = f" <button type='button' class='term' popovertarget='told-{measure.name}'>details</button>"
+    place = f", {measure.place}" if measure.place else ""
+    said = "" if numbers else f"<br>{escape(sentence)}"
+    head = f"<b>{measure.title}</b>{details if numbers else ''}<br>{measure.meaning}{place}{said}"
+    rows = "".join(f"<tr><td>{label}</td><td class='number'>{text}</td></tr>" for label, text in numbers.items())
+    return f"<tbody><tr><th colspan=2>{head}</th></tr>{rows}</tbody>"
+
+
+def _value(quantity: Quantity, result: Any) -> str:
+    """A number with its error or its interval; empty if it is not known."""
+    found = quantity.read(result)
+    value, *bars = found if isinstance(found, tuple) else (found,)
+    if not math.isfinite(value):
+        return ""
+    match bars:
+        case [error] if error > 0.0:
+            decimals = max(0, -math.floor(math.log10(error)))
+            return f"{format_decimals(value, decimals)} ± {format_number(error, 1)}"
+        case [low, high]:
+            return f"{format_number(value, 3)} ({format_number(low, 3)} to {format_number(high, 3)})"
+    return format_number(value)

@@ -32,9 +32,11 @@ _LETTER_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
-    "for example 0.5(x^2+y^2) - a x^2 y. “; centre (0, 0) 0.001” adds a body with a radius of collision, “; escape 10” an escape "
-    "radius in place of exits over saddles; “; well (1, 0)” moves the axes to the minimum near (1, 0)."
+    "for example 0.5(x^2+y^2) - a x^2 y. “; well (1, 0)” moves the axes to the minimum near (1, 0)."
 )
+# What buttons add: a term, or a clause after all terms.
+_TERMS = {"+ letter": " + a x y"}
+_CLAUSES = {"+ body": "; centre (0, 0) 0.001", "+ escape radius": "; escape 10"}
 NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outcomes is compiled first, which takes some seconds."
 """What is said of a text that the maps do not follow while it is typed."""
 
@@ -77,6 +79,10 @@ class PotentialPanel:
         self.typeset = TextPane("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
         self.move = button("Use this well", self._move, visible=False, margin=(8, 0))
+        self.additions = [
+            *(button(label, partial(self._add, term=term), margin=0) for label, term in _TERMS.items()),
+            *(button(label, partial(self._add, clause=clause), margin=0) for label, clause in _CLAUSES.items()),
+        ]
         self.sliders = {name: self._make_slider(name) for name in WELL_PARAMETERS}
         self.letter_sliders: dict[str, ParameterSlider] = {}
         self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
@@ -93,6 +99,7 @@ class PotentialPanel:
         return [
             self.known,
             self.formula,
+            flex_row(*self.additions),
             self.typeset,
             self.message,
             self.letters,
@@ -206,6 +213,12 @@ class PotentialPanel:
             typed = self.shown.as_typed
             self._choose(replace(typed, formula=f"{typed.formula}; well ({x:.6g}, {y:.6g})"))
 
+    def _add(self, term: str = "", clause: str = "") -> None:
+        """Add a term or a clause to the text."""
+        typed = self.shown.as_typed
+        terms, semicolon, clauses = typed.formula.partition(";")
+        self._choose(replace(typed, formula=f"{terms.rstrip()}{term}{semicolon}{clauses}{clause}"))
+
     def _slide(self, name: str, number: float, done: bool) -> None:
         """Propose the number of a slider."""
         self._show_around_text(replace(self.shown, parameters={**self.shown.parameters, name: number}))
@@ -242,11 +255,11 @@ def _alert(sentence: str) -> str:
 def _channels(review: PotentialReview) -> str:
     if review.potential.ends:
         labels = ", ".join(outcome.label for outcome in review.potential.outcomes)
-        opened = f"; channels open above h = {review.escape_energy:.6g}" if review.channels else ""
+        opened = f"; exits open above h = {review.escape_energy:.6g}" if review.channels else ""
         return f"Orbits end at: {labels}{opened}"
     if not review.channels:
-        return "no channels"
-    return f"{review.channels} channels above the escape energy h = {review.escape_energy:.6g}"
+        return "no exits"
+    return f"{review.channels} exits above the escape energy h = {review.escape_energy:.6g}"
 
 
 def _points(review: PotentialReview) -> str:
@@ -256,7 +269,7 @@ def _points(review: PotentialReview) -> str:
         f"<td>{point.energy:.6g}</td><td>{point.channel or ''}</td></tr>"
         for point in sorted(review.critical_points, key=lambda point: point.channel or MOST_CHANNELS + 1)
     )
-    names = ("critical point", "(x, y)", potential_symbol(review.potential), "channel")
+    names = ("critical point", "(x, y)", potential_symbol(review.potential), "exit")
     head = "".join(f"<th scope=col>{name}</th>" for name in names)
     return f"<table><tr>{head}</tr>{rows}</table>" if rows else ""
 

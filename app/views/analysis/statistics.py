@@ -9,6 +9,7 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import panel as pn
+from bokeh.models import LogAxis, LogTicker
 from bokeh.models.dom import HTML
 
 from app.job_clients.shown_results import ShownResults
@@ -21,7 +22,7 @@ from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, Fate, compute_statistics
-from engine.foundations.wording import format_whole
+from engine.foundations.wording import format_number, format_whole
 from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
 from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
@@ -100,6 +101,7 @@ class StatisticsView:
         shown = np.zeros(len(_NUMBERS))
         shown[: len(probabilities)] = probabilities
         self._probabilities.handles["source"].data = {CROSSINGS: _NUMBERS, PROBABILITY: shown}
+        self._probabilities.handles["y_range"].end = 1.05 * float(shown.max()) or 1.0
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Name, colour and code of each fate in the table."""
@@ -145,7 +147,7 @@ def _facts(statistics: EscapeStatistics) -> dict[str, str]:
 
 
 def _draw_times() -> hv.Histogram:
-    style = {"color": _BAR, "line_color": None, "logx": True, "xlabel": "escape time", "ylabel": "starts"}
+    style = {"color": _BAR, "line_color": None, "logx": True, "xlabel": "escape time (logarithmic)", "ylabel": "starts"}
     return hv.Histogram((np.array([1.0, 10.0]), np.zeros(1))).opts(**style, **_frame())
 
 
@@ -156,7 +158,7 @@ def _draw_probabilities() -> hv.Bars:
 
 
 def _frame() -> dict[str, Any]:
-    fonts = {"labels": "12px", "ticks": "11px"}
+    fonts = {"labels": "12px", "ticks": "12px"}
     return {
         "responsive": True,
         "aspect": 1.1,
@@ -174,6 +176,8 @@ def _simplify(plot: Any, _element: Any) -> None:
     plot.state.sizing_mode = "scale_width"
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
     plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
+    for axis in plot.state.select(LogAxis):
+        axis.ticker = LogTicker(desired_num_ticks=3)
 
 
 def _plot(element: hv.Element, name: str, title: str) -> Any:
@@ -189,7 +193,7 @@ def _describe(plot: Any, text: str) -> None:
 
 
 def _number(value: float) -> str:
-    return f"{value:.4g}" if np.isfinite(value) else "nothing escaped"
+    return format_number(value) if np.isfinite(value) else "nothing escaped"
 
 
 def prepare() -> None:

@@ -13,9 +13,10 @@ from plots.pictures.palette import Entry, Mark, short_label
 _STEPS = 12
 
 
-def patch(colour: str, label: str = "") -> str:
-    """HTML of a patch of a colour, with a label (HTML) beside it."""
-    return f"<span class='patch' style='--colour:{colour}'>{label}</span>"
+def patch(colour: str, label: str = "", title: str = "") -> str:
+    """HTML of a patch of a colour, with a label (HTML) beside it and a title (HTML) under the mouse."""
+    hint = f" title='{title}'" if title else ""
+    return f"<span class='patch'{hint} style='--colour:{colour}'>{label}</span>"
 
 
 def legend_items(entries: Iterable[Entry]) -> str:
@@ -26,7 +27,7 @@ def legend_items(entries: Iterable[Entry]) -> str:
 def chips(entries: Iterable[Entry]) -> str:
     """HTML of the entries of a legend where there is little room: a number or a word, which the whole label explains."""
     parts = ((entry.colour, escape(entry.label), escape(short_label(entry.label))) for entry in entries)
-    return "".join(f"<span title='{label}'>{patch(colour, short)}</span>" for colour, label, short in parts)
+    return "".join(patch(colour, short, label) for colour, label, short in parts)
 
 
 def legend(entries: Iterable[Entry]) -> str:
@@ -35,10 +36,10 @@ def legend(entries: Iterable[Entry]) -> str:
 
 
 def picture_legend(of: Legend) -> str:
-    """HTML of the legend in the frame of a picture, where there is little room."""
+    """HTML of the entries of the legend below a picture, where there is little room."""
     scale = _scale(of.scale) if of.scale is not None else ""
     sentence = f" <span>{escape(of.sentence)}</span>" if of.sentence else ""
-    return f"<div class='legend'>{_classes(of)}{scale}{sentence}{legend_items(of.over)}</div>"
+    return f"{_classes(of)}{scale}{sentence}{legend_items(of.over)}"
 
 
 def _classes(of: Legend) -> str:
@@ -73,7 +74,5 @@ def _table(table: ColourTable) -> str:
 
 
 def _hue(end: str, origins: Sequence[str], tones: Sequence[str]) -> str:
-    patches = (
-        f"<span title='from {origin} to {end}'>{patch(colour)}</span>" for origin, colour in zip(origins, tones, strict=True)
-    )
+    patches = (patch(colour, title=f"from {origin} to {end}") for origin, colour in zip(origins, tones, strict=True))
     return f"<span class='tones'>{end}&nbsp;{''.join(patches)}</span>"

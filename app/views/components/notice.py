@@ -42,9 +42,9 @@ class Notice:
         """The pane; its place on the page does not matter."""
         return self._pane
 
-    def show(self, sentence: str) -> None:
-        """Show a message for a few seconds."""
-        self._pane.object = _passing(sentence)
+    def show(self, sentence: str, picture: str = "") -> None:
+        """Show a message, below a picture (HTML), for a few seconds."""
+        self._pane.object = _passing(sentence, picture)
 
     def warn(self, sentence: str) -> None:
         """Show a warning until `clear`."""
@@ -79,11 +79,11 @@ def _set_text(document: Document, html: str) -> None:
         model.text = escape(html)
 
 
-def _passing(sentence: str) -> str:
+def _passing(sentence: str, picture: str = "") -> str:
     # The time makes the same message twice two changes.
     duration = f"style='animation-duration: {PASSING_SECONDS}s'"
-    return _html(sentence, f"class='notice passing' {duration} data-time='{time.monotonic_ns()}'")
+    return _html(sentence, f"class='notice passing' {duration} data-time='{time.monotonic_ns()}'", picture=picture)
 
 
-def _html(sentence: str, attributes: str = "class='notice'", role: str = "status") -> str:
-    return f"<div role='{role}' {attributes}>{escape(sentence)}</div>"
+def _html(sentence: str, attributes: str = "class='notice'", role: str = "status", picture: str = "") -> str:
+    return f"<div role='{role}' {attributes}>{picture}{escape(sentence)}</div>"

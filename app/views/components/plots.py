@@ -32,8 +32,10 @@ HOVER_FORMATS = {name: callback_code(HOVER_TEXTS, f"{name}(value)") for name in 
 
 _HOVER_VALUE = re.compile(r"([@$]\w+)\{(\w+)\}")
 
-HISTORY_ASPECT = 1.9
-"""Width over height of the figures against the time of orbits."""
+_MOMENTUM = re.compile(r"^p([xy])$")
+
+_HISTORY_ASPECT = 2.2
+_HISTORY_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 25}
 
 # Left and right, above and below of the frame together take the same space, so that a square figure has a square frame.
 _CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
@@ -53,7 +55,17 @@ _BORDERS = {"compact": _COMPACT_BORDERS, "small": _SMALL_BORDERS}
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
     """A square figure of a picture, as `square_figure`; `annotate_picture` writes around its frame."""
     # Frames that are aligned with those of larger pictures would not be square.
-    return square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
+    plot = square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
+    for axis in (*plot.below, *plot.left):
+        axis.major_label_text_font_size = "14px"
+    return plot
+
+
+def history_figure(name: str, title: str, **options: Any) -> figure:
+    """A low figure against the time of orbits, as `square_figure`; the title names its values."""
+    plot = square_figure(name, title, aspect_ratio=_HISTORY_ASPECT, **_HISTORY_BORDERS, **options)
+    plot.elements[0].html += "<i class='axis-name abscissa'>t →</i>"
+    return plot
 
 
 def set_borders(plot: figure, kind: str) -> None:
@@ -63,15 +75,30 @@ def set_borders(plot: figure, kind: str) -> None:
     plot.update(**_BORDERS.get(kind, _PICTURE_BORDERS))
 
 
-def annotate_picture(plot: figure, title: str, names: tuple[str, str], legend: str, notes: Sequence[str] = ()) -> None:
-    """Write the title of a picture above its frame, legend (HTML) and notes below it, and the names of the axes beside them."""
+def annotate_picture(
+    plot: figure, title: str, names: tuple[str, str], legend: str, notes: Sequence[str] = (), under_way: str = ""
+) -> None:
+    """Write around the frame of a picture.
+
+    Parameters
+    ----------
+    plot
+        The picture.
+    title, under_way
+        Above the frame: its title, and what is being computed.
+    names
+        Of the axes, beside them.
+    legend, notes
+        Below the frame; the legend is HTML, see `legends.picture_legend`.
+    """
     enlarge = f"Enlarge, or show all: {title}"
+    abscissa, ordinate = (_MOMENTUM.sub(r"p<sub>\1</sub>", name) for name in names)
     html = (
-        f"{title_with_help(title, plot.name)}"
+        f"{title_with_help(title, plot.name, under_way)}"
         f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
-        f"<i class='axis-name abscissa'>{names[0]} →</i><i class='axis-name ordinate'>{names[1]} ↑</i>"
-        f"<div class='foot' data-picture='{plot.name}'>{legend}"
-        f"{''.join(f'<span>{note}</span>' for note in notes)}</div>"
+        f"<i class='axis-name abscissa'>{abscissa} →</i><i class='axis-name ordinate'>{ordinate} ↑</i>"
+        f"<div class='foot legend' data-picture='{plot.name}'>{legend}"
+        f"{''.join(f'<small>{note}</small>' for note in notes)}</div>"
     )
     # Not a new model: for each one Bokeh searches all models of the page.
     plot.elements[0].html = html
@@ -108,10 +135,11 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     plot.center = []
     # `plot.axis` would search all models of the figure for each attribute.
     for axis in (*plot.below, *plot.left):
-        axis.update(axis_label_text_font_size="12px", major_label_text_font_size="11px", axis_label_text_font_style="normal")
+        axis.update(axis_label_text_font_size="12px", major_label_text_font_size="12px", axis_label_text_font_style="normal")
         axis.update(major_tick_line_color=None, major_tick_out=2, minor_tick_line_color=None, minor_tick_out=0)
     plot.background_fill_alpha = plot.border_fill_alpha = 0.0
     plot.css_classes = [name]
+    plot.html_attributes = {"role": "group", "aria-label": title}
     plot.elements = [HTML(html=title_with_help(title, name))]
     return plot
 
@@ -169,5 +197,5 @@ def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -
     """
     formatters = {value: CustomJSHover(code=HOVER_FORMATS[name]) for value, name in _HOVER_VALUE.findall(text)}
     html = _HOVER_VALUE.sub(r"\1{custom}", text)
-    tooltips = f'<div style="font-size:11px;line-height:14px;color:var(--ui-ink)">{html}</div>'
+    tooltips = f'<div style="font-size:12px;line-height:16px;color:var(--ui-ink)">{html}</div>'
     return HoverTool(tooltips=tooltips, formatters=formatters, renderers=list(renderers), visible=False, **options)

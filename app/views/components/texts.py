@@ -8,27 +8,31 @@ from typing import Any
 import panel as pn
 from bokeh.document import Document
 
-# A number stays with its equals sign, its groups of digits and its per cent sign.
-_IN_NUMBER = re.compile(r"(?<=\w) (?== [−-]?\d)|(?<=[=≤]) (?=[−-]?\d)|(?<=\d) (?=%|\d{3}\b)")
+# A number stays with its equals sign and its power of ten, and closer with its groups of digits and its per cent sign.
+_AROUND_SIGN = re.compile(r"(?<=\w) (?=(?:=|≈) [−-]?\d)|(?<=[=≤×]) (?=[−-]?\d)|(?<=\d) (?=×)")
+_SUBSCRIPT = re.compile(r"\b([A-Za-z])_([a-z]{1,3}|\d)\b")
+_IN_NUMBER = re.compile(r"(?<=\d) (?=%|\d{3}\b)")
 
 
-def keep_numbers_whole(html: str) -> str:
-    """HTML whose lines do not break inside a number."""
+def typeset(html: str) -> str:
+    """HTML whose lines do not break inside a number, and with subscripts for what follows a letter and a low line."""
     # Every other part is a tag.
     parts = re.split(r"(<[^>]*>)", html)
-    parts[::2] = [_IN_NUMBER.sub("\N{NO-BREAK SPACE}", part) for part in parts[::2]]
+    for space, places in (("\N{NO-BREAK SPACE}", _AROUND_SIGN), ("\N{NARROW NO-BREAK SPACE}", _IN_NUMBER)):
+        parts[::2] = [places.sub(space, part) for part in parts[::2]]
+    parts[::2] = [_SUBSCRIPT.sub(r"\1<sub>\2</sub>", part) for part in parts[::2]]
     return "".join(parts)
 
 
 class TextPane(pn.pane.HTML):
-    """HTML text, in which numbers stay whole; it may change while it is not on the page.
+    """Typeset HTML text; it may change while it is not on the page.
 
     With each text, Panel sets the stylesheets again, from the document of the model. A model that is off the page has no
     document: it would get a stylesheet of Panel's content delivery network, which the page must not load.
     """
 
     def _transform_object(self, obj: Any) -> dict[str, Any]:
-        return dict(super()._transform_object(keep_numbers_whole(obj or "")))
+        return dict(super()._transform_object(typeset(obj or "")))
 
     def _get_properties(self, doc: Document | None) -> dict[str, Any]:
         properties: dict[str, Any] = super()._get_properties(doc)

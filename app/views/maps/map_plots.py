@@ -111,6 +111,8 @@ class MapsView:
         self._spec: MapSpec | None = None
         # Results of the layers that are shown, which may be incomplete.
         self._results: dict[str, Any] = {}
+        # Those that are being computed.
+        self._computing: frozenset[str] = frozenset()
         self._fates: frozenset[int] = frozenset()
         self.ranges = MapRanges(actions.zoom, actions.rest)
         edges = self.ranges.x, self.ranges.ordinate
@@ -193,6 +195,12 @@ class MapsView:
             self.grid.mark_empty(layer.picture.name, empty=layer.is_empty(frame))
         self._show_legends()
 
+    def mark_computing(self, layers: frozenset[str]) -> None:
+        """Say in the frames of some layers, and of no others, that they are being computed."""
+        if layers != self._computing:
+            self._computing = layers
+            self._show_legends()
+
     def remove_layer(self, name: str) -> None:
         """Remove what a layer shows, which the hover text would still describe."""
         self._results.pop(name, None)
@@ -273,7 +281,15 @@ class MapsView:
             else:
                 axes = other.axes if name == "compared" and other is not None else spec.plane.axis_symbols
                 legend = picture_legend(map_legend(name, shown))
-                annotate_picture(self.figures[name], ENTRIES[name].title, axes, legend, notes)
+                annotate_picture(self.figures[name], ENTRIES[name].title, axes, legend, notes, self._under_way(name))
+
+    def _under_way(self, picture: str) -> str:
+        """What is being computed for a picture: all of it, or what layers draw over it; empty if nothing is."""
+        layers = [LAYERS[name] for name in LAYERS if name in self._computing]
+        if any(layer.picture is not None and layer.picture.name == picture for layer in layers):
+            return "computing …"
+        over = [layer.title.lower() for layer in layers if layer.over_picture(picture) is not None]
+        return f"computing {', '.join(over)} …" if over else ""
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""

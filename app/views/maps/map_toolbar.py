@@ -46,8 +46,8 @@ class MapToolbar:
         state.follow(lambda window: self.home.param.update(styles=keep_place(shown=window is not None)), "window")
 
     def layout(self, *before: pn.viewable.Viewable) -> pn.viewable.Viewable:
-        """A row of the parts `before`, the button, and the choice."""
-        row = flex_row(*before, self.home, self.drag, align="center")
+        """A row of the parts `before`, the choice, and the button."""
+        row = flex_row(*before, self.drag, self.home, align="center")
         row.css_classes = ["status-line"]
         return row
 

@@ -54,7 +54,7 @@ class Markers:
             Scatter(marker="cross", size=size, line_width=width, line_color=ink)
             for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, colour))
         ]
-        style = {"x_offset": 6, "y_offset": -4, "text_font_size": "13px", "text_font_style": "bold", "text_color": MARK_EDGE}
+        style = {"x_offset": 6, "y_offset": -4, "text_font_size": "14px", "text_font_style": "bold", "text_color": MARK_EDGE}
         # The outline of a text covers the text, so the number is drawn once more without.
         numbers = [Text(text_outline_color=outline, **style) for outline in (LIGHT.halo, None)]
         return [(self._starts, glyph) for glyph in (*crosses, *numbers)]

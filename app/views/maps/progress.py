@@ -1,4 +1,4 @@
-"""Progress of the map: a bar, a line of text, and the button that stops or continues it, or offers a layer."""
+"""Progress of the map: the shares of its outcomes, a sentence, and a button that stops or continues it, or offers a layer."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from html import escape
 import numpy as np
 import panel as pn
 
-from app.state.glossary import with_terms
+from app.views.components.legends import patch
 from app.views.components.numbers import percent
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number, format_whole
 from engine.propagation.fates import UNRESOLVED
-from engine.systems.outcomes import Exit
 from plots.layers.table import LAYERS
+from plots.pictures.palette import PAPER, Entry, Palette
 
 STOP, CONTINUE = "Stop", "Continue"
 
@@ -40,6 +40,9 @@ class ProgressView:
         self._actions: dict[str, Callable[[], None]] = {STOP: on_cancel, CONTINUE: on_resume, **offers}
         # Time and undecided share at the beginning of the last stage.
         self._last_stage: tuple[float, float] | None = None
+        self._palette = PAPER
+        self._frame: EscapeMap | None = None
+        self._sentence = ""
         self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=3, margin=0, css_classes=["progress"])
         self.text = TextPane("", name="progress", margin=0, css_classes=["status"])
         self.button = button(STOP, self._press, margin=0, styles=keep_place(shown=False), css_classes=["solid", "stop"])
@@ -50,23 +53,24 @@ class ProgressView:
 
     def start(self) -> None:
         """A new map is requested."""
-        self._last_stage = None
-        self._set(running=True, label=STOP, text="Starting …")
+        self._last_stage = self._frame = None
+        self._set(running=True, label=STOP, sentence="Starting …")
 
     def show_reviewing(self) -> None:
         """The potential of the link is reviewed before a map is requested."""
-        self._set(running=False, label=STOP, text="Reviewing the potential …")
+        self._set(running=False, label=STOP, sentence="Reviewing the potential …")
 
     def show_compiling(self, seconds: float) -> None:
         """The kernels of the map are compiled first, which takes about this long."""
         left = f"about {math.ceil(seconds)} s left" if seconds > 0.0 else "a moment more"
-        self.text.object = f"Compiling the integrator, once for each kind of potential: {left}"
+        self._write(f"Preparing this kind of potential, once: {left}")
 
     def show(self, frame: EscapeMap) -> None:
-        """Show how far a frame is, and the shares of a complete map."""
-        text = with_terms(_result(frame)) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
+        """Show the shares of a frame, and how far it is or what is known of a complete map."""
+        sentence = _result(frame) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
         offered = [layer.title for layer in LAYERS.values() if layer.is_offered(frame)]
-        self._set(running=not frame.complete, label=next(iter(offered), STOP), text=text)
+        self._frame = frame
+        self._set(running=not frame.complete, label=next(iter(offered), STOP), sentence=sentence)
         # The text beside an offer is long.
         self.button.css_classes = ["solid", "offer" if offered else "stop"]
         self.button.styles = keep_place(shown=bool(offered) or not frame.complete)
@@ -74,12 +78,18 @@ class ProgressView:
 
     def stop(self) -> None:
         """The map is stopped and can be continued."""
-        self._set(running=False, label=CONTINUE, text=f"Stopped: {self.text.object}")
+        self._set(running=False, label=CONTINUE, sentence=f"Stopped: {self._sentence}")
         self.button.styles = keep_place(shown=True)
 
     def fail(self) -> None:
         """There is no map; the last picture stays."""
-        self._set(running=False, label=STOP, text="")
+        self._frame = None
+        self._set(running=False, label=STOP, sentence="")
+
+    def set_palette(self, palette: Palette) -> None:
+        """Set the colours of the shares."""
+        self._palette = palette
+        self._write(self._sentence)
 
     def _press(self) -> None:
         self._actions[self.button.label]()
@@ -96,35 +106,47 @@ class ProgressView:
         left = (now - begin) * frame.undecided / (undecided - frame.undecided)
         return f", about {math.ceil(left)} s left"
 
-    def _set(self, *, running: bool, label: str, text: str) -> None:
+    def _set(self, *, running: bool, label: str, sentence: str) -> None:
         self.bar.styles = {"opacity": "1" if running else "0"}
         self.button.param.update(label=label, styles=keep_place(shown=running))
-        self.text.object = text
+        self._write(sentence)
+
+    def _write(self, sentence: str) -> None:
+        self._sentence = sentence
+        shares = _shares(self._frame, self._palette) if self._frame is not None else ""
+        is_complete = self._frame is not None and self._frame.complete
+        self.text.object = f"{shares}<div class='{'' if is_complete else 'under-way'}'>{sentence}</div>"
+
+
+def _shares(frame: EscapeMap, palette: Palette) -> str:
+    """A bar and a line with the share of each outcome of the interior starts, in the colours of the basins."""
+    shares, outcomes = frame.fractions(), frame.spec.outcomes
+    ends = [(palette.entry(fate, outcomes), fate) for fate, end in enumerate(outcomes, 1) if end.occurs]
+    others = [(Entry("stay", palette.bounded), Fate.BOUNDED)]
+    others += [(Entry(UNRESOLVED, palette.entry(Fate.FAILED, outcomes).colour), Fate.FAILED)] if shares[Fate.FAILED] else []
+    found = [(entry, shares[fate]) for entry, fate in (*ends, *others)]
+    parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in found)
+    rest = "" if frame.complete else f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
+    words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{percent(share)}") for entry, share in found)
+    return f"<div class='shares' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
 
 
 def _stage(frame: EscapeMap) -> str:
-    """Resolution, time reached and undecided share of a frame in progress."""
-    resolution = "Full resolution" if frame.stride == 1 else f"1/{frame.stride} of the resolution"
-    time = f"t = {format_whole(frame.horizon)} of {format_whole(frame.spec.t_max)}"
-    return f"{resolution}, {time}: {percent(frame.undecided)} undecided"
+    """How much of a frame in progress is decided, and the time reached."""
+    picture = "" if frame.stride == 1 else "Coarse picture, "
+    decided = f"{picture}{percent(1.0 - frame.undecided)} decided"
+    return f"{decided[0].upper()}{decided[1:]}, t = {format_whole(frame.horizon)} of {format_whole(frame.spec.t_max)}"
 
 
 def _result(frame: EscapeMap) -> str:
-    """Shares and accuracy of a complete map."""
-    shares = frame.fractions()
-    part = {fate: percent(share) for fate, share in shares.items()}
-    ends = [(fate, end) for fate, end in enumerate(frame.spec.outcomes, 1) if end.occurs]
-    # Exits of several channels have longer names.
-    exits = [(fate, end.label) for fate, end in ends if end.kind is Exit]
-    numbered = [fate for fate, _ in exits] if all(label == f"channel {fate}" for fate, label in exits) else []
-    numbers = f"s 1 to {len(numbered)}" if len(numbered) > 1 else " 1"
-    parts = [f"channel{numbers}: {', '.join(part[fate] for fate in numbered)}"] if numbered else []
-    parts += [f"{escape(end.label)} {part[fate]}" for fate, end in ends if fate not in numbered]
-    parts += [f"bounded {part[Fate.BOUNDED]}{_share_on_evidence(frame)}"]
-    parts += [f"{UNRESOLVED} {part[Fate.FAILED]}"] if shares[Fate.FAILED] else []
+    """The integration time of a complete map, a warning if it is needed, and further numbers to open."""
+    details = (
+        f"Shares of the interior starts, integrated until t = {format_whole(frame.spec.t_max)}{_share_on_evidence(frame)}. "
+        f"The relative energy error is at most {format_number(frame.worst_energy_error, 2)}."
+    )
     return (
-        f"Done, t = {format_whole(frame.spec.t_max)}. Interior starts: {', '.join(parts)}. "
-        f"Energy error ≤ {format_number(frame.worst_energy_error, 2)}.{_rounding(frame)}"
+        f"✓ t = {format_whole(frame.spec.t_max)} <button type='button' class='term' popovertarget='map-details'>details</button>"
+        f"{_rounding(frame)}<div id='map-details' class='help-text' popover>{details}</div>"
     )
 
 
@@ -133,11 +155,13 @@ def _rounding(frame: EscapeMap) -> str:
     if not frame.is_rounded:
         return ""
     assert frame.rounded_share is not None
-    return f" At the limit of double precision: about {percent(frame.rounded_share, 0)} of the pixels depend on rounding errors."
+    return (
+        f"<br>At the limit of double precision: about {percent(frame.rounded_share, 0)} of the pixels depend on rounding errors."
+    )
 
 
 def _share_on_evidence(frame: EscapeMap) -> str:
-    """The share of bounded orbits that are called bounded before t_max, in brackets; empty if there are none."""
+    """The share of bounded orbits that are called bounded before t_max; empty if there are none."""
     evidence = frame.evidence[frame.fate == Fate.BOUNDED]
     early = ~np.isin(evidence, (Evidence.NONE, Evidence.INTEGRATED))
-    return f" ({percent(np.mean(early), 0)} of them on evidence)" if early.any() else ""
+    return f"; {percent(np.mean(early), 0)} of those that stay do so on evidence" if early.any() else ""

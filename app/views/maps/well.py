@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from bokeh.models import ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter
 
-from app.views.components.legends import legend
+from app.views.components.legends import legend_items
 from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities
 from app.views.components.plots import FigurePane, annotate_picture, batched_additions, map_figure, set_range
 from app.views.maps.curve_layers import CurveLayers
@@ -110,7 +110,7 @@ class WellView:
         """Write title, legend and names of the axes into the picture."""
         if self._outlined is not None:
             spec = self._outlined[0]
-            annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend(self.outlines.entries(spec)))
+            annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend_items(self.outlines.entries(spec)))
 
     def _outline(self) -> None:
         """Draw the curves of the well, unless they are there already."""

@@ -17,13 +17,13 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, copy_button, flex_row, number_rows
 from engine import Coordinate, Orbit, Slice
-from engine.foundations.wording import format_whole
+from engine.foundations.wording import format_number, format_time, format_whole
 from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import IndicatorVerdict
 from plots.pictures.orbit_curves import initial_state
 from plots.pictures.palette import PALETTES, Palette
 
-HINT = "Click a map to see the orbit of the pixel, its SALI and R²; up to five orbits."
+HINT = "Click a map: the orbit that starts there is drawn, with its exit and time. Up to five."
 _BOX = 180
 _LONGEST_NUMBER = 40
 
@@ -55,9 +55,9 @@ class OrbitControls:
         self.clear = button("Clear all", lambda: state.param.update(starts=(), chosen=0), margin=0)
         self.open_plane = button("", actions.open_plane, margin=0)
         self.interval = TextPane("", name="interval", margin=0, css_classes=["quiet"])
-        self._all_times = button("Whole orbit", actions.show_all_times, margin=0, visible=False)
-        self._interval_row = flex_row(self.interval, self._all_times, justify="space-between", align="center")
-        self._interval_row.param.update(margin=(0, 10), css_classes=["interval"])
+        all_times = button("Whole orbit", actions.show_all_times, margin=0)
+        self._interval_row = flex_row(self.interval, all_times, justify="space-between", align="center")
+        self._interval_row.param.update(margin=(0, 10), visible=False)
         self.text = TextPane("", name="verdict", sizing_mode="stretch_width", margin=(0, 10), css_classes=["verdict"])
         self.note = TextPane(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
         self.reason = TextPane("", name="reason", sizing_mode="stretch_width", margin=(0, 10))
@@ -79,13 +79,13 @@ class OrbitControls:
         buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
         buttons.margin = (5, 10)
         return pn.Column(
-            self.list, self.text, buttons, playback, self._interval_row,
+            self.list, self.text, buttons, playback,
             sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT,
         )  # fmt: skip
 
     def details(self) -> list[pn.viewable.Viewable]:
-        """The verdict of each indicator on the chosen orbit, and its values, to unfold."""
-        return [self.indicators, *Fold("Values", lambda: [self.reason, self.values, self.copy]).parts()]
+        """The interval of time in view, the verdict of each indicator on the chosen orbit, and its values, to unfold."""
+        return [self._interval_row, self.indicators, *Fold("Values", lambda: [self.reason, self.values, self.copy]).parts()]
 
     def _follow_plane(self, plane: Slice) -> None:
         """Label the boxes with the axes of the plane."""
@@ -101,9 +101,9 @@ class OrbitControls:
 
     def show_interval(self, interval: tuple[float, float] | None, duration: float) -> None:
         """Show which part of the duration is in view; None is the whole duration."""
-        self._all_times.visible = interval is not None
-        begin, end = interval or (0.0, duration)
-        self.interval.object = f"Shown: t = {begin:.6g} to {end:.6g} of {duration:.6g}" if duration else ""
+        self._interval_row.visible = interval is not None
+        begin, end, whole = (format_time(t) for t in (*(interval or (0.0, duration)), duration))
+        self.interval.object = f"Shown: t = {begin} to {end} of {whole}"
 
     def say(self, sentence: str) -> None:
         """Show a message about the orbits."""
@@ -166,15 +166,15 @@ class OrbitControls:
 def _row(orbits: Sequence[ChosenOrbit], place: int) -> str:
     """An orbit in the list; a start that looks like an earlier one is shown by the difference."""
     x, ordinate = orbits[place].start
-    text = f"{x:.4g}, {ordinate:.4g}"
+    text = f"{format_number(x)}, {format_number(ordinate)}"
     for other, one in enumerate(orbits[:place]):
-        if text == f"{one.start[0]:.4g}, {one.start[1]:.4g}":
-            text = f"orbit {other + 1} + ({x - one.start[0]:.2g}, {ordinate - one.start[1]:.2g})"
+        if text == f"{format_number(one.start[0])}, {format_number(one.start[1])}":
+            text = f"orbit {other + 1} + ({format_number(x - one.start[0], 2)}, {format_number(ordinate - one.start[1], 2)})"
     return f"{place + 1}: {text}: {_fate(orbits[place])}"
 
 
 def _value(value: float) -> str:
-    return f"{value:.3g}" if math.isfinite(value) else ""
+    return format_number(value, 3) if math.isfinite(value) else ""
 
 
 def _fate(one: ChosenOrbit) -> str:
@@ -185,12 +185,12 @@ def _values(orbit: Orbit | None) -> str:
     if orbit is None:
         return ""
     rows = {
-        "energy h": f"{orbit.energy:.10g}",
-        "start x, y": f"{orbit.x[0]:.6g}, {orbit.y[0]:.6g}",
-        "start px, py": f"{orbit.px[0]:.6g}, {orbit.py[0]:.6g}",
+        "energy h": format_number(orbit.energy, 10),
+        "start x, y": f"{format_number(orbit.x[0], 6)}, {format_number(orbit.y[0], 6)}",
+        "start px, py": f"{format_number(orbit.px[0], 6)}, {format_number(orbit.py[0], 6)}",
         "upward crossings of y = 0": format_whole(orbit.crossings),
-        "last SALI": f"{orbit.sali[-1]:.3g}",
-        "relative energy error": f"{orbit.energy_error:.1e}",
+        "last SALI": format_number(orbit.sali[-1], 3),
+        "relative energy error": format_number(orbit.energy_error, 2),
     }
     cells = "".join(f"<tr><th scope=row>{name}</th><td>{value}</td></tr>" for name, value in rows.items())
     return f"<table aria-label='values of the orbit'>{cells}</table>"

@@ -19,7 +19,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.views.components.orbit_lines import band_columns, band_style, in_front, line_columns, line_style, lines, opacities
-from app.views.components.plots import HISTORY_ASPECT, FigurePane, set_range, square_figure
+from app.views.components.plots import FigurePane, history_figure, set_range
 from engine import CASES, integrate_orbit, start_states
 from engine.slices.planes import SECTION
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
@@ -42,8 +42,8 @@ class OrbitPlots:
     def __init__(self, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
         self._on_brush = on_brush
         self._by_touch = False
-        self._times = Range1d(0.1, 10.0)
-        self._ranges = {quantity.name: Range1d(0.1, 10.0) for quantity in ORBIT_QUANTITIES}
+        self._times = Range1d(0.1, 1e4)
+        self._ranges = {quantity.name: Range1d(quantity.least or 0.0, 1.0) for quantity in ORBIT_QUANTITIES}
         self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
         self._histories = {name: lines(f"{name}_histories") for name in self._ranges}
         self._bands = {name: lines(f"{name}_bands") for name in self._ranges}
@@ -83,9 +83,9 @@ class OrbitPlots:
 
     def _draw(self, quantity: OrbitQuantity) -> figure:
         name, scale = quantity.name, "log" if quantity.logarithmic else "linear"
-        time: dict[str, Any] = {"x_axis_label": "t", "x_axis_type": "log", "x_range": self._times}
-        values: dict[str, Any] = {"y_axis_label": quantity.label, "y_axis_type": scale, "y_range": self._ranges[name]}
-        plot = square_figure(name, quantity.title, tools=[_brush()], aspect_ratio=HISTORY_ASPECT, **time, **values)
+        time: dict[str, Any] = {"x_axis_type": "log", "x_range": self._times}
+        values: dict[str, Any] = {"y_axis_type": scale, "y_range": self._ranges[name]}
+        plot = history_figure(name, quantity.title, tools=[_brush()], **time, **values)
         plot.toolbar.active_drag = None if self._by_touch else plot.toolbar.tools[0]
         plot.add_glyph(self._bands[name], Patches(**band_style(self._mapper)))
         plot.add_glyph(self._histories[name], MultiLine(**line_style(self._mapper)))

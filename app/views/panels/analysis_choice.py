@@ -38,9 +38,11 @@ class LayerSwitches:
         self._choices: dict[str, SegmentedControl] = {}
 
     def parts(self) -> list[pn.viewable.Viewable]:
-        """The switches, and the choices of the layers that are on."""
-        on = (layer for layer in LAYERS.values() if layer.name in self._state.layers)
-        return [*self.switches.values(), *(self._choice(setting) for layer in on for setting in layer.settings)]
+        """The switches, each with the choices of its layer below it while that is on."""
+        return [part for layer in LAYERS.values() for part in (self.switches[layer.name], *self._choices_of(layer))]
+
+    def _choices_of(self, layer: Layer) -> list[SegmentedControl]:
+        return [self._choice(setting) for setting in layer.settings] if layer.name in self._state.layers else []
 
     def _make(self, layer: Layer) -> Switches:
         """The switch of a layer."""
@@ -110,5 +112,5 @@ class AnalysisTabs:
 
     def __init__(self, state: ViewState) -> None:
         options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
-        tabs = SegmentedControl(label="Analysis", options=options, margin=(5, 4), css_classes=["segmented", "narrow", "tight"])
+        tabs = SegmentedControl(label="Analysis", options=options, margin=(0, 10), css_classes=["segmented", "narrow", "tight"])
         self.tabs = bind(tabs, state, "analysis")

@@ -155,5 +155,5 @@ class BrowserEvents:
 def key_legend() -> str:
     """HTML list of all keys."""
     rows = (f"<dt><kbd>{_CAPS.get(key, key)}</kbd></dt><dd style='margin:0'>{action}</dd>" for key, action in KEYS.items())
-    grid = "display:grid;grid-template-columns:max-content auto;gap:2px 12px;margin:0;font-size:13px"
+    grid = "display:grid;grid-template-columns:max-content auto;gap:2px 12px;margin:0"
     return f'<dl style="{grid}">{"".join(rows)}</dl>'

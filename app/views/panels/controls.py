@@ -19,6 +19,7 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
 from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
 from engine import CASES, Plane, Potential, Slice
+from engine.foundations.wording import format_number
 from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.palette import PALETTES
 
@@ -110,7 +111,6 @@ class Controls:
         state.param.watch(lambda *events: layers.rebuild(), ["layers", "compared"])
         self._folds = [Fold("Quality and colours", self._build_quality), layers]
         self._follow_system()
-        self._follow_plane()
         self._connect()
 
     def layout(self) -> list[pn.viewable.Viewable]:
@@ -175,7 +175,9 @@ class Controls:
     def _follow_plane(self) -> None:
         set_value(self.plane, self._plane())
         title = f"{self.state.plane.title} …"
-        self.axes.label = title if self.plane.value is None and len(title) <= _LONGEST_TITLE else AXES
+        is_other = self.plane.value is None
+        self.axes.label = title if is_other and len(title) <= _LONGEST_TITLE else AXES
+        self._describe(escape_text(self.state.plane.title) if is_other and self.axes.label == AXES else "")
 
     def _plane(self) -> Slice | None:
         """The slice in view if it is one of those to choose from; None for others."""
@@ -195,26 +197,33 @@ class Controls:
 
     def _follow_system(self) -> None:
         """Show slider, ticks, formula, channels and escape energy of the system."""
-        state, reviewed, energies = self.state, self.state.reviewed, self.state.energies
+        state, energies = self.state, self.state.energies
         self.case.value = self._case()
         self.other.color = "light" if self._case() else "primary"
         self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
         self.ticks.object = _ticks(state.potential.escape_energy, energies)
         self.exact_energy.step = 10.0**-energies.decimals
+        self._follow_plane()
+        self._follow_energy()
+
+    def _describe(self, plane: str) -> None:
+        """Write the formula, the outcomes, and the slice (HTML) if it has no button."""
+        reviewed = self.state.reviewed
         formula, _, _ = reviewed.formula.partition(";")
+        facts = "<br>".join([_outcomes(reviewed.potential), *([f"Slice {plane}"] if plane else [])])
         self.facts.object = (
             f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
-            f"V = {escape_text(formula)}<br><span class='quiet'>{_outcomes(state.potential)}</span></div>"
+            f"V = {escape_text(formula)}<br><span class='quiet'>{facts}</span></div>"
         )
-        self._follow_energy()
 
     def _follow_energy(self) -> None:
         state = self.state
         on_h = state.plane.energy_axis is not None
-        beyond = not state.energies.low <= state.energy <= state.energies.high
-        notes = [f"h = {state.energy:.12g}, beyond the end of the slider"] if beyond else []
+        is_below, is_above = state.energy < state.energies.low, state.energy > state.energies.high
+        place = "below" if is_below else "above" if is_above else ""
+        notes = [f"h = {format_number(state.energy, 12)}, {place} the slider"] if place else []
         if state.potential.rotation:
-            notes.append(f"C = {state.potential.jacobi_constant(state.energy):.9g}, the Jacobi constant")
+            notes.append(f"C = {format_number(state.potential.jacobi_constant(state.energy), 9)}, the Jacobi constant")
         note = "; ".join(notes)
         self.energy.param.update(disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
         self.exact_energy.disabled = on_h
@@ -227,9 +236,9 @@ def _outcomes(potential: Potential) -> str:
     """What orbits end at, and from which energy on."""
     frame = f"rotates at Ω = {potential.rotation:.6g}; " if potential.rotation else ""
     if not potential.ends:
-        return f"{frame}{potential.channels} exit channels above h = {potential.escape_energy:.6g}"
+        return f"{frame}{potential.channels} exits above h = {potential.escape_energy:.6g}"
     labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
-    opened = f"; channels open above h = {potential.escape_energy:.6g}" if potential.channels else ""
+    opened = f"; exits open above h = {potential.escape_energy:.6g}" if potential.channels else ""
     return f"{frame}{labels}{opened}"
 
 
@@ -237,8 +246,7 @@ def _ticks(escape: float, energies: EnergyRange) -> str:
     """HTML of ticks below the slider, at the marked energies and with a label at the escape energy."""
     shares = [(energy - energies.low) / (energies.high - energies.low) for energy in (escape, *energies.marked)]
     ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in shares if 0.0 <= share <= 1.0)
-    label = (
-        f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {escape:.4g}</span>" if 0 <= shares[0] <= 1 else ""
-    )
+    text = f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {format_number(escape)}</span>"
+    label = text if 0.0 <= shares[0] <= 1.0 else ""
     style = f"position:relative;height:22px;margin:0 {_THUMB};font-size:12px;color:var(--ui-quiet)"
     return f"<div style='{style}'>{ticks}{label}</div>"

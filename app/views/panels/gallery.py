@@ -12,7 +12,7 @@ from panel.custom import JSComponent
 
 from app.state.presets import GROUPS, PRESETS, Preset
 from app.state.view_state import ViewState
-from app.views.components.texts import keep_numbers_whole
+from app.views.components.texts import typeset
 from plots.layers.table import TITLES
 
 INVITATION = "Each pixel of the basins is a start, and its colour the exit through which its orbit escapes. Views to begin with:"
@@ -24,19 +24,19 @@ _THUMBNAILS = "app/static/gallery"
 _STYLE = """
 :host { min-width: 0 }
 .gallery { font-family: inherit; font-size: 0.875rem; line-height: 1.4; color: inherit }
-h3 { margin: 8px 0 4px; font-size: 0.8125rem; font-weight: 600; color: var(--ui-quiet) }
+h3 { margin: 8px 0 4px; font-size: inherit; font-weight: 600 }
 [role=toolbar] { display: grid; grid-template-columns: repeat(auto-fill, minmax(112px, 1fr)); gap: 6px }
-.few h3 { margin: 8px 10px; font-size: inherit; font-weight: inherit; color: inherit }
+.few h3 { margin: 8px 0; font-weight: inherit }
 .few [role=toolbar] { grid-template-columns: repeat(3, minmax(0, 1fr)) }
 button {
   display: flex; flex-direction: column; align-items: center; gap: 4px; box-sizing: border-box;
-  padding: 7px; font: inherit; font-size: 0.78125rem; line-height: 1.25; color: inherit; background: var(--ui-surface);
+  padding: 7px; font: inherit; line-height: 1.25; color: inherit; background: var(--ui-surface);
   cursor: pointer; border: 1px solid var(--ui-edge); border-radius: var(--ui-radius-l);
 }
 button:hover { border-color: var(--ui-edge-strong) }
 button:focus-visible { outline: none; box-shadow: var(--ui-focus) }
 button[aria-current] { border-color: var(--ui-accent); background: var(--ui-accent-soft) }
-small { font-size: 0.6875rem; color: var(--ui-quiet) }
+small { font-size: 0.75rem; color: var(--ui-quiet) }
 img { order: -1; display: block; width: 100%; height: auto; border-radius: var(--ui-radius) }
 p {
   position: sticky; bottom: -32px; z-index: 1; margin: 12px 0 -32px; padding: 10px 0 16px; min-height: 5em;
@@ -74,11 +74,11 @@ class Gallery:
         """What a visitor sees before there is an orbit: some of the cards, in one group."""
         if self._invitation is None:
             cards = [
-                {**_card(preset), "group": INVITATION, "line": keep_numbers_whole(preset.invitation)}
+                {**_card(preset), "group": INVITATION, "line": typeset(preset.invitation)}
                 for preset in PRESETS
                 if preset.invitation
             ]
-            self._invitation = self._make(cards, groups=[INVITATION], hint="")
+            self._invitation = self._make(cards, groups=[INVITATION], hint="", margin=(0, 10))
             self._invite()
         return self._invitation
 
@@ -88,7 +88,7 @@ class Gallery:
             self._invitation.visible = self._state.starts == ()
 
     def _make(self, cards: list[dict[str, str]], **options: Any) -> GalleryCards:
-        shown = GalleryCards(cards=cards, sizing_mode="stretch_width", margin=0, stylesheets=[_STYLE], **options)
+        shown = GalleryCards(cards=cards, sizing_mode="stretch_width", stylesheets=[_STYLE], **({"margin": 0} | options))
         shown.on_msg(lambda event: self._receive(event.data))
         return shown
 

@@ -144,6 +144,24 @@ def test_origins_and_regularity_have_pictures_while_they_are_switched_on(begin: 
     assert session.analyses == MapAnalyses()
 
 
+def test_a_picture_says_that_its_layer_is_being_computed_until_it_is(begin: Callable[..., Session]) -> None:
+    session = begin(layers=frozenset({"origins", "trust"}))
+    # No other test has the results of this map.
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (48, 48), t_max=1e3))
+    session.maps.show(frame, {**session.maps.source.data})
+
+    def notes() -> list[str]:
+        return [session.maps.figures[name].elements[0].html.partition("role='status'>")[2].partition("<")[0] for name in shown]
+
+    shown = ("origins", "basins", "times")
+    # Results arrive under the lock.
+    with session.changed:
+        session.show(frame)
+        assert notes() == ["computing …", "computing pixels to trust …", ""]
+    session.wait_for(lambda: {*session.analyses} == {"origins", "trust"})
+    assert notes() == ["", "", ""]
+
+
 def test_a_result_of_other_settings_is_not_shown(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(layers=frozenset({"descriptor"}))
     session.maps.show(frame, {**session.maps.source.data})

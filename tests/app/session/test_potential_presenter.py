@@ -67,7 +67,7 @@ def test_a_text_is_used_while_it_is_typed_unless_it_needs_another_integrator(ses
     watcher = session.state.param.watch(lambda event: send(session.panel.formula, newer), "system")
     session.type(WEAKER, enter=False)
     session.wait_for(lambda: session.state.system.formula == WEAKER)
-    assert "2 channels above the escape energy h = 0.5" in session.panel.message.object
+    assert "2 exits above the escape energy h = 0.5" in session.panel.message.object
     # The text that was typed meanwhile stays.
     assert session.panel.formula.shown == {"value": WEAKER, "count": 2}
     session.state.param.unwatch(watcher)
@@ -154,14 +154,14 @@ def test_what_stands_beside_a_refused_text_goes_with_it(session: Session) -> Non
         lambda: session.panel.known.param.update(value="I"),
         lambda: session.state.show_system(review_system(System("III"))),
     ]
-    for act, channels in zip(leave, (2, 2, 4), strict=True):
+    for act, exits in zip(leave, (2, 2, 4), strict=True):
         session.type(WELL_ELSEWHERE, enter=False)
         session.wait_for(lambda: session.panel.move.visible)
         session.type(WELL_ELSEWHERE + " +", enter=False)
         session.wait_for_message("ends where")
         assert (session.panel.facts.object, session.panel.move.visible) == ("", False)
         act()
-        session.wait_for_message(f"{channels} channels")
+        session.wait_for_message(f"{exits} exits")
         assert "<td>saddle</td>" in session.panel.facts.object
         assert session.panel.known.value == session.state.system.case
     assert session.state.system.case == "III"
@@ -205,3 +205,14 @@ def test_typing_starts_from_coefficients_without_rounding_errors(session: Sessio
     for (i, j, c), (k, m, expected) in zip(sorted(session.state.potential.terms), sorted(before.terms), strict=True):
         assert (i, j) == (k, m)
         assert c == pytest.approx(expected, rel=5e-12)
+
+
+@pytest.mark.parametrize(
+    ("label", "formula"),
+    [("+ letter", "½r² + r⁴ + a x y; escape 10"), ("+ body", "½r² + r⁴; escape 10; centre (0, 0) 0.001")],
+)
+def test_a_button_adds_a_term_before_the_clauses_and_a_clause_after_them(session: Session, label: str, formula: str) -> None:
+    session.type("½r² + r⁴; escape 10")
+    session.wait_for(lambda: session.state.system.formula == "½r² + r⁴; escape 10")
+    next(button for button in session.panel.additions if button.label == label).clicks += 1
+    assert session.panel.formula.shown["value"] == formula

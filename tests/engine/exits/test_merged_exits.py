@@ -62,7 +62,7 @@ def test_channels_on_both_sides_of_a_maximum_are_one_exit_above_it() -> None:
     assert [orbit.name for orbit in find_lyapunov_orbits(SYMMETRIC, 0.99 * MAXIMUM)] == ["1", "2", "3", "4"]
     assert [orbit.name for orbit in find_lyapunov_orbits(SYMMETRIC, ABOVE * MAXIMUM)] == ["1+2", "3+4"]
     labels = [outcome.label for outcome in SYMMETRIC.outcomes_at(ABOVE * MAXIMUM)]
-    assert labels == ["channel 1+2", "channel 2 in 1+2", "channel 3+4", "channel 4 in 3+4"]
+    assert labels == ["exit 1+2", "exit 2 in 1+2", "exit 3+4", "exit 4 in 3+4"]
 
 
 def test_the_orbit_leads_from_rest_to_rest_and_its_ends_enclose_the_saddles() -> None:
@@ -151,7 +151,7 @@ def test_maps_and_single_orbits_agree_and_mirror_images_leave_through_the_mirror
 
 def test_a_plane_of_energies_names_exits_from_the_energy_on_at_which_they_merge() -> None:
     spec = MapSpec(SYMMETRIC, Plane.X_H, (0.9 * MAXIMUM, ABOVE * MAXIMUM), (6, 2), t_max=20.0)
-    assert spec.outcomes[0].label == f"channel 1, 1+2 above h = {MAXIMUM:.6g}"
+    assert spec.outcomes[0].label == f"exit 1, 1+2 above h = {MAXIMUM:.6g}"
     fates = compute_map(spec).fate
     assert set(fates[1][fates[1] > 0].tolist()) <= {1, 3}
 

@@ -70,7 +70,7 @@ def test_most_results_have_arrays() -> None:
 def test_a_map_says_what_it_is_in_five_lines() -> None:
     text = repr(result_of("map"))
     assert len(text.splitlines()) <= 5
-    for part in ("potential III", "plane (x, px)", "energy 0.36", "channel 3 0.", "bounded 0.", "fate escape_time", "30 × 40"):
+    for part in ("potential III", "plane (x, px)", "energy 0.36", "exit 3 0.", "bounded 0.", "fate escape_time", "30 × 40"):
         assert part in text
 
 

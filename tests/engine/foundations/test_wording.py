@@ -21,7 +21,15 @@ def test_times_are_grouped_and_never_in_exponent_notation(t: float, text: str) -
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(-2.2, "−2.2"), (42.16, "42.16"), (1e-7, "1e−7"), (2e12, "2e12"), (float("inf"), "∞"), (-float("inf"), "−∞")],
+    [
+        (-2.2, "−2.2"),
+        (42.16, "42.16"),
+        (1e-7, "10⁻⁷"),
+        (-1.93e-12, "−1.93 × 10⁻¹²"),
+        (2e12, "2 × 10¹²"),
+        (float("inf"), "∞"),
+        (-float("inf"), "−∞"),
+    ],
 )
 def test_numbers_have_typographic_signs(value: float, text: str) -> None:
     assert format_number(value) == text

@@ -146,7 +146,7 @@ def test_dataset_is_labelled(sweep: Sweep) -> None:
     assert dataset["share"].dims == ("h", "outcome")
     assert all({"long_name", "units"} <= dataset[name].attrs.keys() for name in dataset.data_vars)
     assert dataset.attrs["plane"] == "(x, px)"
-    assert sweep.to_pandas()["share_channel_1"].tolist() == sweep["share"][:, 1].tolist()
+    assert sweep.to_pandas()["share_exit_1"].tolist() == sweep["share"][:, 1].tolist()
 
 
 # Along a parameter.

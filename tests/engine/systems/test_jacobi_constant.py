@@ -98,7 +98,7 @@ def test_an_exit_of_several_channels_has_their_names() -> None:
 
 def test_names_are_not_used_for_another_number_of_exits() -> None:
     potential = parse_formula("½(x² + y²) − x²y²; exits left, right")
-    assert potential.outcomes[0].label == "channel 1"
+    assert potential.outcomes[0].label == "exit 1"
 
 
 def test_a_wrong_list_of_names_is_refused() -> None:

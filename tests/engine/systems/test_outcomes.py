@@ -9,8 +9,8 @@ ALL = outcomes_of(2, (Centre(0.0, 0.0, 0.1, "the Moon"), Centre(1.0, 0.0, 0.1), 
 
 def test_exits_come_first_then_centres_then_the_escape_radius() -> None:
     assert [outcome.label for outcome in ALL] == [
-        "channel 1",
-        "channel 2",
+        "exit 1",
+        "exit 2",
         "collision with the Moon",
         "collision with centre 2",
         "escape",
@@ -21,12 +21,12 @@ def test_exits_come_first_then_centres_then_the_escape_radius() -> None:
 def test_each_has_a_sentence_and_what_an_orbit_does() -> None:
     channel, _, moon, _, escape = ALL
     assert [each.sentence for each in (channel, moon, escape)] == [
-        "Escaped through channel 1.", "Collided with the Moon.", "Escaped beyond the escape radius.",
+        "Escaped through exit 1.", "Collided with the Moon.", "Escaped beyond the escape radius.",
     ]  # fmt: skip
-    assert [each.present for each in (channel, moon)] == ["escapes through channel 1", "collides with the Moon"]
+    assert [each.present for each in (channel, moon)] == ["escapes through exit 1", "collides with the Moon"]
     assert [each.event for each in (channel, moon, escape)] == ["escape", "collision", "escape"]
     assert [each.origin for each in (channel, moon)] == [
-        "entered through channel 1",
+        "entered through exit 1",
         "backward in time it collides with the Moon",
     ]
 

@@ -103,8 +103,8 @@ def test_an_escape_names_channel_time_and_crossings() -> None:
     verdict = judge_orbit(orbit)
     assert orbit.fate >= 1
     assert (verdict.evidence, verdict.character) == (Evidence.NONE, None)
-    assert f"channel {orbit.fate} at t = {orbit.escape_time:.6g}" in verdict.describe()
-    assert verdict.summarize() == f"channel {orbit.fate} at t = {orbit.escape_time:.5g}"
+    assert f"exit {orbit.fate} at t = {orbit.escape_time:.6g}" in verdict.describe()
+    assert verdict.summarize() == f"exit {orbit.fate} at t = {orbit.escape_time:.5g}"
     aligned = judge_orbit(replace(orbit, sali=np.full_like(orbit.sali, 1e-9)))
     assert aligned.character is Verdict.CHAOTIC_INSIDE
 
@@ -125,5 +125,5 @@ def test_a_collision_is_named_in_the_sentence_and_in_the_list() -> None:
 
 def test_a_headline_says_where_an_orbit_ends_or_how_long_it_stays() -> None:
     escaping, bounded = (judge_orbit(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, py), 1e3)) for py in (0.6, 0.3))
-    assert escaping.headline() == "Escaped through channel 1 at t = 15.1781"
+    assert escaping.headline() == "Escaped through exit 1 at t = 15.1781"
     assert bounded.headline().startswith("Bounded for ever, ")

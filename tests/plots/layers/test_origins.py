@@ -20,7 +20,7 @@ def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:
             assert set(colours[where]) <= {passage_colour(PAPER, origin, fate)}
             seen += int(where.sum())
     sentences = np.array(ORIGINS.pixels.columns(origins, None)["passage_words"][0])[ORIGINS.pixels.codes(origins, None)]
-    assert set(sentences[(origins.origin == 2) & (origins.fate >= 0)]) == {"entered through channel 2"}
+    assert set(sentences[(origins.origin == 2) & (origins.fate >= 0)]) == {"entered through exit 2"}
     assert set(sentences[(origins.origin == 0) & (origins.fate >= 0)]) == {"never entered: inside since −t_max"}
     assert seen == np.sum(origins.fate >= 0)
     assert set(colours[origins.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}

@@ -113,7 +113,7 @@ def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
     comments, rows = table(curves_csv(curves))
     assert "# t_max: 100.0" in comments
     assert [float(row["h"]) for row in rows] == [0.13, 0.2]
-    np.testing.assert_array_equal([float(row["share_channel_2"]) for row in rows], curves["share"][:, 2])
+    np.testing.assert_array_equal([float(row["share_exit_2"]) for row in rows], curves["share"][:, 2])
     np.testing.assert_array_equal([float(row["s_b"]) for row in rows], curves["s_b"])
 
 

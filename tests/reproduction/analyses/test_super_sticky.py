@@ -63,7 +63,7 @@ def test_description_gives_escapes_by_channel_and_their_times() -> None:
         t_max=4e6,
     )
     assert found.describe() == (
-        "5 of the 50 bounded starts are chaotic (10.0 %). 3 of them leave by t = 4e+06 (1 through channel 1, 2 through channel "
+        "5 of the 50 bounded starts are chaotic (10.0 %). 3 of them leave by t = 4e+06 (1 through exit 1, 2 through exit "
         "2): the first at t = 200000, half of these by 500000, the last at 851000."
     )
 

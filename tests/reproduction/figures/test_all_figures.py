@@ -199,7 +199,7 @@ def test_the_band_of_a_late_escape_ends_at_its_exit(cache: MapCache) -> None:
     leaving = replace(search_with([float(frame.escape_time[row, column])], cache), states=state)
     figure = FIGURES["III-super-sticky"].draw(CacheWithSearch(leaving))
     band = figure.axes[1].collections[0].get_paths()[0].vertices
-    assert f"channel {frame.fate[row, column]}" in figure.get_suptitle()
+    assert f"exit {frame.fate[row, column]}" in figure.get_suptitle()
     assert 1.003 < float(np.asarray(band)[:, 1].max()) < 1.017
 
 

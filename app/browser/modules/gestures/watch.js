@@ -52,7 +52,7 @@ const makeOptions = options => Object.entries(options).map(([value, text]) => ma
 
 /** @type {(label: string, options: Record<string, string>) => any} */
 const makeList = (label, options) => {
-  const list = make("select", {}, ...makeOptions(options))
+  const list = make("select", {className: "bk-input"}, ...makeOptions(options))
   list.setAttribute("aria-label", label)
   return list
 }
@@ -86,7 +86,7 @@ class Watch {
         {className: "row"},
         this.#pace,
         make("label", {}, this.#trails, " trails"),
-        make("label", {}, this.#loop, " again and again"),
+        make("label", {}, this.#loop, " loop"),
       ),
       this.#note,
       this.#counters,
@@ -101,9 +101,9 @@ class Watch {
   #where
   #count
   #pace
-  #again = make("button", {type: "button"}, "Other starts")
-  #play = make("button", {type: "button", className: "play"})
-  #step = make("button", {type: "button"}, "Step")
+  #again = make("button", {type: "button", className: "bk-btn"}, "Other starts")
+  #play = make("button", {type: "button", className: "bk-btn play"})
+  #step = make("button", {type: "button", className: "bk-btn"}, "Step")
   #rail = make("input", {type: "range", min: 0, max: STEPS, step: 1, value: 0})
   #text = make("output")
   #radius = make("input", {type: "range", step: 0.5})
@@ -263,6 +263,7 @@ class Watch {
     if (!this.#well.isConnected) shown.host.append(this.#well, this.#section)
     const time = this.#time * shown.system.units.time
     this.#rail.valueAsNumber = (STEPS * this.#time) / LONGEST
+    this.#rail.style.setProperty("--share", String(this.#time / LONGEST))
     this.#text.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
     this.#paintWell(ensemble, shown)
     this.#paintSection(ensemble, shown)

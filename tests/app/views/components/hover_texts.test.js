@@ -13,7 +13,7 @@ const WORDS = {
     trust: ["not tested", "doubtful"],
   },
   values: {length_value: "length"},
-  fates: ["undecided", "failed", "outside", "forbidden", "bounded", "channel 1", "channel 2"],
+  fates: ["undecided", "failed", "outside", "forbidden", "bounded", "exit 1", "exit 2"],
 }
 const none = [new Uint8Array(1)]
 
@@ -25,7 +25,7 @@ const maps = {
   crossing_class: [Uint8Array.of(11, 6)],
   character: none,
   passage: none,
-  passage_words: [["", "", "", "", "", "never entered", "entered through channel 2"]],
+  passage_words: [["", "", "", "", "", "never entered", "entered through exit 2"]],
   trust: none,
   length_value: none,
   difference: none,
@@ -49,21 +49,21 @@ test("a bounded pixel has its evidence", () => {
 test("layers add what they know of a pixel", () => {
   const layers = {character: [Uint8Array.of(6, 0)], passage: [Uint8Array.of(5, 6)], trust: [Uint8Array.of(1, 0)]}
   assert.deepEqual(details(0, layers), ["enclosed", "chaotic", "never entered", "doubtful"])
-  assert.ok(details(1, layers).includes("entered through channel 2"))
+  assert.ok(details(1, layers).includes("entered through exit 2"))
   assert.ok(details(1, {length_value: [Float32Array.of(NaN, 2.5)]}).includes("length 2.5000"))
   assert.deepEqual(details(0, {length_value: [Float32Array.of(NaN, 2.5)]}), ["enclosed"])
 })
 
 test("a pixel that is compared has its end in the other view", () => {
   const layers = {difference: [Uint8Array.of(6, 5)]}
-  assert.deepEqual(details(0, layers), ["enclosed", "other view: channel 1"])
+  assert.deepEqual(details(0, layers), ["enclosed", "other view: exit 1"])
   assert.deepEqual(details(0, layers, {...other, x: [-2]}), ["enclosed"])
 })
 
 test("an end has the words of its map, also in the other view", () => {
-  const ends = [["", "escapes through channel 2", "", "", "", "", "", "", "collides with a disc"]]
+  const ends = [["", "escapes through exit 2", "", "", "", "", "", "", "collides with a disc"]]
   const names = WORDS.fates.slice(0, 5)
-  assert.equal(fateName(6, names, {ends}), "escapes through channel 2")
+  assert.equal(fateName(6, names, {ends}), "escapes through exit 2")
   assert.equal(fateName(13, names, {ends}), "collides with a disc")
   assert.equal(fateName(7, names, {ends}), "undecided")
 })

@@ -36,7 +36,7 @@ def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whol
     assert labels == ["1", "2", "3", "bounded"]
     html = legend("basins")
     assert f"title='{PAPER.outcomes[Fate.FORBIDDEN].label}'" in html
-    assert "title='channel 2'" in html
+    assert "title='exit 2'" in html
 
 
 def test_crossings_have_their_classes_and_what_is_drawn_over_them() -> None:
@@ -66,7 +66,7 @@ def test_layers_have_legends_of_their_own() -> None:
 
 def test_each_exit_has_a_tone_for_each_origin() -> None:
     ends = ("1", "2", "3", "bounded")
-    tones = re.findall("title='from (.*?) to (.*?)'><span class='patch' style='--colour:(.*?)'", legend("origins"))
+    tones = re.findall("title='from (.*?) to (.*?)' style='--colour:(.*?)'", legend("origins"))
     numbers = {end: number for number, end in enumerate(ends, 1)} | {"bounded": 0}
     assert tones == [(origin, end, passage_colour(PAPER, numbers[origin], numbers[end])) for end in ends for origin in ends]
     assert "tones: from 1, 2, 3, bounded" in legend("origins")

@@ -8,7 +8,7 @@ from bokeh.document import Document
 from bokeh.models import ImportedStyleSheet
 from panel.io.resources import LOCAL_DIST
 
-from app.views.components.texts import StatusPane, TextPane, keep_numbers_whole
+from app.views.components.texts import StatusPane, TextPane, typeset
 
 
 @pytest.mark.parametrize("kind", [TextPane, StatusPane])
@@ -33,10 +33,11 @@ def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: 
     ("text", "whole"),
     [
         ("Escaped at t = 3.6", "Escaped at t~=~3.6"),
-        ("error ≤ 1.9e−12, 97.5 % of 1 034 275 starts", "error ≤~1.9e−12, 97.5~% of 1~034~275 starts"),
+        ("error ≤ 1.9 × 10⁻¹²", "error ≤~1.9~×~10⁻¹²"),
+        ("97.5 % of 1 034 275 starts", "97.5_% of 1_034_275 starts"),
         ("x = y, exit 1 at 20 times", "x = y, exit 1 at 20 times"),
-        ("<path d='M1 200'>1 200</path>", "<path d='M1 200'>1~200</path>"),
+        ("<path d='M1 200'>1 200</path>", "<path d='M1 200'>1_200</path>"),
     ],
 )
 def test_lines_do_not_break_inside_a_number(text: str, whole: str) -> None:
-    assert keep_numbers_whole(text) == whole.replace("~", "\N{NO-BREAK SPACE}")
+    assert typeset(text) == whole.replace("~", "\N{NO-BREAK SPACE}").replace("_", "\N{NARROW NO-BREAK SPACE}")

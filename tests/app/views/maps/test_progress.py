@@ -1,4 +1,4 @@
-"""The progress line names the resolution, the time reached and the undecided share."""
+"""The status has the shares of the outcomes in their colours, and says how far a map is."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import pytest
 from app.views.maps.progress import CONTINUE, STOP, ProgressView
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
 from plots.layers.table import LAYERS
+from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +29,7 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     view, _ = make_view()
     view.show(escape_map)
     text = re.sub(r"<[^>]*>", "", view.text.object)
-    assert text.startswith("Done, t = 1 000. Interior starts: channels 1 to 2: ")
+    assert re.match(r"exit 1&nbsp;\d+\.\d %exit 2&nbsp;\d+\.\d %stay&nbsp;\d+\.\d %✓ t = 1 000 details", text)
     assert (view.bar.styles["opacity"], view.button.styles["visibility"]) == ("0", "hidden")
     assert "unresolved" not in text
     view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))
@@ -41,14 +42,13 @@ def test_exits_of_several_channels_are_named() -> None:
     view, _ = make_view()
     view.show(compute_map(MapSpec(potential, Plane.X_PX, 0.54, (5, 5), t_max=20.0)))
     text = re.sub(r"<[^>]*>", "", view.text.object)
-    assert re.search(r"Interior starts: channel 1\+2 [^,]+, channel 3\+4 ", text)
+    assert re.match(r"exit 1\+2&nbsp;[\d.]+ %exit 3\+4&nbsp;", text)
 
 
 def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:
     view, _ = make_view()
     view.show(replace(escape_map, horizon=100.0, complete=False))
-    assert view.text.object.startswith("Full resolution, t = 100 of 1 000: ")
-    assert view.text.object.endswith(" % undecided")
+    assert "100.0 % decided, t = 100 of 1 000" in view.text.object
 
 
 def test_the_button_stops_and_continues() -> None:
@@ -63,7 +63,11 @@ def test_the_button_stops_and_continues() -> None:
     assert calls == ["cancel", "resume"]
     view.start()
     view.fail()
-    assert (view.text.object, view.button.styles["visibility"], view.bar.styles["opacity"]) == ("", "hidden", "0")
+    assert (re.sub(r"<[^>]*>", "", view.text.object), view.button.styles["visibility"], view.bar.styles["opacity"]) == (
+        "",
+        "hidden",
+        "0",
+    )
 
 
 def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_test(escape_map: EscapeMap) -> None:
@@ -79,3 +83,14 @@ def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_te
         view.show(replace(escape_map, rounded_share=share))
         assert "rounding" not in view.text.object
         assert view.button.styles["visibility"] == "hidden"
+
+
+def test_the_bar_has_a_part_for_each_outcome_in_its_colour(escape_map: EscapeMap) -> None:
+    view, _ = make_view()
+    view.show(escape_map)
+    shares = escape_map.fractions()
+    for palette in (PAPER, COLOUR_BLIND_SAFE):
+        view.set_palette(palette)
+        parts = re.findall(r"flex-grow:([\d.]+);background:(#\w+)", view.text.object)
+        colours = [*palette.channels[:2], palette.bounded]
+        assert parts == [(f"{shares[fate]:.4f}", colour) for fate, colour in zip((1, 2, Fate.BOUNDED), colours, strict=True)]

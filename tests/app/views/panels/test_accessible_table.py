@@ -17,14 +17,14 @@ def test_the_table_is_written_while_it_is_open() -> None:
     assert table.text.object == ""
     table.fold.button.clicks += 1
     assert "Case I" in table.text.object
-    assert "channel 1" not in table.text.object
+    assert "exit 1" not in table.text.object
     results.frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (15, 15), t_max=100.0))
-    assert "escape through channel 1" in table.text.object
+    assert "escape through exit 1" in table.text.object
     table.fold.button.clicks += 1
     results.frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (15, 15), t_max=100.0))
-    assert "channel 3" not in table.text.object
+    assert "exit 3" not in table.text.object
     table.fold.button.clicks += 1
-    assert "escape through channel 3" in table.text.object
+    assert "escape through exit 3" in table.text.object
 
 
 def test_a_map_without_escapes_has_no_times() -> None:

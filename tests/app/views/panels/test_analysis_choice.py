@@ -29,12 +29,12 @@ def test_there_is_a_labelled_tab_for_each_analysis_that_changes_the_state_and_fo
     assert state.analysis is Analysis.MEASURES
 
 
-def test_the_image_of_the_manifolds_can_be_chosen_while_they_are_on() -> None:
+def test_the_image_of_the_manifolds_can_be_chosen_below_their_switch_while_they_are_on() -> None:
     state = ViewState()
     layers = LayerSwitches(state)
     assert layers.parts() == [*layers.switches.values()]
     state.layers = frozenset({"manifolds"})
-    images = layers.parts()[-1]
+    images = layers.parts()[layers.parts().index(layers.switches["manifolds"]) + 1]
     assert isinstance(images, SegmentedControl)
     images.value = 2
     assert state.settings["images"] == 2

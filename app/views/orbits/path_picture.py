@@ -1,0 +1,30 @@
+"""The path of an orbit as a small picture, for a message beside a map that covers the well."""
+
+from __future__ import annotations
+
+import math
+
+from plots.pictures.orbit_curves import OrbitCurves
+
+# Of a longer path the first samples are drawn, as all of them would fill the picture.
+_MOST_SAMPLES = 3000
+_MOST_POINTS = 600
+_SIDE = 120
+
+
+def path_picture(drawing: OrbitCurves, colour: str) -> str:
+    """HTML of the path in (x, y) within the window of its well, with a dot at the start."""
+    x, y = (values[:_MOST_SAMPLES] for values in drawing.path)
+    step = max(1, math.ceil(x.size / _MOST_POINTS))
+    window = drawing.window
+    scale = _SIDE / (window.x_high - window.x_low)
+    places = zip((x[::step] - window.x_low) * scale, (window.ordinate_high - y[::step]) * scale, strict=True)
+    points = [f"{across:.1f},{down:.1f}" for across, down in places]
+    if not points:
+        return ""
+    start_x, start_y = points[0].split(",")
+    return (
+        f"<svg class='path' viewBox='0 0 {_SIDE} {_SIDE}' width='{_SIDE}' height='{_SIDE}' aria-hidden='true'>"
+        f"<polyline points='{' '.join(points)}' fill='none' stroke='{colour}'/>"
+        f"<circle cx='{start_x}' cy='{start_y}' r='3' fill='currentColor'/></svg>"
+    )
