@@ -32,8 +32,8 @@ MEMORY = 2**30
 
 # How often the process looks whether the server is still there, in seconds.
 _WATCH_SECONDS = 2.0
-# A call on a busy machine takes at most this many times its processor time.
-_PATIENCE = 4
+# A call on a busy machine takes at most this many times its processor time, after the start of its process.
+_PATIENCE, _START_SECONDS = 4, 60.0
 # How often a call looks whether anyone still waits for it; if not, it ends after that many seconds.
 _POLL_SECONDS, _ABANDONED_SECONDS = 0.1, 1.0
 
@@ -124,7 +124,7 @@ class LimitedProcess:
             seconds = time.monotonic() - begun
             if cancel.is_set() and seconds > _ABANDONED_SECONDS:
                 raise CancelledError
-            if seconds > _PATIENCE * self._seconds:
+            if seconds > _START_SECONDS + _PATIENCE * self._seconds:
                 raise FutureTimeoutError
         return future.result()
 
