@@ -107,7 +107,7 @@ class Direction:
     def __post_init__(self) -> None:
         check_type("key", self.key, str)
         if not self.key.isidentifier() or self.key in {coordinate.value for coordinate in Coordinate}:
-            raise ValueError(f"direction {short_repr(self.key)}: its name must be an identifier and none of a coordinate")
+            raise ValueError(f"direction {short_repr(self.key)}: its name must be an identifier that is not a coordinate")
         for coordinate in STATE:
             value = checked_number(f"direction {self.key}: {coordinate.value}", getattr(self, coordinate.value))
             object.__setattr__(self, coordinate.value, value)

@@ -169,7 +169,7 @@ _ALL = (
         "there is nothing to measure.",
         terms={
             "Wada": "Basins have the Wada property if each point on the boundary of one of them is on the boundary of all "
-            "others, too."
+            "others."
         },
     ),
     Measure(

@@ -135,7 +135,7 @@ def _open(path: str | os.PathLike[str]) -> Any:
         raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: {error}") from error
     except ValueError:
         # No engine of xarray recognises the file.
-        raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: it is none") from None
+        raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: its format is unknown") from None
     with dataset as opened:
         return _read(path, opened.load())
 

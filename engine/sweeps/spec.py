@@ -113,7 +113,7 @@ class SweepSpec:
             MapSpec(self.potential, Slice(Coordinate.X, self.along), self.energy or 0.0)
         plane, values, measures = _checked_plane(self.plane), _checked_values(self.values), _checked_measures(self.measures)
         if checked_count("refine", self.refine, 0, MOST_REFINED) and "shares" not in measures:
-            raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which tells where to refine")
+            raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which decides where to refine")
         if "maps" in measures and self.along is not None and self.window is None:
             raise ValueError("window=None: must be given for maps along a parameter, which have common axes")
         highest = MapSpec(
