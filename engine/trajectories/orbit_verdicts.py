@@ -37,8 +37,8 @@ class OrbitVerdict(OrbitResult):
         The reason why the orbit is called bounded: ``INTEGRATED`` holds only until `t_end`, ``CLOSED`` for ever, and
         ``QUASI_PERIODIC`` is evidence of a torus, on which the orbit would stay for ever. ``NONE`` if it is not bounded.
     character
-        If the orbit is bounded, what its indicators show until `t_end`: "regular", "chaotic", "no sign of chaos", like a regular
-        orbit but without evidence of a torus, or "undecided". If it is not, "chaotic while inside" or None.
+        If the orbit is bounded, what its indicators show until `t_end`: "regular", "chaotic", "no sign of chaos" (like a regular
+        orbit but without evidence of a torus), or "undecided". If it is not, "chaotic while inside" or None.
     indicators
         The indicators that determine the character, with their values; empty if none does.
     outcomes

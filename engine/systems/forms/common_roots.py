@@ -20,7 +20,7 @@ from engine.expressions.polynomials import ExactTerms
 from engine.systems.forms.point_searches import UndecidedError
 
 RING = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
-"""The polynomials in x and y with rational coefficients."""
+"""The context of polynomials in x and y with rational coefficients."""
 
 # Arbitrary factors k, tried in turn. Two common roots have the same s only if the line through them has the slope −1/k.
 _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))

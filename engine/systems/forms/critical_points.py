@@ -20,7 +20,7 @@ from engine.systems.forms.point_searches import NotIsolatedError
 
 # Denominators of the fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000
-# An arbitrary point; the points of curves of zeros nearest to it are searched.
+# An arbitrary point; on each curve of zeros, the point nearest to it is searched for.
 _ARBITRARY = fmpq(577, 1009), fmpq(-733, 1013)
 # Bits of the intervals in which signs are determined; all roots are known with more bits.
 _PRECISION = 1024
