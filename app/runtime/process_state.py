@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import threading
 from collections import Counter, defaultdict
@@ -35,6 +36,8 @@ class ProcessState:
         Returns the open Bokeh sessions; none until the server sets it.
     sockets
         Number of open WebSockets by address.
+    making_page
+        Held while a page is made.
     jobs
         Background jobs of all sessions.
     limited
@@ -58,6 +61,7 @@ class ProcessState:
     settings: Settings = field(default_factory=Settings)
     sessions: Callable[[], Iterable[Any]] = tuple
     sockets: Counter[str] = field(default_factory=Counter, init=False)
+    making_page: asyncio.Lock = field(default_factory=asyncio.Lock, init=False)
     jobs: Jobs = field(init=False)
     limited: LimitedProcesses = field(default_factory=LimitedProcesses, init=False)
     compiler: LimitedProcess = field(default_factory=lambda: LimitedProcess(COMPILATION_SECONDS), init=False)

@@ -18,9 +18,10 @@ from typing import Any
 from bokeh.server.tornado import BokehTornado
 from bokeh.settings import settings as bokeh_settings
 from panel.io.server import DocHandler, RootHandler, WSHandler
-from tornado.web import HTTPError, StaticFileHandler
+from tornado.web import Finish, HTTPError, StaticFileHandler
 
 from app.browser.module_files import ROUTES as MODULES
+from app.runtime.process_state import process_state
 from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
 from app.server.compressed_files import CompressedFiles
 from app.server.endpoints import ROUTES, NotFound
@@ -83,13 +84,27 @@ def refuse_other_hosts(application: BokehTornado) -> None:
 
 
 class PageHandler(SecurityHeaders, DocHandler):
-    """Serves the page with a nonce on its scripts, and with a signed token of its session."""
+    """Serves the page with a nonce on its scripts, and with a signed token of its session.
+
+    Pages are made one at a time. Bokeh makes all those that were asked for meanwhile in one turn of the event loop, which then
+    serves nobody else, and the first of them may be discarded as unused before it is sent.
+    """
+
+    _has_left = False
 
     async def get_session(self) -> Any:
-        """Create the session of a new token."""
-        extra = self.application_context.application.process_request(self.request)
-        use_token(self.request, issue_token(self.application, self.request, extra))
-        return await super().get_session()
+        """Create the session of a new token, unless the pages made meanwhile have taken its place."""
+        async with process_state().making_page:
+            if self._has_left:
+                raise Finish
+            extra = self.application_context.application.process_request(self.request)
+            use_token(self.request, issue_token(self.application, self.request, extra))
+            return await super().get_session()
+
+    def on_connection_close(self) -> None:
+        """Make no page for a visitor who does not wait for it."""
+        self._has_left = True
+        super().on_connection_close()
 
     def write_error(self, status_code: int, **kwargs: Any) -> None:
         """Answer with the reason, and let browsers ask again for a page that may be served later."""
