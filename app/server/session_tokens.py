@@ -3,26 +3,44 @@
 A token has a compressed part. Bokeh signs tokens only when both of its settings are set before it is imported, and inflates
 those that are not signed, whatever their size. Here all are signed, with Bokeh's key or with a key of this server, and a token
 is inflated only when its signature is valid.
+
+Bokeh lets tokens expire by the clock of the wall, which may be set, and refuses those of pages that are still open. Here their
+age is measured on the monotonic clock of the machine, and matters only for those whose session has ended.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+import time
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from bokeh.server.tornado import BokehTornado
-from bokeh.util.token import check_token_signature, generate_jwt_token, generate_secret_key, generate_session_id
+from bokeh.util.token import (
+    check_token_signature,
+    generate_jwt_token,
+    generate_secret_key,
+    generate_session_id,
+    get_token_payload,
+)
 from tornado.httputil import HTTPServerRequest
 
 from app.state.permalink import PARAMETERS
 
-_SUBPROTOCOL, _TOKEN, _SESSION_ID = "bokeh", "bokeh-token", "bokeh-session-id"
+_SUBPROTOCOL, _TOKEN, _SESSION_ID, _ISSUED = "bokeh", "bokeh-token", "bokeh-session-id", "issued"
+# Ten years, in seconds: Bokeh's own check never applies.
+_NO_EXPIRATION = 10 * 365 * 24 * 3600
 
 # Made when the server starts, before it forks: the processes of `--num-procs` share it.
 _own_key = generate_secret_key().encode()
 
 
-def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Mapping[str, Any]) -> str:
+def issue_token(
+    application: BokehTornado,
+    request: HTTPServerRequest,
+    extra: Mapping[str, Any],
+    clock: Callable[[], float] = time.monotonic,
+) -> str:
     """Return a signed token of a new session.
 
     Parameters
@@ -34,6 +52,8 @@ def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Ma
         it, as the session needs nothing else.
     extra
         More entries of the token's payload.
+    clock
+        Seconds of a monotonic clock.
     """
     arguments = {name: request.arguments[name][:1] for name in PARAMETERS if name in request.arguments}
     has_login = bool(application.auth_provider.endpoints)
@@ -43,10 +63,16 @@ def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Ma
         generate_session_id(key, signed=True),
         key,
         signed=True,
-        extra_payload={"headers": {}, "cookies": cookies, "arguments": arguments, **extra},
-        expiration=application.session_token_expiration,
+        extra_payload={"headers": {}, "cookies": cookies, "arguments": arguments, _ISSUED: clock(), **extra},
+        expiration=_NO_EXPIRATION,
     )
     return token
+
+
+def may_begin_session(application: BokehTornado, token: str, clock: Callable[[], float] = time.monotonic) -> bool:
+    """Whether a token with a valid signature was issued recently, and since this machine started."""
+    age: float = clock() - get_token_payload(token).get(_ISSUED, math.inf)
+    return bool(0.0 <= age < application.session_token_expiration)
 
 
 def use_token(request: HTTPServerRequest, token: str) -> None:
