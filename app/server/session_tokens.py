@@ -1,11 +1,11 @@
-"""Tokens of sessions, signed by this server: the page gets one, and the page's WebSocket must bring it back.
+"""Signed tokens of sessions: the page receives a token, and its WebSocket must send it back.
 
-A token has a compressed part. Bokeh signs tokens only when both of its settings are set before it is imported, and inflates
-those that are not signed, whatever their size. Here all are signed, with Bokeh's key or with a key of this server, and a token
-is inflated only when its signature is valid.
+A token has a compressed part. Bokeh signs tokens only if both of its settings are set before it is imported, and decompresses
+unsigned tokens of any size. This server signs all tokens, with Bokeh's key or with its own, and decompresses a token only if its
+signature is valid.
 
-Bokeh lets tokens expire by the clock of the wall, which may be set, and refuses those of pages that are still open. Here their
-age is measured on the monotonic clock of the machine, and matters only for those whose session has ended.
+Bokeh lets tokens expire by the wall clock, which may be set, and refuses expired tokens of sessions that are still open. This
+server measures the age of a token on the monotonic clock of the machine, and refuses an old token only if its session has ended.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _SUBPROTOCOL, _TOKEN, _SESSION_ID, _ISSUED = "bokeh", "bokeh-token", "bokeh-sess
 # Ten years, in seconds: Bokeh's own check never applies.
 _NO_EXPIRATION = 10 * 365 * 24 * 3600
 
-# Made when the server starts, before it forks: the processes of `--num-procs` share it.
+# The key is made when the server starts, before it forks, so that all processes of `--num-procs` share it.
 _own_key = generate_secret_key().encode()
 
 
@@ -43,17 +43,18 @@ def issue_token(
 ) -> str:
     """Return a signed token of a new session.
 
-    Parameters
-    ----------
-    application
-        The server's web application.
-    request
-        The request for the page. The token contains the parameters of links, and cookies if there is a login; nothing else of
-        it, as the session needs nothing else.
-    extra
-        More entries of the token's payload.
-    clock
-        Seconds of a monotonic clock.
+        Parameters
+        ----------
+        application
+            The server's web application.
+        request
+            The request for the page. The token contains only its link parameters, and its cookies if there is a login, because the
+            session needs nothing else.
+        extra
+            Additional entries of the token's payload.
+
+    Bokeh lets tokens expire by the wall clock, which may be set, and refuses expired tokens of sessions that are still open. This
+    server measures the age of a token on the monotonic clock of the machine, and refuses an old token only if its session has ended.
     """
     arguments = {name: request.arguments[name][:1] for name in PARAMETERS if name in request.arguments}
     has_login = bool(application.auth_provider.endpoints)
@@ -76,20 +77,20 @@ def may_begin_session(application: BokehTornado, token: str, clock: Callable[[],
 
 
 def use_token(request: HTTPServerRequest, token: str) -> None:
-    """Let Bokeh take the token for the session of a request, instead of a token or an id that the client may have sent."""
+    """Make Bokeh use this token for the session of a request, instead of a token or an id that the client may have sent."""
     request.arguments.pop(_SESSION_ID, None)
     request.arguments[_TOKEN] = [token.encode()]
 
 
 def brings_own_token(application: BokehTornado, request: HTTPServerRequest) -> bool:
-    """Whether the request for a WebSocket has a token with a valid signature; inflates nothing."""
+    """Whether the request for a WebSocket has a token with a valid signature; the token is not decompressed."""
     offered = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
     if len(offered) != 2 or offered[0] != _SUBPROTOCOL:
         return False
     try:
         return bool(check_token_signature(offered[1], _signing_key(application), signed=True))
     except (ValueError, TypeError, KeyError, AttributeError, AssertionError, RecursionError):
-        # Not a token at all.
+        # The value is not a token.
         return False
 
 
