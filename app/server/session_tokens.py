@@ -43,18 +43,17 @@ def issue_token(
 ) -> str:
     """Return a signed token of a new session.
 
-        Parameters
-        ----------
-        application
-            The server's web application.
-        request
-            The request for the page. The token contains only its link parameters, and its cookies if there is a login, because the
-            session needs nothing else.
-        extra
-            Additional entries of the token's payload.
-
-    Bokeh lets tokens expire by the wall clock, which may be set, and refuses expired tokens of sessions that are still open. This
-    server measures the age of a token on the monotonic clock of the machine, and refuses an old token only if its session has ended.
+    Parameters
+    ----------
+    application
+        The server's web application.
+    request
+        The request for the page. The token contains only its link parameters, and its cookies if there is a login: the session
+        needs nothing else.
+    extra
+        Additional entries of the token's payload.
+    clock
+        Seconds of a monotonic clock.
     """
     arguments = {name: request.arguments[name][:1] for name in PARAMETERS if name in request.arguments}
     has_login = bool(application.auth_provider.endpoints)
