@@ -48,6 +48,7 @@ from engine import (
 )
 from engine.slices.planes import SECTION
 from plots.pictures.orbit_curves import compute_orbit_curves
+from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, Entry, rgba
 from plots.printed.curve_figures import draw_statistics_figure
 from plots.printed.figure_axes import (
@@ -61,7 +62,7 @@ from plots.printed.figure_axes import (
 )
 from plots.printed.figure_style import FigureFormat
 from plots.printed.map_figure import draw_limits, draw_picture, draw_pixels, show_window
-from plots.printed.orbit_figure import draw_sali
+from plots.printed.orbit_figure import draw_quantity
 
 FOLDER = Path(__file__).parent / "drawings"
 _COLOURS = 64
@@ -100,10 +101,11 @@ def sali() -> Figure:
     case, energy = CASES["III"], 0.26
     window = MapSpec(case, SECTION, energy).find_window()
     starts = start_states(case, SECTION, energy, np.array([0.4, 0.58]), np.array([0.2, 0.0]))
-    for start, colour in zip(starts, PAPER.orbits, strict=False):
-        orbit = integrate_orbit(case, start, 2e4)
+    orbits = [integrate_orbit(case, start, 2e4) for start in starts]
+    for orbit, colour in zip(orbits, PAPER.orbits, strict=False):
         mark_section(left, orbit, window, colour)
-        draw_sali(right, compute_orbit_curves(case, orbit), colour)
+    (quantity,) = (one for one in ORBIT_QUANTITIES if one.name == "sali")
+    draw_quantity(right, quantity, [compute_orbit_curves(case, orbit) for orbit in orbits], PAPER)
     draw_limits(left, case, SECTION, energy, window)
     show_window(left, window, "x", "px")
     name_panel(left, "Two orbits where they cross y = 0 upward")

@@ -77,6 +77,13 @@ def test_drawings_are_shown_and_small() -> None:
     assert sum(drawing.stat().st_size for drawing in drawings) < MOST_FOR_DRAWINGS
 
 
+@pytest.mark.parametrize("script", sorted((ROOT / "docs").glob("make_*.py")), ids=page_name)
+def test_scripts_of_the_documents_use_names_that_exist(script: Path) -> None:
+    # In a process of its own, as the scripts change the path of imports.
+    program = f"import runpy; runpy.run_path({str(script)!r})"
+    subprocess.run([sys.executable, "-W", "error", "-c", program], cwd=script.parent, check=True)
+
+
 @pytest.fixture(scope="module")
 def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The pages of the terms and of chaos, without those that they link to."""

@@ -9,7 +9,7 @@ from engine.foundations.wording import format_number
 
 log = logging.getLogger(__name__)
 
-# What the library says of an energy, whose parameter the page calls h, and what a visitor needs to know.
+# What the library says of an energy, for whose parameter the page says h, and what a visitor needs to know.
 _OF_ENERGY = {
     "the interior is empty on": "no orbit of this energy starts on this slice, as the well lies higher.",
     "no Lyapunov orbit was found": "there is no neck to leave through; choose another energy.",
@@ -21,7 +21,7 @@ ZOOM_ENDS = "Double precision ends here: pixels cannot be closer together."
 
 
 def sentence(error: Exception) -> str:
-    """Message of a ValueError, which is written for users; for other errors a reference to the log, where they are logged."""
+    """Return the message of a ValueError, which is meant for users; other errors are logged, and the message names the log."""
     if isinstance(error, ValueError):
         return _ENERGY.sub(_explain, str(error))
     log.error("a job failed", exc_info=error)

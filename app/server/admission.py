@@ -16,10 +16,10 @@ from app.runtime.settings import variable_name
 from app.runtime.visitors import network_of, visitor_of
 
 LONGEST_LINK = 8192
-"""Most characters of the address of a page."""
+"""Largest length of the address of a page, in characters."""
 
 RETRY_SECONDS = 10
-"""Time after which a refused page is asked for again, in seconds."""
+"""Interval at which the browser asks again for a refused page, in seconds."""
 
 RETRIED = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
 """Statuses of refused pages that may be served later."""
@@ -45,7 +45,7 @@ def admit(request: Any) -> None:
 
 
 def refusal_page(sentence: str) -> str:
-    """Return a page that says why a page is refused, and asks for it again after `RETRY_SECONDS`."""
+    """Return a page that says why a page is refused, and asks for the page again after `RETRY_SECONDS`."""
     head = (
         f"<meta charset=utf-8><meta name=viewport content='width=device-width'><meta http-equiv=refresh content={RETRY_SECONDS}>"
     )
@@ -54,7 +54,7 @@ def refusal_page(sentence: str) -> str:
 
 
 def check_session(token: str, application_context: Any, address: str) -> None:
-    """Return for WebSockets of open sessions, and for others, such as those that reconnect after a pause, while there is room.
+    """Return for WebSockets of open sessions. For others, such as those that reconnect after a pause, return while there is room.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """The routes that the page and the operator need, their handlers, and the hosts; all others are refused.
 
-Bokeh and Panel mount more: ``autoload.js`` creates sessions, and ``components`` imports the module that the address names.
+Bokeh and Panel add more routes: ``autoload.js`` creates sessions, and ``components`` imports the module that the address names.
 
 The handlers are installed in ``bokeh.server.urls``, from which Bokeh builds its web application. Bokeh documents both lists
 (https://docs.bokeh.org/en/latest/docs/reference/server/urls.html); Panel puts its own handlers there as well. They are the only
@@ -18,9 +18,10 @@ from typing import Any
 from bokeh.server.tornado import BokehTornado
 from bokeh.settings import settings as bokeh_settings
 from panel.io.server import DocHandler, RootHandler, WSHandler
-from tornado.web import HTTPError, RedirectHandler, StaticFileHandler
+from tornado.web import Finish, HTTPError, RedirectHandler, StaticFileHandler
 
 from app.browser.module_files import ROUTES as MODULES
+from app.runtime.process_state import process_state
 from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
 from app.server.compressed_files import CompressedFiles
 from app.server.endpoints import ROUTES, NotFound
@@ -28,7 +29,7 @@ from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
 from app.server.session_tokens import issue_token, use_token
 
-# Tornado fails to look for a file with a null character in its name.
+# Tornado fails when it looks for a file with a null character in its name.
 _FILES = "/static/(?!.*%00).*"
 
 OF_PAGE = ("", "/ws", _FILES)
@@ -53,12 +54,12 @@ def served_routes(application: BokehTornado) -> list[str]:
 
 def refuse_other_routes(application: BokehTornado) -> None:
     """Answer all other paths with status 404."""
-    # Tornado asks handlers that were added later first.
+    # Tornado tries handlers that were added later first.
     application.add_handlers(".*", [(f"(?!(?:{'|'.join(served_routes(application))})$).*", NotFound)])
 
 
 class ToPage(SecurityHeaders, RedirectHandler):
-    """Leads from the root to the page, with the query of the link."""
+    """Redirects from the root to the page, with the query of the link."""
 
 
 def lead_to_page(application: BokehTornado) -> None:
@@ -71,7 +72,7 @@ def lead_to_page(application: BokehTornado) -> None:
 
 
 class OtherHost(SecurityHeaders):
-    """421 for requests to a host that this server does not have."""
+    """Answers 421 to requests for a host that this server does not have."""
 
     def prepare(self) -> None:
         """Refuse the request."""
@@ -82,30 +83,44 @@ def accepted_hosts(application: BokehTornado) -> str:
     """The pattern of hosts without their ports: loopback, and those whose pages may open a WebSocket."""
     origins = bokeh_settings.allowed_ws_origin() or application.websocket_origins
     names = {origin.lower().rsplit(":", 1)[0] for origin in origins}
-    # In these origins "*" alone stands for any host, and otherwise for a part of one.
+    # In these origins a lone "*" stands for any host, and any other "*" for a part of one.
     return "|".join(".*" if name == "*" else re.escape(name).replace(r"\*", "[^.]*") for name in sorted({*LOOPBACK, *names}))
 
 
 def refuse_other_hosts(application: BokehTornado) -> None:
-    """Answer requests to other hosts with status 421, as from a page elsewhere whose name was given the address of this server.
+    """Answer requests to other hosts with status 421. A foreign page could make its host name point to this server.
 
-    Probes and the collector of metrics may use any host: what they read has no data of visitors.
+    Probes and the collector of metrics may use any host, because their answers contain no data of visitors.
     """
     operated = "|".join(application.prefix + path for path, _ in ROUTES)
     application.add_handlers(f"(?!(?:{accepted_hosts(application)})$).*", [(f"(?!(?:{operated})$).*", OtherHost)])
 
 
 class PageHandler(SecurityHeaders, DocHandler):
-    """Serves the page with a nonce on its scripts, and with a signed token of its session."""
+    """Serves the page with a nonce on its scripts, and with a signed token of its session.
+
+    Pages are made one at a time. Bokeh makes all those that were asked for meanwhile in one turn of the event loop, which then
+    serves nobody else, and the first of them may be discarded as unused before it is sent.
+    """
+
+    _has_left = False
 
     async def get_session(self) -> Any:
-        """Create the session of a new token."""
-        extra = self.application_context.application.process_request(self.request)
-        use_token(self.request, issue_token(self.application, self.request, extra))
-        return await super().get_session()
+        """Create the session of a new token, unless the pages made meanwhile have taken its place."""
+        async with process_state().making_page:
+            if self._has_left:
+                raise Finish
+            extra = self.application_context.application.process_request(self.request)
+            use_token(self.request, issue_token(self.application, self.request, extra))
+            return await super().get_session()
+
+    def on_connection_close(self) -> None:
+        """Make no page for a visitor who does not wait for it."""
+        self._has_left = True
+        super().on_connection_close()
 
     def write_error(self, status_code: int, **kwargs: Any) -> None:
-        """Answer with the reason, and let browsers ask again for a page that may be served later."""
+        """Answer with the reason; browsers ask again for a page that may be served later."""
         error = kwargs.get("exc_info", (None, None))[1]
         if status_code not in RETRIED or not isinstance(error, HTTPError):
             super().write_error(status_code, **kwargs)
@@ -114,7 +129,7 @@ class PageHandler(SecurityHeaders, DocHandler):
         self.finish(refusal_page(error.reason or ""))
 
     def write(self, chunk: Any) -> None:
-        """Write a response; a page gets the nonce and the matching policy."""
+        """Write a response; a page contains the nonce and the matching policy."""
         if isinstance(chunk, str):
             nonce = new_nonce()
             self.set_security_headers(nonce)
@@ -123,7 +138,7 @@ class PageHandler(SecurityHeaders, DocHandler):
 
 
 def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) -> None:
-    """Add security headers to the handlers in the lists, and append the server's own endpoints; a second call does nothing.
+    """Add security headers to the handlers in the lists, and append the server's own endpoints; a second call has no effect.
 
     Parameters
     ----------
@@ -138,7 +153,7 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
 
 
 def _secured(handler: type) -> type:
-    """The same handler with security headers; files are compressed."""
+    """Return the same handler with security headers; files are compressed."""
     # Bokeh recognises the root handler by identity.
     if handler is RootHandler or issubclass(handler, SecurityHeaders):
         return handler

@@ -1,8 +1,8 @@
-"""Tokens of sessions, signed by this server: the page gets one, and the page's WebSocket must bring it back.
+"""Signed tokens of sessions: the page receives a token, and its WebSocket must send it back.
 
-A token has a compressed part. Bokeh signs tokens only when both of its settings are set before it is imported, and inflates
-those that are not signed, whatever their size. Here all are signed, with Bokeh's key or with a key of this server, and a token
-is inflated only when its signature is valid.
+A token has a compressed part. Bokeh signs tokens only if both of its settings are set before it is imported, and decompresses
+unsigned tokens of any size. This server signs all tokens, with Bokeh's key or with its own, and decompresses a token only if its
+signature is valid.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from app.state.permalink import PARAMETERS
 
 _SUBPROTOCOL, _TOKEN, _SESSION_ID = "bokeh", "bokeh-token", "bokeh-session-id"
 
-# Made when the server starts, before it forks: the processes of `--num-procs` share it.
+# The key is made when the server starts, before it forks, so that all processes of `--num-procs` share it.
 _own_key = generate_secret_key().encode()
 
 
@@ -30,10 +30,10 @@ def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Ma
     application
         The server's web application.
     request
-        The request for the page. The token contains the parameters of links, and cookies if there is a login; nothing else of
-        it, as the session needs nothing else.
+        The request for the page. The token contains only its link parameters, and its cookies if there is a login, because the
+        session needs nothing else.
     extra
-        More entries of the token's payload.
+        Additional entries of the token's payload.
     """
     arguments = {name: request.arguments[name][:1] for name in PARAMETERS if name in request.arguments}
     has_login = bool(application.auth_provider.endpoints)
@@ -50,20 +50,20 @@ def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Ma
 
 
 def use_token(request: HTTPServerRequest, token: str) -> None:
-    """Let Bokeh take the token for the session of a request, instead of a token or an id that the client may have sent."""
+    """Make Bokeh use this token for the session of a request, instead of a token or an id that the client may have sent."""
     request.arguments.pop(_SESSION_ID, None)
     request.arguments[_TOKEN] = [token.encode()]
 
 
 def brings_own_token(application: BokehTornado, request: HTTPServerRequest) -> bool:
-    """Whether the request for a WebSocket has a token with a valid signature; inflates nothing."""
+    """Whether the request for a WebSocket has a token with a valid signature; the token is not decompressed."""
     offered = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
     if len(offered) != 2 or offered[0] != _SUBPROTOCOL:
         return False
     try:
         return bool(check_token_signature(offered[1], _signing_key(application), signed=True))
     except (ValueError, TypeError, KeyError, AttributeError, AssertionError, RecursionError):
-        # Not a token at all.
+        # The value is not a token.
         return False
 
 

@@ -1,8 +1,8 @@
-"""From the definition of a potential to its compiled kernels.
+"""Compiled kernels of a potential, bound to its coefficients.
 
-Generated functions (`engine.integrator.source`) are shared by all potentials of the same structure, and the kernels that call
-them (`engine.integrator.kernels`) by all potentials. For each potential there are callables that pass its coefficients and the
-addresses of its generated functions.
+All potentials of the same structure share generated functions (`engine.integrator.source`), and all potentials share the kernels
+that call them (`engine.integrator.kernels`). Each potential has callables that pass its coefficients and the addresses of its
+generated functions.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from engine.integrator.source.recurrence import Definition, GeneratedCode, gener
 from engine.integrator.source.series import REACH, Setting
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
-# Cached potentials; binding the coefficients of one more of a known structure takes milliseconds.
+# Number of cached potentials; binding the coefficients of another one with a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()
-# The potentials whose functions are generated, see `_outline`.
+# Number of potentials whose generation is remembered, see `_outline`.
 _generated: set[tuple[Hashable, Setting]] = set()
 
 
@@ -47,7 +47,7 @@ def load_kernels(
     sides: tuple[int, ...] = (),
     rotation: float = 0.0,
 ) -> ModuleType:
-    """The kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
+    """Return the kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
 
     Parameters
     ----------
@@ -58,32 +58,32 @@ def load_kernels(
     reach
         Radius about the origin, above 0, that contains all orbits.
     sides
-        Of each circle at which orbits end, −1 if they end within it, 1 beyond it.
+        For each circle at which orbits end: −1 if they end inside it, 1 if they end outside.
     rotation
         Ω of the frame, finite, dimensionless.
 
     Returns
     -------
-    A module with these functions, to be called without their leading addresses and without `coefficients`. At the first use by
-    any potential of the same structure the generated functions that a kernel needs are compiled, which takes some seconds, or
-    loaded from the cache.
+    A module with these functions, to be called without their leading addresses and without `coefficients`. The generated
+    functions that a kernel needs are compiled, which takes some seconds, or loaded from the cache, when a potential of the same
+    structure first uses it.
     """
     with _lock:
         return _load(definition, Setting(channels, sides, rotation != 0.0), rotation, reach)
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
-    """Whether functions were generated for a potential of the same form and setting; to generate them takes 0.3 s."""
+    """Return whether functions were generated for a potential of the same form and setting; generating them takes 0.3 s."""
     return (_outline(definition), setting) in _generated
 
 
 class GeneratedKernel:
-    """A generated function, compiled at its first use for its types in `SIGNATURES` only.
+    """A generated function, compiled at its first use for the types in `SIGNATURES` only.
 
     Attributes
     ----------
     operations
-        Number of operations of its program; the time to compile it is proportional to this.
+        Number of operations of its program; the time to compile it is proportional to this number.
     """
 
     def __init__(self, dispatcher: Any, operations: int) -> None:
@@ -116,11 +116,11 @@ class GeneratedKernel:
 
     @property
     def py_func(self) -> Any:
-        """The Python function; compiled anew, it can be inspected, unlike code from the cache."""
+        """The Python function; compiled from it, a function can be inspected, unlike code from the cache."""
         return self._dispatcher.py_func
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call with arguments that can be cast to the types of the signature; TypeError for others."""
+        """Call with arguments that can be cast to the types of the signature; TypeError for other arguments."""
         assert self.address
         return self._dispatcher(*arguments)
 
@@ -154,7 +154,7 @@ def _load(definition: Definition, setting: Setting, rotation: float, reach: floa
     for module in _KERNEL_MODULES:
         for each, function in vars(module).items():
             if isinstance(function, Dispatcher) and function.py_func.__module__ == module.__name__:
-                # The parameters for addresses are named after the generated functions.
+                # Parameters for addresses have the names of the generated functions.
                 names = inspect.signature(function.py_func).parameters
                 needed = tuple(generated[parameter] for parameter in names if parameter in generated)
                 if needed:
@@ -163,17 +163,17 @@ def _load(definition: Definition, setting: Setting, rotation: float, reach: floa
 
 
 def _outline(definition: Definition) -> Hashable:
-    """Powers of x and y, or the graph of an expression."""
+    """Return the powers of x and y, or the graph of an expression."""
     return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 
 @functools.cache
 def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]]:
-    """Execute generated source as a module named after a hash of it; returns its name and its kernels, not yet compiled."""
+    """Execute generated source as a module named after its hash; return its name and its kernels, which are not yet compiled."""
     compiled_operations.add(code.digest, code.operations)
     name = f"kernels_{code.digest[:16]}"
     module = ModuleType(name)
-    # Numba looks here for the module of a kernel that it loads from the cache.
+    # Numba looks for the module of a kernel here when it loads the kernel from the cache.
     sys.modules[name] = module
     source = "\n\n".join(function.kernel for function in code.functions)
     linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")

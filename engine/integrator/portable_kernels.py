@@ -1,7 +1,7 @@
-"""The kernels that a visitor's browser runs, as a WebAssembly module for all potentials.
+"""A WebAssembly module with the kernels that a visitor's browser runs, for all potentials.
 
-The module depends on this version of the program and on those of Numba and LLVM only. It is built once, by this module in a
-process of its own, and kept with the compiled kernels.
+The module depends only on this version of the program and on the versions of Numba and LLVM. This module builds it once, in a
+separate process, and stores it with the compiled kernels.
 """
 
 from __future__ import annotations
@@ -67,18 +67,18 @@ KERNELS: dict[Any, Signature] = {
     random_starts.scatter_points: _void(_i1, _f1, _flag, _f2),
     random_starts.draw_at_exits: _count(*_potential, _f2, _number, _flag, _i1, _f2),
 }
-"""The kernels of the module, which names its functions after them, with the types of their results and arguments."""
+"""The kernels of the module, whose functions have the same names, with the types of their results and arguments."""
 
 _building = threading.Lock()
 
 
 def module_digest() -> str:
-    """A hash of all that the module depends on; it need not be built."""
+    """Return a hash of everything on which the module depends, without building it."""
     return program_digest()
 
 
 def kernel_module() -> bytes:
-    """The module, from the cache or built, which takes some seconds; see `engine.integrator.jit.kernel_module.lower_kernels`."""
+    """Return the module, from the cache or built in some seconds; see `engine.integrator.jit.kernel_module.lower_kernels`."""
     with _building:
         return _load_or_build()
 

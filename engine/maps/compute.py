@@ -22,13 +22,13 @@ from engine.maps.stages import OnChange, Stage, run_stages, run_to_frame
 from engine.maps.trust import TrustTest, find_unlike_neighbours
 
 LARGEST_RUN = 2**20
-"""Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""
+"""Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks and cannot be resumed."""
 
 DEEP_PIXEL = 1e-7
-"""Distance of pixels in units of the well below which a map says how many of them double precision does not support."""
+"""Distance of pixels, in units of the well, below which a map reports the share that double precision does not support."""
 
 SAMPLED_SIDE = 16
-"""About this number of pixels per side are sampled for `estimate_rounded_share`."""
+"""Approximate number of pixels per side that are sampled for `estimate_rounded_share`."""
 
 
 @shows_progress("escape map")
@@ -50,20 +50,20 @@ def compute_map(
     spec
         The request.
     on_frame
-        Called in this thread with the map so far, at increasing intervals: first coarse, then at full resolution, then with
-        longer integration times. A map of more than 2²⁰ pixels is filled block by block.
+        Called in this thread with the map so far, at increasing intervals: first at coarse resolution, then at full resolution,
+        then with longer integration times. A map of more than 2²⁰ pixels is filled block by block.
     cancel, executor, on_progress
-        Fields of `execution`, which they replace where they are given: ``execution=Execution(executor, cancel)`` is the way
-        of all long functions. They stay legal.
+        Fields of `execution`, which they replace if given. All other long functions take ``execution=Execution(executor,
+        cancel)`` instead; here both are allowed.
     resume
         An earlier map, complete or cancelled, whose spec differs at most by a smaller t_max: its orbits are continued. Maps
         computed in blocks cannot be resumed.
     execution
-        How the computation runs. When it is cancelled, the map is returned as it is, with ``complete`` False.
+        How the computation runs. When it is cancelled, the map so far is returned, with ``complete`` False.
 
     Returns
     -------
-    `EscapeMap`; a complete one has arrays that are bit-identical for every executor, interruption and resumption.
+    The `EscapeMap`. The arrays of a complete map are bit-identical for every executor, interruption and resumption.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def compute_map(
 
 
 def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> MapRun | LineStack | BlockStack:
-    """What computes a map; in units of the well unless it is one along a parameter."""
+    """Return the computation of a map, in units of the well unless the map is along a parameter."""
     keeps_states = spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
     if spec.plane.parameter is not None:
         return LineStack(spec, resume, keeps_states=keeps_states)
@@ -101,7 +101,7 @@ def _begin(spec: MapSpec, resume: EscapeMap | None, *, coarse_first: bool) -> Ma
 
 
 def _in_units_of(spec: MapSpec, found: EscapeMap) -> EscapeMap:
-    """A map of `_begin` in the units of its request."""
+    """Return a map of `_begin` in the units of its request."""
     return found if spec.plane.parameter is not None else found.restored(spec)
 
 
@@ -114,7 +114,7 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
-    """A map in units of the well, in a deep zoom with the share of pixels that double precision does not support."""
+    """Add to a map in units of the well, in a deep zoom, the share of pixels that double precision does not support."""
     pixels = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
     is_deep = result.spec.plane.parameter is None and 0.0 < min(pixels) < DEEP_PIXEL
     if not (result.complete and is_deep):
@@ -135,7 +135,7 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
 
     Yields
     ------
-    Increasing row numbers of each block; together the blocks contain every row once.
+    The increasing row numbers of each block; together the blocks contain every row once.
     """
     columns, rows = spec.resolution
     height = max(max_pixels // columns, 1)
@@ -150,7 +150,7 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
 
 
 class BlockStack:
-    """The blocks of a map of one potential while they are computed, whose orbits together need too much memory.
+    """The computation of a map of one potential, block by block, because all its orbits together need too much memory.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ class BlockStack:
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """See `Staged`: a stage computes a block."""
+        """Yield the stages, see `Staged`; each computes a block."""
         for rows in row_blocks(self.spec, self._max_pixels):
             yield partial(self._compute, rows, replace(execution, on_progress=None))
 
@@ -180,25 +180,25 @@ class BlockStack:
         self._horizon = block.horizon
 
     def progress(self) -> float:
-        """Share of the rows that are done."""
+        """Return the share of the rows that are done."""
         return self._rows_done / self.spec.resolution[1]
 
     def frame(self) -> EscapeMap:
-        """The map so far, with views of the arrays; copies would need too much memory."""
+        """Return the map so far, with views of the arrays, because copies would need too much memory."""
         stage = {"stride": 1, "horizon": self._horizon, "progress": self.progress()}
         return collect_map(self.spec, self.spec.pixel_centres(), self._arrays, **stage)
 
     def result(self) -> EscapeMap:
-        """The map so far; it has no integration state."""
+        """Return the map so far; it has no integration state."""
         return self.frame()
 
 
 def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT_EXECUTION) -> float:
-    """Estimate for which share of the pixels of a complete map double precision gives another fate or number of crossings.
+    """Estimate the share of pixels of a complete map whose fate or crossings change with the errors of double precision.
 
-    Some `SAMPLED_SIDE`² pixels, evenly spread, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only
-    errors of the integration differ. Where the outcome changes, one of the two is wrong: the share is at most the sum of both
-    shares of wrong pixels, and at least their difference.
+    About `SAMPLED_SIDE`² pixels, evenly spaced, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only
+    the errors of the integration differ. If the outcome changes, one of the two is wrong. The share of changes is therefore at
+    most the sum of both shares of wrong pixels, and at least their difference.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
 
 
 def _thinned(escape_map: EscapeMap) -> EscapeMap:
-    """Evenly spread pixels of a map, with the request of the whole map."""
+    """Return evenly spaced pixels of a map, with the request of the whole map."""
     down, right = (max(1, side // SAMPLED_SIDE) for side in escape_map.fate.shape)
     arrays = {name: getattr(escape_map, name)[down // 2 :: down, right // 2 :: right] for name in PIXEL_ARRAYS}
     x, ordinate = escape_map.x[right // 2 :: right], escape_map.ordinate[down // 2 :: down]

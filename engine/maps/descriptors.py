@@ -24,9 +24,9 @@ from engine.propagation.speed_integrals import integrate_speed
 from engine.systems.potential import Potential
 
 DEFAULT_DURATION = 10.0
-"""τ in units of the well by default, about one and a half periods of the motion in it."""
+"""Default τ in units of the well, about one and a half periods of the motion in it."""
 
-# Parts of the pixels that are computed one after the other.
+# Number of parts of the pixels that are computed one after the other.
 _PARTS = 16
 
 
@@ -54,7 +54,7 @@ class DescriptorMap(PixelAnalysis):
     power
         p.
     direction
-        Over which directions of time the integral extends.
+        The directions of time over which the integral extends.
     complete
         Whether all pixels are computed.
     """
@@ -66,11 +66,11 @@ class DescriptorMap(PixelAnalysis):
     pixel_arrays: ClassVar = {"descriptor": (np.float64, np.nan)}
 
     def __post_init__(self) -> None:
-        # A file holds a text.
+        # Files contain the direction as text.
         object.__setattr__(self, "direction", TimeDirection(self.direction))
 
     def describe(self) -> str:
-        """The integral and its range in one sentence."""
+        """Return the integral and its range in one sentence."""
         known, so_far = self.descriptor[np.isfinite(self.descriptor)], "" if self.complete else " so far"
         if not known.size:
             return f"No start has a Lagrangian descriptor{so_far}."
@@ -95,21 +95,21 @@ def compute_lagrangian_descriptor(
     ``|v|`` is the speed √(ẋ² + ẏ²) in the frame of the potential, which may rotate. M changes rapidly across the stable manifolds
     of unstable periodic orbits if it is integrated forward in time, and across the unstable ones backward.
 
-    An integral ends where its orbit crosses an exit, collides or passes the escape radius. Beyond an exit the motion has no
-    bound: in most wells orbits run to infinity within a finite time, where the integral diverges, and what they do there says
-    nothing about the well. So M also jumps where orbits begin to escape within τ.
+    An integral ends where its orbit crosses an exit, collides or passes the escape radius. Beyond an exit the motion is
+    unbounded: in most wells orbits reach infinity within a finite time, so that the integral diverges, and their motion there
+    gives no information on the well. Therefore M also jumps where orbits begin to escape within τ.
 
     Parameters
     ----------
     escape_map
         A complete map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep.
     duration
-        τ, above 0 and at most the largest t_max of `MapSpec`, dimensionless; None for 10 units of time of the well, the
+        τ, above 0 and at most the largest t_max of `MapSpec`, dimensionless; None for 10 units of time of the well, see
         `Potential.units`.
     power
         p, above 0 and at most 1.
     direction
-        ``"forward"`` from 0 to τ, ``"backward"`` from −τ to 0, or ``"both"``; the past of a map backward in time is its future.
+        ``"forward"`` from 0 to τ, ``"backward"`` from −τ to 0, or ``"both"``. For a map backward in time, forward means its past.
     on_frame
         Called in this thread with the result so far.
     execution
@@ -117,8 +117,8 @@ def compute_lagrangian_descriptor(
 
     Returns
     -------
-    `DescriptorMap`; equal to the bit for every executor. The relative error is about 1e-13 on regular orbits. Chaotic ones
-    and those that pass close to a body amplify rounding errors, to 1e-9 at most in tests with τ of 10 units of the well.
+    The `DescriptorMap`; equal to the bit for every executor. The relative error is about 1e-13 on regular orbits. Chaotic orbits
+    and orbits that pass close to a body amplify rounding errors, to at most 1e-9 in tests with τ of 10 units of the well.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def compute_lagrangian_descriptor(
     -----
     Mancho, Wiggins, Curbelo & Mendoza 2013, Commun. Nonlinear Sci. Numer. Simul. 18, 3530, integrate any bounded positive
     property of orbits, among them powers of the modulus of the velocity. Lopesino, Balibrea-Iniesta, García-Garrido, Wiggins &
-    Mancho 2017, Int. J. Bifurcation Chaos 27, 1730001, have the theory for another integrand, ``Σ |ẋ_i|^p`` over all coordinates,
+    Mancho 2017, Int. J. Bifurcation Chaos 27, 1730001, give the theory for another integrand, ``Σ |ẋ_i|^p`` over all coordinates,
     whose units differ between positions and momenta.
 
     Examples
@@ -174,14 +174,14 @@ def _checked_direction(direction: TimeDirection | str) -> TimeDirection:
 
 
 def _specs(spec: MapSpec, direction: TimeDirection) -> list[MapSpec]:
-    """The maps whose orbits go over the directions of time, in units of the well."""
+    """Return the maps whose orbits run in the directions of time, in units of the well."""
     past = replace(spec, backward=not spec.backward)
     ways = {TimeDirection.FORWARD: [spec], TimeDirection.BACKWARD: [past], TimeDirection.BOTH: [spec, past]}
     return [way.in_well_units() for way in ways[direction]]
 
 
 class _DescriptorRun:
-    """The pixels of a map of one potential, or of a line, and their integrals so far, in units of the well."""
+    """The computation of the integrals of the pixels of a map of one potential, or of a line, in units of the well."""
 
     def __init__(self, escape_map: EscapeMap, duration: float, power: float, direction: TimeDirection) -> None:
         self._given, self._duration, self._power, self._direction = escape_map.spec, duration, power, direction
@@ -193,7 +193,7 @@ class _DescriptorRun:
         self._done = 0
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """See `Staged`: a stage computes a part of the pixels."""
+        """Yield the stages, see `Staged`; each computes a part of the pixels."""
         if not self._pixels.size:
             return
         for part in np.array_split(self._pixels, min(_PARTS, self._pixels.size)):
@@ -214,11 +214,11 @@ class _DescriptorRun:
         return integrate_speed(spec.potential, curves, states, curve_row, duration, self._power, execution=execution)
 
     def progress(self) -> float:
-        """Share of the pixels that are computed."""
+        """Return the share of the pixels that are computed."""
         return self._done / max(self._pixels.size, 1)
 
     def frame(self) -> DescriptorMap:
-        """The result so far."""
+        """Return the result so far."""
         units, power = self._given.potential.units, self._power
         values = self._values * (units.length**power * units.time ** (1.0 - power))
         self._mirror.copy_to_seconds(values)

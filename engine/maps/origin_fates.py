@@ -1,4 +1,4 @@
-"""Origin and fate of orbits: the outcome of each one backward in time, such as the channel it entered by, and forward."""
+"""Origins and fates of orbits: their outcomes backward in time, such as the channels by which they entered, and forward."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from engine.maps.spec import MapSpec
 from engine.propagation.fates import Fate
 from engine.systems.outcomes import Exit
 
-# What orbits do at the outcomes of each array.
+# The verbs for the outcomes in each array.
 _VERBS = {"origin": "entered", "fate": "leaves"}
 
 
@@ -49,14 +49,14 @@ class OriginFateMap(PixelAnalysis):
         return [outcome.label for outcome in self.spec.outcomes]
 
     def count_passages(self) -> np.ndarray:
-        """(outcomes + 1, outcomes + 1) int64: number of starts by origin (row) and fate (column); 0 is bounded, k outcome k."""
+        """Return (outcomes + 1, outcomes + 1) int64: number of starts by origin (row) and fate (column), 0 for bounded."""
         size = len(self.spec.outcomes) + 1
         interior = (self.origin >= 0) & (self.fate >= 0)
         pairs = self.origin[interior].astype(np.int64) * size + self.fate[interior]
         return np.bincount(pairs, minlength=size * size).reshape(size, size)
 
     def describe(self) -> str:
-        """Shares of the passages in one sentence."""
+        """Describe the shares of the passages in one sentence."""
         counts = self.count_passages()
         total = max(int(counts.sum()), 1)
         only_exits = all(outcome.kind is Exit for outcome in self.spec.outcomes)

@@ -1,7 +1,7 @@
-"""Maps along a parameter: each row, or each column, is a map of its own with its own potential.
+"""Maps along a parameter, in which each row, or each column, is a map with its own potential.
 
-Such a line has the units of its well and its own exits, and is computed as any map of its potential. What is computed for a
-whole map is computed line by line.
+Such a line has the units of its well and its own exits, and is computed like any map of its potential. The lines of a whole map
+are computed one by one.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from engine.slices.axes import HeldParameter, highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family
 from engine.slices.window import Window
 
-# Time in units of the well up to which a line is one task of the executor, of some 50 ms at most. Tiles of a line, with threads
-# that wait for them, would take three times as long; orbits that are still inside are worth them.
+# Time, in units of the well, up to which a line is one task of the executor, of about 50 ms at most. Dividing a line into tiles,
+# and threads that wait for them, would take three times as long, which pays only for orbits that are still inside.
 _FIRST_HORIZON = 1000.0
-# Distances of the lines of the first frames.
+# Strides between the lines of the first frames.
 _STRIDES = (8, 4, 2, 1)
 # The arrays whose positive codes are numbers of outcomes.
 _NUMBERED = ("fate", "outside")
@@ -50,11 +50,11 @@ class Line:
     Attributes
     ----------
     spec
-        The map that it is.
+        The map of the line.
     place
-        Its index in the arrays of the whole map.
+        The index of the line in the arrays of the whole map.
     numbers
-        (outcomes + 1,) the fate on the whole map of each of its fates; entry 0 is 0.
+        (outcomes + 1,) the fate on the whole map for each fate of the line; entry 0 is 0.
     """
 
     spec: MapSpec
@@ -62,7 +62,7 @@ class Line:
     numbers: np.ndarray
 
     def of(self, escape_map: EscapeMap) -> EscapeMap:
-        """This line of a map, with its own numbers of outcomes, and with its integration state if the map has one."""
+        """Return this line of a map, with the outcome numbers of the line, and with its integration state if the map has one."""
         own = np.zeros(int(self.numbers.max(initial=0)) + 1, np.int8)
         own[self.numbers] = np.arange(self.numbers.size)
         arrays: dict[str, Any] = {name: getattr(escape_map, name)[self.place] for name in PIXEL_ARRAYS}
@@ -78,7 +78,7 @@ class Line:
 
 
 def find_lines(spec: MapSpec) -> list[Line | None]:
-    """The lines of a map along a parameter, in rising order of it; None where the system has no potential."""
+    """Return the lines of a map along a parameter, in increasing order of it; None where the system has no potential."""
     axis, place = spec.plane.parameter, spec.plane.parameter_axis
     assert axis is not None
     window, family = spec.find_window(), parameter_family(axis)
@@ -104,7 +104,7 @@ def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k:
 
 
 class LineStack:
-    """The lines of a map while they are computed.
+    """The computation of the lines of a map along a parameter.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ class LineStack:
     resume
         An earlier map to continue from.
     keeps_states
-        Whether the states of orbits are kept, for which large maps need too much memory.
+        Whether the states of orbits are kept; large maps would need too much memory.
     """
 
     def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, *, keeps_states: bool = True) -> None:
@@ -125,14 +125,14 @@ class LineStack:
         self._arrays = empty_arrays(PIXEL_ARRAYS, spec.resolution[::-1])
         for k in range(self._count):
             if k not in self._lines:
-                # There is no system of this value.
+                # The system has no potential at this value.
                 here = (slice(None), k) if spec.plane.parameter_axis == 0 else k
                 self._arrays["fate"][here], self._arrays["started"][here] = Fate.FORBIDDEN, True
             elif resume is not None:
                 self._put(k, self._lines[k].of(resume))
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """See `Staged`: a stage integrates the orbits of some lines to a horizon."""
+        """Yield the stages, see `Staged`; each integrates the orbits of some lines to a horizon."""
         first, last = _FIRST_HORIZON * self.spec.potential.units.time, self.spec.t_max
         is_divided = first < last and self._keeps_states and not self._found
         for horizon in (first, last) if is_divided else (last,):
@@ -141,7 +141,7 @@ class LineStack:
             self._horizon = horizon
 
     def _refinements(self) -> Iterator[tuple[int, list[int]]]:
-        """(stride, lines): coarse to fine, each line once."""
+        """Yield (stride, lines), coarse to fine, with each line once."""
         seen: set[int] = set()
         for stride in _STRIDES:
             chosen = [k for k in np.unique(representative_indices(self._count, stride)).tolist() if k not in seen]
@@ -177,18 +177,18 @@ class LineStack:
                 array[line.place] = np.where(open_ended, value, array[line.place])
 
     def progress(self) -> float:
-        """Share of the work done, averaged over the lines."""
+        """Return the share of the work done, averaged over the lines."""
         done = (found.progress * min(1.0, found.spec.t_max / self.spec.t_max) for found in self._found.values())
         return sum(done) / len(self._lines) if self._lines else 1.0
 
     def frame(self) -> EscapeMap:
-        """The map so far."""
+        """Return the map so far."""
         arrays = {name: array.copy() for name, array in self._arrays.items()}
         stage = {"stride": self._stride, "horizon": self._horizon, "progress": self.progress()}
         return collect_map(self.spec, self.spec.pixel_centres(), arrays, **stage)
 
     def result(self) -> EscapeMap:
-        """The map so far, with the integration state for a later `resume`."""
+        """Return the map so far, with the integration state for a later `resume`."""
         frame = self.frame()
         if not self._keeps_states:
             return frame
@@ -211,26 +211,26 @@ def analyse_map[Analysis: PixelAnalysis](
     execution: Execution,
     **choices: Any,
 ) -> Analysis:
-    """Analyse a complete map; one along a parameter line by line.
+    """Analyse a complete map; a map along a parameter is analysed line by line.
 
     Parameters
     ----------
     escape_map
         The map.
     begin
-        Returns what computes the analysis of a map of one potential, or of a line, which is given with its place.
+        A function that begins the analysis of a map of one potential, or of a line with its place, and returns its computation.
     kind
-        What the analysis is.
+        The class of the analysis.
     **choices
         Fields of the analysis that are the same for all lines.
     on_frame
-        Called with the analysis so far, see `run_stages`, and with the complete one.
+        Called with the analysis so far, see `run_stages`, and with the complete analysis.
     execution
         How the computation runs.
 
     Returns
     -------
-    The analysis of the map, complete when all its lines are.
+    The analysis of the map; it is complete when those of all its lines are complete.
     """
     if escape_map.spec.plane.parameter is None:
         return run_to_frame(begin(escape_map, ALL_PIXELS), execution, on_frame)
@@ -238,7 +238,7 @@ def analyse_map[Analysis: PixelAnalysis](
 
 
 class _LineAnalyses[Analysis: PixelAnalysis]:
-    """The analyses of the lines of a map, which are computed at once; see `analyse_map`."""
+    """The analyses of the lines of a map, which run concurrently; see `analyse_map`."""
 
     def __init__(
         self,
@@ -253,7 +253,7 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
         self._finished, self._complete = 0, True
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """See `Staged`: all lines are one stage."""
+        """Yield the stages, see `Staged`; all lines form one stage."""
         yield partial(self._analyse, execution, on_change)
 
     def _analyse(self, execution: Execution, on_change: OnChange) -> None:
@@ -271,18 +271,18 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
         return run_to_frame(self._begin(line.of(self._map), line.place), execution)
 
     def progress(self) -> float:
-        """Share of the lines that are finished."""
+        """Return the share of the lines that are finished."""
         return self._finished / max(len(self._lines), 1)
 
     def frame(self) -> Analysis:
-        """The analysis so far."""
+        """Return the analysis so far."""
         arrays: dict[str, Any] = {name: read_only(values.copy()) for name, values in self._arrays.items()}
         complete = self._complete and self._finished == len(self._lines)
         return self._kind(spec=self._map.spec, complete=complete, **arrays, **self._choices)
 
 
 def _as_finished[Key, Found](running: dict[Future[Found], Key], execution: Execution) -> Iterator[tuple[Key, Found]]:
-    """What has been computed, one after another; without calls that are dropped when the computation is cancelled."""
+    """Yield results as they are finished; calls that are dropped when the computation is cancelled are left out."""
     for future in as_completed(running):
         found = execution.collect(future)
         if found is not None:
@@ -290,17 +290,17 @@ def _as_finished[Key, Found](running: dict[Future[Found], Key], execution: Execu
 
 
 def _coordinating_threads() -> ThreadPoolExecutor:
-    """Threads for lines that are computed at once. They share the executor: each waits for its tiles most of the time."""
+    """Return threads for lines that are computed concurrently. They share the executor, and mostly wait for their tiles."""
     return ThreadPoolExecutor(2 * count_cores(), thread_name_prefix="lines")
 
 
 def _continues(earlier: EscapeMap | None) -> bool:
-    """Whether a longer time can change a line."""
+    """Return whether a longer time can change a line."""
     return earlier is None or not earlier.started.all() or bool(earlier.continued_pixels.size)
 
 
 def _compute_line(line: Line, t_max: float, earlier: EscapeMap | None, execution: Execution = SERIAL_EXECUTION) -> EscapeMap:
-    """A line integrated up to a time; with its integration state."""
+    """Return a line integrated up to a time, with its integration state."""
     spec = replace(line.spec, t_max=t_max)
     run = MapRun(spec.in_well_units(), None if earlier is None else earlier.in_well_units(), coarse_first=False)
     try:

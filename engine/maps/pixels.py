@@ -1,4 +1,4 @@
-"""Pixels of a map, numbered row by row from 0: mirror images, and codes that an analysis assigns to pixels."""
+"""Pixels of a map, numbered row by row from 0; their mirror images; the codes that an analysis assigns to them."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ class PixelAnalysis(MapResult):
     spec: MapSpec
     complete: bool = field(default=True, kw_only=True)
     pixel_arrays: ClassVar[PixelArrays] = {}
-    """The arrays with a value for each pixel, as `empty_arrays` takes them."""
+    """The arrays with a value for each pixel, in the form that `empty_arrays` takes."""
     kinds: ClassVar[dict[str, type[PixelAnalysis]]] = {}
-    """All analyses by the names of their classes, which files contain."""
+    """All classes of analyses by name; files contain the name."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         PixelAnalysis.kinds[cls.__name__] = cls
 
     def to_xarray(self) -> xr.Dataset:
-        """The values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
-        # Slow to import, and seldom used.
+        """Return the values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
+        # The import is slow and seldom needed.
         import xarray as xr
 
         x, ordinate = self.spec.pixel_centres()
@@ -63,7 +63,7 @@ class PixelAnalysis(MapResult):
 
 
 def code_share(codes: np.ndarray, *counted: int) -> float:
-    """Share of the codes that equal one of `counted`; NaN if there are no codes."""
+    """Return the share of the codes that equal one of `counted`; NaN if there are no codes."""
     return float(np.mean(np.isin(codes, counted))) if codes.size else float("nan")
 
 
@@ -91,12 +91,12 @@ class MirrorPixels:
         self.partner = np.arange(x.size * ordinate.size) if partner is None else partner
 
     def firsts_among(self, pixels: np.ndarray) -> np.ndarray:
-        """Those of the pixels (n,) that are the first of their pair."""
+        """Return those of the pixels (n,) that are the first of their pair."""
         firsts: np.ndarray = pixels[pixels <= self.partner[pixels]]
         return firsts
 
     def firsts_of(self, pixels: np.ndarray) -> np.ndarray:
-        """The first pixel of the pair of each of the pixels (n,), which are sorted and distinct, as is the result."""
+        """Return the first pixel of the pair of each pixel (n,); the pixels are sorted and distinct, and so is the result."""
         if not self.symmetric:
             return pixels
         is_first = np.zeros(self.partner.size, bool)
@@ -104,20 +104,20 @@ class MirrorPixels:
         return np.flatnonzero(is_first)
 
     def copy_to_seconds(self, values: np.ndarray) -> None:
-        """In an array (rows, columns), overwrite the second pixel of each pair by the first."""
+        """Overwrite the second pixel of each pair by the first in an array (rows, columns)."""
         seconds = np.flatnonzero(self.partner < np.arange(self.partner.size))
         values.ravel()[seconds] = values.ravel()[self.partner[seconds]]
 
 
 class PixelCodes:
-    """Codes of a map's pixels while an analysis decides them; the second of two mirror images gets the code of the first.
+    """Codes of the pixels of a map while an analysis decides them; the second of two mirror images gets the code of the first.
 
     Parameters
     ----------
     escape_map
         The map.
     codes
-        (rows, columns) codes known from the map alone, and `pending` where the analysis has to decide.
+        (rows, columns) codes that follow from the map alone, and `pending` where the analysis has to decide.
     pending
         The code of undecided pixels.
 
@@ -137,12 +137,12 @@ class PixelCodes:
         self._codes.ravel()[pixels] = code
 
     def mirrored(self, values: np.ndarray) -> np.ndarray:
-        """A read-only copy of values (rows, columns), in which the second pixel of each pair has that of the first."""
+        """Return a read-only copy of values (rows, columns) in which the second pixel of each pair has the value of the first."""
         copied = values.copy()
         self._mirror.copy_to_seconds(copied)
         return read_only(copied)
 
     def snapshot(self) -> tuple[np.ndarray, bool]:
-        """A read-only copy of the codes (rows, columns), and whether all pixels are decided."""
+        """Return a read-only copy of the codes (rows, columns), and whether all pixels are decided."""
         codes = self.mirrored(self._codes)
         return codes, not np.any(codes == self._pending)

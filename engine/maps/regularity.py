@@ -20,8 +20,8 @@ from engine.propagation.deviation_vectors import attach_deviations, propagate_de
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
 
-# SALI is computed up to these times, with a test for tori after each: the SALI of strongly chaotic orbits falls early, most
-# regular orbits are found to be on a torus, and only the few remaining ones are integrated to t_max.
+# SALI is computed up to these times, with a test for tori after each. The SALI of strongly chaotic orbits falls early, and most
+# regular orbits are found to be on a torus, so that only few orbits are integrated to t_max.
 _SALI_TIMES = (1000.0, 5000.0, 20000.0)
 # Time after which the remaining orbits are judged again.
 _INTERVAL = 5000.0
@@ -29,7 +29,7 @@ _INTERVAL = 5000.0
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RegularityMap(PixelAnalysis):
-    """Which bounded orbits of a map are regular and which chaotic, complete or in progress.
+    """Character of the bounded orbits of a map, regular or chaotic, complete or in progress.
 
     Attributes
     ----------
@@ -38,9 +38,9 @@ class RegularityMap(PixelAnalysis):
     character
         (rows, columns) int8 `Regularity` codes, read-only.
     sali
-        (rows, columns) the smallest SALI of each bounded orbit until it was judged, 0 to √2, looked at every few units of time:
-        at most 1e-7 if the orbit is chaotic, otherwise larger. NaN for other pixels, and for quasi-periodic
-        orbits by the map. Read-only.
+        (rows, columns) the smallest SALI of each bounded orbit until it was judged, 0 to √2, sampled every few units of time: at
+        most 1e-7 if the orbit is chaotic, otherwise larger. NaN for other pixels, and for orbits that are quasi-periodic on the
+        map. Read-only.
     complete
         Whether every bounded pixel is judged.
     """
@@ -56,7 +56,7 @@ class RegularityMap(PixelAnalysis):
         return self.share_of(Regularity.CHAOTIC)
 
     def describe(self) -> str:
-        """The share of chaotic orbits, or how many are left to judge, in one sentence."""
+        """Describe the share of chaotic orbits, or of orbits still to be judged, in one sentence."""
         bounded = self.character[self.character != Regularity.NOT_APPLICABLE]
         if not bounded.size:
             return "No orbit is bounded."
@@ -66,7 +66,7 @@ class RegularityMap(PixelAnalysis):
         return f"{self.chaotic_share:.2%} of the bounded orbits are chaotic, {unsure:.2%} show no sign of chaos until t_max."
 
     def share_of(self, character: Regularity) -> float:
-        """Share of orbits of a character among the bounded ones judged; NaN if there are none."""
+        """Return the share of orbits of a character among the bounded ones judged; NaN if there are none."""
         judged = ~np.isin(self.character, (Regularity.NOT_APPLICABLE, Regularity.NOT_JUDGED))
         return code_share(self.character[judged], character)
 
@@ -81,10 +81,10 @@ def compute_regularity(
 ) -> RegularityMap:
     """Judge the bounded orbits of a complete map as regular or chaotic.
 
-    Orbits with evidence of a torus are regular. Another orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014,
-    eq. 9). It is regular if its Birkhoff averages show a torus, over windows on the way or over both halves of the orbit. Another
-    one that reaches t_max shows no sign of chaos until then; Zotos (2014) calls it regular. An orbit bounded on the map only by
-    rounding, which runs off to infinity here, is judged by its smallest SALI until then.
+    Orbits with evidence of a torus are regular. Another orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9).
+    It is regular if its Birkhoff averages show a torus, over windows before t_max or over both halves of the orbit. Any other
+    orbit shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only because of
+    rounding, but runs to infinity here, is judged by its smallest SALI until then.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def compute_regularity(
 
 
 class _RegularityClassification:
-    """The orbits of a map not judged yet, with their deviation vectors, and the time they have reached, in units of the well."""
+    """Orbits of a map not judged yet, with their deviation vectors and the time that they have reached, in units of the well."""
 
     def __init__(self, given: EscapeMap) -> None:
         self._given_spec, escape_map = given.spec, given.in_well_units()
@@ -128,7 +128,7 @@ class _RegularityClassification:
         self._time = 0.0
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """See `Staged`: a stage judges orbits by one criterion, once they are integrated as long as it needs."""
+        """Yield the stages, see `Staged`; each judges orbits by one criterion, after integrating them as long as it needs."""
         for time, window in zip(_SALI_TIMES, WINDOWS, strict=False):
             if 2.0 * time > self._spec.t_max:
                 break
@@ -165,17 +165,17 @@ class _RegularityClassification:
         self._judge(np.ones(self._pixels.size, bool), Regularity.NO_SIGN_OF_CHAOS)
 
     def _judge(self, which: np.ndarray, character: Regularity) -> None:
-        """Assign a code to the orbits in the mask `which`, and drop them."""
+        """Assign a code to the orbits in the mask `which`, and drop these orbits."""
         self._codes.assign(self._pixels[which], character)
         self._sali[self._pixels[which]] = self._orbits[which, -1]
         self._pixels, self._orbits = self._pixels[~which], self._orbits[~which]
 
     def progress(self) -> float:
-        """Share of the orbits that are judged."""
+        """Return the share of the orbits that are judged."""
         return 1.0 - self._pixels.size / max(self._codes.pixels.size, 1)
 
     def frame(self) -> RegularityMap:
-        """The result so far."""
+        """Return the result so far."""
         codes, complete = self._codes.snapshot()
         sali = self._codes.mirrored(self._sali.reshape(codes.shape))
         return RegularityMap(self._given_spec, codes, sali, complete=complete)

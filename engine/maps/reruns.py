@@ -1,4 +1,4 @@
-"""Orbits of a map that are integrated once more, from starts shifted a little or with another tolerance."""
+"""Second integrations of orbits of a map, from slightly shifted starts or with another tolerance."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from engine.propagation.batch import OrbitBatch
 from engine.propagation.fates import Fate
 
 SHIFT = 1e-11
-"""Shift of a start along x and along the ordinate in units of the well: far above rounding errors, far below a pixel."""
+"""Shift of a start along x and along the ordinate, in units of the well: far above rounding errors and far below a pixel."""
 
 LARGEST_SHARE_OF_PIXEL = 0.01
 """Largest shift as a share of the pixel, which limits it in deep zooms."""
 
 SECOND_TOLERANCE = 10.0 * TOLERANCE
-"""Tolerance of the second rerun: steps are a sixth longer, so that their errors are independent of the map's."""
+"""Tolerance of the second rerun. Its steps are a sixth longer, so that its errors are independent of those of the map."""
 
 LARGEST_DELAY = 0.01
 """Largest change of an escape time by a rerun, in units of the well.
 
-The escape time tends to infinity at the boundary of a basin, like the logarithm of the distance. A shift by the share d of that
-distance changes it by about d, so that at this limit shifts of the same size in other directions keep within the basin.
+Near the boundary of a basin the escape time diverges like the logarithm of the distance. A shift by a fraction d of that distance
+changes it by about d. Below this limit, shifts of the same size in other directions therefore stay within the basin.
 """
 
 
@@ -33,8 +33,9 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     """Shift points of the plane in two directions, so that mirror images stay mirror images.
 
     The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
-    first direction is towards 0 in both coordinates, so that the points stay inside, and the second in the abscissa alone. An
-    axis h is not shifted, so that the energy and its exits do not change: the other one is shifted towards 0, then away from it.
+    first shift is towards 0 in both coordinates, so that the points stay inside; the second changes the abscissa only. An axis h
+    is not shifted, so that the energy and its exits do not change; then the other coordinate is shifted first towards 0 and
+    second away from it.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
 
     Returns
     -------
-    For each direction (n,) x and (n,) ordinate of the shifted points.
+    For each direction, (n,) x and (n,) ordinate of the shifted points.
     """
     window, (columns, rows) = spec.find_window(), spec.resolution
     sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
@@ -61,19 +62,19 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
 
 def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
     distance = np.maximum(min(SHIFT, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
-    # A start on y = 0 is shifted up: from below it would cross y = 0 once more.
+    # A start on y = 0 is shifted up, because from below it would cross y = 0 once more.
     shifted: np.ndarray = np.where(coordinate > 0.0, coordinate - distance, coordinate + distance)
     return shifted
 
 
 def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-    """The points themselves."""
+    """Return the points unchanged."""
     return ((x, ordinate),)
 
 
 @dataclass(frozen=True)
 class Perturbation:
-    """How orbits are integrated again: the starts and the tolerance of each rerun, and the largest change of escape times."""
+    """Parameters of the reruns: the starts and the tolerance of each, and the largest change of escape times."""
 
     starts: Callable[[MapSpec, np.ndarray, np.ndarray], tuple[tuple[np.ndarray, np.ndarray], ...]]
     tolerances: tuple[float, ...]
@@ -86,7 +87,7 @@ SAME_STARTS = Perturbation(_same_starts, (SECOND_TOLERANCE,), np.inf)
 
 @dataclass(frozen=True, eq=False)
 class Rerun:
-    """The orbits (n,) of the tested pixels, integrated once more, with their outcomes on the map."""
+    """A second integration of the orbits (n,) of the tested pixels, with their outcomes on the map."""
 
     batch: OrbitBatch
     tolerance: float
@@ -96,12 +97,12 @@ class Rerun:
     escape_time: np.ndarray
 
     def is_decided(self) -> np.ndarray:
-        """(n,) bool: the orbit has a fate."""
+        """Return (n,) bool: whether the orbit has a fate."""
         decided: np.ndarray = self.batch.fate != Fate.NOT_COMPUTED
         return decided
 
     def has_changed(self) -> np.ndarray:
-        """(n,) bool: the outcome differs from the map's, or will, as the orbit already has more crossings."""
+        """(n,) bool: whether the outcome differs from the map's, or must differ because there are already more crossings."""
         batch, escaped = self.batch, self.fate >= 1
         other_fate = self.is_decided() & (batch.fate != self.fate)
         other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 PixelArrays = Mapping[str, tuple[type, float]]
-"""Names of arrays with a value for each pixel, with their data types and the values of pixels not computed."""
+"""Names of arrays with a value for each pixel, with their data types and the values of pixels that are not computed."""
 
 PIXEL_ARRAYS: PixelArrays = {
     "fate": (np.int8, Fate.NOT_COMPUTED),
@@ -40,15 +40,15 @@ PIXEL_ARRAYS: PixelArrays = {
 
 
 def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
-    """Arrays without any computed pixels, by name."""
+    """Return arrays by name in which no pixel is computed."""
     return {name: np.full(shape, value, dtype) for name, (dtype, value) in names.items()}
 
 
 type MapLike = EscapeMap | xr.Dataset
-"""A map as measures and analyses take it: an `EscapeMap`, or the dataset of one, such as one of the maps of a sweep."""
+"""A map as measures and analyses accept it: an `EscapeMap`, or its dataset, such as a map of a sweep."""
 
 NOTED_SHARE = 0.01
-"""Share of the interior pixels that double precision does not support from which a map says so."""
+"""Share of the interior pixels not supported by double precision from which a map reports it."""
 
 
 @with_former_fields
@@ -65,17 +65,17 @@ class EscapeMap(MapResult):
     fate, escape_time, crossings, energy_error
         As in `Outcomes`; undecided pixels are `Fate.NOT_COMPUTED`.
     evidence
-        int8, the `Evidence` of each bounded orbit: why it is called bounded. Crossings and energy error of an orbit bounded
-        on evidence refer to the time up to which it was integrated.
+        int8, the `Evidence` of each bounded orbit: the reason why it is called bounded. Crossings and energy error of an orbit
+        bounded on evidence refer to the time up to which it was integrated.
     outside
-        int8, the number of the outcome at which the start lies, as in `fate`: beyond an exit, in a disc, or beyond the escape
+        int8, the number of the outcome of a start that is outside, as in `fate`: beyond an exit, in a disc, or beyond the escape
         radius; 0 inside.
     stride
-        At least one pixel of each square of `stride` pixels a side has been started; 1 when all have.
+        In each square of `stride` pixels a side, at least one pixel has been started; 1 if all pixels have been started.
     horizon
         Time up to which orbits are integrated in the current stage; t_max in the last stage.
     progress
-        Share of the work done, 0 to 1; an undecided orbit counts by the share of t_max it has covered.
+        Share of the work done, 0 to 1; an undecided orbit counts by the share of t_max up to which it is integrated.
     complete
         Whether every pixel is decided.
     started
@@ -83,8 +83,8 @@ class EscapeMap(MapResult):
     batch
         State of the orbits `continued_pixels` for ``resume``, in units of the well; None in frames.
     rounded_share
-        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support:
-        their outcome changes with the errors of the integration; else None.
+        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support,
+        because their outcome changes with the errors of the integration; otherwise None.
 
     Examples
     --------
@@ -117,7 +117,7 @@ class EscapeMap(MapResult):
     }  # fmt: skip
 
     def numbers(self) -> dict[str, Any]:
-        """The request, and the share of each outcome among the interior starts."""
+        """Return the request, and the share of each outcome among the interior starts."""
         spec = self.spec
         made_by = {"potential": spec.potential.name, "plane": spec.plane.title, "energy": str(spec.energy), "t_max": spec.t_max}
         shares = self.fractions().items()
@@ -131,7 +131,7 @@ class EscapeMap(MapResult):
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """What fates from 1 on are."""
+        """The outcomes with the fates 1, 2, …"""
         return self.spec.outcomes
 
     @property
@@ -158,13 +158,13 @@ class EscapeMap(MapResult):
 
     @property
     def worst_energy_error(self) -> float:
-        """Largest relative energy error of the decided orbits; NaN if there are none."""
+        """Largest relative energy error of the decided orbits; NaN if no orbit is decided."""
         errors = self.energy_error[np.isfinite(self.energy_error)]
         return float(errors.max()) if errors.size else float("nan")
 
     @property
     def is_rounded(self) -> bool:
-        """Whether double precision does not support 1 % of the pixels or more."""
+        """Whether double precision does not support at least 1 % of the pixels."""
         return self.rounded_share is not None and self.rounded_share >= NOTED_SHARE
 
     @property
@@ -179,28 +179,28 @@ class EscapeMap(MapResult):
             raise ValueError(f"{name}: the map is not complete, its progress is {self.progress:.1%}; must be a complete map")
 
     def in_well_units(self) -> EscapeMap:
-        """The same map with coordinates, energies and times in units of the well, in which its `batch` always is."""
+        """Return the map with coordinates, energies and times in units of the well; its `batch` is always in these units."""
         units, spec = self.spec.potential.units, self.spec.in_well_units()
         x_unit, ordinate_unit = self.spec.plane.axis_units(units)
         return replace(units.inverse.restore(self), spec=spec, x=self.x / x_unit, ordinate=self.ordinate / ordinate_unit)
 
     def restored(self, spec: MapSpec) -> EscapeMap:
-        """This map, computed in units of the well, in the units of the request from which it was made."""
+        """Convert this map from units of the well to the units of the request from which it was made."""
         return replace(spec.plane.restore(self, spec.potential.units), spec=spec)
 
     def coordinates(self, pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) x and (n,) ordinate of the centres of pixels (n,), which are numbered row by row from 0."""
+        """Return (n,) x and (n,) ordinate of the centres of pixels (n,), which are numbered row by row from 0."""
         rows, columns = np.divmod(pixels, self.x.size)
         return self.x[columns], self.ordinate[rows]
 
     def fractions(self, *, count_outside: bool = False) -> dict[int, float]:
-        """Share of the starts for each of `MapSpec.outcomes`, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
+        """Return the share of the starts for each of `MapSpec.outcomes`, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
 
         Parameters
         ----------
         count_outside
-            Whether outside starts count as escaped at once at the outcome they lie at, as in the percentages of Zotos
-            (2014); the shares then depend on the window. By default they are shares of the interior starts.
+            Whether outside starts count as escaped at the outcome of their place, as in the percentages of Zotos (2014); the
+            shares then depend on the window. By default, the shares are those of the interior starts.
         """
         fate = self.fate
         if checked_flag("count_outside", count_outside):
@@ -208,12 +208,12 @@ class EscapeMap(MapResult):
         return outcome_shares(fate, self.spec.outcomes)
 
     def thinned(self) -> tuple[dict[str, np.ndarray], Window]:
-        """fate, escape_time, crossings and evidence of one started pixel per square of `stride` pixels a side.
+        """Return fate, escape_time, crossings and evidence of one started pixel per square of `stride` pixels a side.
 
         Returns
         -------
-        The arrays, of (rows, columns) / `stride` rounded up, and the window they cover. It may extend beyond the map's window by
-        less than one square, as the last squares may be incomplete.
+        The arrays, of (rows, columns) / `stride` rounded up, and the window that they cover. It can extend beyond the window of
+        the map by less than one square, because the last squares may be incomplete.
         """
         names = ("fate", "escape_time", "crossings", "evidence")
         if self.stride == 1:
@@ -226,8 +226,8 @@ class EscapeMap(MapResult):
         return arrays, Window(window.x_low, x_high, window.ordinate_low, high)
 
     def to_xarray(self) -> xr.Dataset:
-        """The map as a dataset with named axes, units and provenance, which can be written as NetCDF."""
-        # Slow to import, and seldom used.
+        """Return the map as a dataset with named axes, units and provenance, which can be written as NetCDF."""
+        # The import is slow and seldom needed.
         import xarray as xr
 
         abscissa, ordinate = self.spec.plane.axis_names
@@ -249,7 +249,7 @@ class EscapeMap(MapResult):
         return xr.Dataset(variables, coordinates, attributes)
 
     def provenance(self) -> dict[str, Any]:
-        """How the map was made, in plain values: request, integrator, version, worst energy error, pixels per fate code."""
+        """Return the provenance of the map in plain values: request, integrator, version, worst energy error, pixels per fate."""
         codes, counts = np.unique(self.fate, return_counts=True)
         return {
             **self.spec.provenance(),
@@ -263,7 +263,7 @@ class EscapeMap(MapResult):
 def collect_map(
     spec: MapSpec, centres: tuple[np.ndarray, np.ndarray], arrays: Mapping[str, np.ndarray], **stage: Any
 ) -> EscapeMap:
-    """A map with read-only views of `PIXEL_ARRAYS`; `stage` is its `stride`, `horizon` and `progress`."""
+    """Return a map with read-only views of `PIXEL_ARRAYS`; `stage` is its `stride`, `horizon` and `progress`."""
     x, ordinate = centres
     complete = bool(arrays["started"].all() and not np.any(arrays["fate"] == Fate.NOT_COMPUTED))
     pixels: dict[str, Any] = {name: read_only(array.reshape(ordinate.size, x.size)) for name, array in arrays.items()}
@@ -271,7 +271,7 @@ def collect_map(
 
 
 def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, float]:
-    """Share of the interior starts among fates of any shape that have each outcome, by its code; 0 without interior starts."""
+    """Return the share of each outcome, by code, among the interior starts of fates of any shape; 0 without interior starts."""
     interior = fate[find_interior(fate)]
     ends = (code for code, outcome in enumerate(outcomes, 1) if outcome.occurs)
     codes = (*ends, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
@@ -279,23 +279,23 @@ def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, f
 
 
 def find_interior(fate: np.ndarray) -> np.ndarray:
-    """bool array of the same shape: starts that are neither forbidden nor outside."""
+    """Return a bool array of the same shape: whether starts are neither forbidden nor outside."""
     interior: np.ndarray = (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
     return interior
 
 
 def representative_indices(size: int, stride: int) -> np.ndarray:
-    """(size,) for each row or column, the one computed first in its block of `stride`: the middle, or the last one there is."""
+    """Return (size,) for each row or column the first one computed in its block of `stride`: the middle, or the last one."""
     return np.minimum(np.arange(size) // stride * stride + stride // 2, size - 1)
 
 
 def as_map(name: str, value: Any) -> EscapeMap:
-    """A map, given as one or as its dataset: `EscapeMap.to_xarray`, a file, or ``dataset.sel(h=0.3)`` of a sweep.
+    """Return a map, given as one or as its dataset: `EscapeMap.to_xarray`, a file, or ``dataset.sel(h=0.3)`` of a sweep.
 
     Raises
     ------
     ValueError
-        If it is neither, or a dataset of several maps; `name` is the parameter.
+        If it is neither of them, or a dataset of several maps; the message contains `name` as the parameter.
     """
     if isinstance(value, EscapeMap):
         return value
@@ -312,7 +312,7 @@ def as_map(name: str, value: Any) -> EscapeMap:
 
 
 def read_map(dataset: xr.Dataset) -> EscapeMap:
-    """The map of a dataset. It has no integration state, so that it cannot be resumed."""
+    """Return the map of a dataset. It has no integration state, so that it cannot be resumed."""
     spec = read_spec(dataset)
     abscissa, ordinate = spec.plane.axis_names
     arrays: dict[str, Any] = {name: read_only(np.array(dataset[name].values)) for name in PIXEL_ARRAYS if name != "started"}

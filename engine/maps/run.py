@@ -1,4 +1,4 @@
-"""The computation of one map in stages: coarse to fine, short to long integration times, with tests for evidence in between."""
+"""Computation of one map in stages: coarse to fine, short to long integration times, with tests for evidence in between."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ COARSE_PIXELS = 1200
 """Largest number of pixels in the first frame."""
 
 FIRST_TEST_TIME = 1000.0
-"""Time in units of the well at which undecided orbits are first tested for evidence; most escapes happen earlier."""
+"""Time, in units of the well, at which undecided orbits are first tested for evidence; most escapes happen earlier."""
 
 _FIRST_HORIZON = 100.0
 _HORIZON_FACTOR = 10.0
 
 
 def rising_horizons(first: float, factor: float, t_max: float) -> Iterator[float]:
-    """Integration times of successive stages: a geometric sequence below t_max, then t_max."""
+    """Yield the integration times of successive stages: a geometric sequence below t_max, then t_max."""
     horizon = first
     while horizon < t_max:
         yield horizon
@@ -41,17 +41,17 @@ def rising_horizons(first: float, factor: float, t_max: float) -> Iterator[float
 
 
 def looks_for_tori(spec: MapSpec) -> bool:
-    """Whether the orbits of a map are tested for evidence."""
+    """Return whether the orbits of a map are tested for evidence."""
     return spec.use_evidence and spec.potential.tori_are_evidence
 
 
 class MapRun:
-    """State of the computation of a map, or of some of its rows, in units of the well.
+    """The computation of a map, or of some of its rows, in units of the well.
 
-    Of two pixels that are mirror images of each other only the first is computed.
+    If two pixels are mirror images of each other, only the first is computed.
 
-    What is done up to a time does not depend on t_max: a map with a smaller t_max is the beginning of this one. Stages end at
-    fixed times, at which the orbits still inside are tested for evidence, from `FIRST_TEST_TIME` on.
+    The results up to a time do not depend on t_max, so that a map with a smaller t_max is the beginning of this one. Stages end
+    at fixed times. From `FIRST_TEST_TIME` on, the orbits that are still inside at these times are tested for evidence.
 
     Parameters
     ----------
@@ -62,14 +62,14 @@ class MapRun:
     rows
         Increasing row numbers; None for all rows.
     coarse_first
-        Whether to start with coarse stages, whose frames give an overview early.
+        Whether to start with coarse stages, whose frames give an early overview.
 
     Attributes
     ----------
     spec
         The request.
     stride, horizon
-        Those of the current stage, see `EscapeMap`.
+        Stride and horizon of the current stage, see `EscapeMap`.
     """
 
     def __init__(
@@ -84,18 +84,18 @@ class MapRun:
         self._mirror = MirrorPixels(spec, self.x, self.ordinate)
         rows_of_pixels, columns_of_pixels = np.divmod(np.arange(self.ordinate.size * self.x.size), self.x.size)
         self._energy = spec.energies(self.x[columns_of_pixels], self.ordinate[rows_of_pixels])
-        # Along an axis h each row, or column, has its own energy and exits.
+        # With an axis h, each row or column has its own energy and exits.
         self._curve_row = spec.plane.energy_groups(*self.shape)
         self._curves = np.repeat(closed_exits(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
         self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(self._curve_row.size, bool)
-        # Energy errors of the orbits that an earlier map has finished, whose states are not kept; NaN for all others.
+        # Energy errors of the orbits that an earlier map has finished, whose states are not stored; NaN for all others.
         self._earlier_errors: np.ndarray | None = None
         if resume is not None:
             self._continue(resume)
 
     def _continue(self, earlier: EscapeMap) -> None:
-        """Take over the outcomes of an earlier map, and the states of the orbits that a larger t_max can change."""
+        """Copy the outcomes of an earlier map, and the states of the orbits that a larger t_max can change."""
         assert earlier.batch is not None
         continued = earlier.continued_pixels
         self._started = earlier.started.ravel().copy()
@@ -109,7 +109,7 @@ class MapRun:
         self._batch.reopen(continued)
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """See `Staged`: a stage integrates orbits to a horizon, or tests those that are inside there."""
+        """Yield the stages, see `Staged`; each integrates orbits to a horizon, or tests the orbits inside at that time."""
         changed = partial(on_change, False)
         self._find_starts(execution)
         for pixels, stride, horizon in self._targets():
@@ -118,7 +118,7 @@ class MapRun:
             yield partial(self._advance, pixels, stride, horizon, execution, changed)
 
     def _targets(self) -> Iterator[tuple[np.ndarray, int, float]]:
-        """(pixels, stride, horizon): every refinement at the shortest horizon, then all pixels at longer ones."""
+        """Yield (pixels, stride, horizon): every refinement at the shortest horizon, then all pixels at longer horizons."""
         first_horizon, *later_horizons = rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max)
         for pixels, stride in self._refinements():
             yield pixels, stride, first_horizon
@@ -126,7 +126,7 @@ class MapRun:
             yield pixels, stride, horizon
 
     def _refinements(self) -> Iterator[tuple[np.ndarray, int]]:
-        """(pixels, stride) of each refinement, coarse to fine; the last one contains all pixels."""
+        """Yield (pixels, stride) of each refinement, coarse to fine; the last one contains all pixels."""
         numbers = np.arange(self._started.size).reshape(self.shape)
         stride = 1 if self._started.all() else self.stride
         while stride > 1:
@@ -153,7 +153,7 @@ class MapRun:
         )  # fmt: skip
 
     def _begin_stage(self, pixels: np.ndarray, stride: int, horizon: float, execution: Execution) -> None:
-        """Compute the exits that the pixels need, and start pixels not started yet."""
+        """Compute the exits that the pixels need, and start those pixels that have not been started."""
         self.stride, self.horizon = stride, horizon
         self._find_exits(pixels)
         fresh = pixels[~self._started[pixels]]
@@ -163,13 +163,13 @@ class MapRun:
             self._close(pixels[self._started[pixels]])
 
     def _close(self, pixels: np.ndarray) -> None:
-        """Mark orbits as bounded whose energy is below every saddle; they need no integration."""
+        """Mark orbits whose energy is below every saddle as bounded, without integration."""
         closed = self.spec.potential.well.is_closed_at(self._energy[pixels])
         undecided = self._batch.fate[pixels] == Fate.NOT_COMPUTED
         self._batch.mark_bounded(pixels[closed & undecided], Evidence.CLOSED)
 
     def _find_exits(self, pixels: np.ndarray) -> None:
-        """Find the exits at those energies of the pixels at which they are not known yet."""
+        """Find the exits at those energies of the pixels for which they are not known yet."""
         if not self._rows_without_exits:
             return
         rows, firsts = np.unique(self._curve_row[pixels], return_index=True)
@@ -198,27 +198,28 @@ class MapRun:
         if search.run(mark_bounded):
             batch.tested[tested], batch.digits[tested] = reached, search.digits
         else:
-            # When the map goes on, the test is repeated with all these orbits, so that its result is the same.
+            # When the map is continued, the test is repeated with all these orbits, so that its result is the same.
             batch.reopen(tested)
 
     def _find_untested(self, reached: float, execution: Execution) -> np.ndarray:
-        """Pixels whose orbits are inside at t = `reached` and have not been tested there."""
+        """Return the pixels whose orbits are inside at t = `reached` and have not been tested at that time."""
         batch = self._batch
         untested = np.flatnonzero((batch.fate == Fate.NOT_COMPUTED) & (batch.tested < reached))
         firsts = self._mirror.firsts_among(untested)
-        # Orbits stop before the step across `reached`. Those that escape in it have escaped on a map that ends here.
+        # Orbits stop before the step across `reached`. An orbit that escapes in this step counts as escaped on a map that ends
+        # here.
         propagate_batch(self.spec.potential, self._curves, batch, firsts, reached, final=True, execution=execution)
         inside: np.ndarray = firsts[batch.fate[firsts] == Fate.BOUNDED]
         batch.reopen(inside)
         return inside
 
     def result(self) -> EscapeMap:
-        """The map so far, with the integration state for a later `resume`."""
+        """Return the map so far, with the integration state for a later `resume`."""
         frame = self.frame()
         return replace(frame, batch=self._batch.take(frame.continued_pixels))
 
     def frame(self) -> EscapeMap:
-        """The map so far."""
+        """Return the map so far."""
         outcomes = self._outcomes()
         arrays = {name: getattr(outcomes, name) for name in ("fate", "escape_time", "crossings", "energy_error")}
         arrays |= {"evidence": self._batch.final_evidence()}
@@ -227,7 +228,7 @@ class MapRun:
         return collect_map(self.spec, (self.x, self.ordinate), arrays, **stage)
 
     def _outcomes(self) -> Outcomes:
-        """Outcomes of all pixels, (n,) arrays; second mirror images are copied from the first."""
+        """Return the outcomes of all pixels, (n,) arrays; those of second mirror images are copied from the first."""
         seconds = self._mirror.partner
         firsts = np.flatnonzero(self._started & (seconds > np.arange(seconds.size)))
         if firsts.size:
@@ -240,7 +241,7 @@ class MapRun:
         return replace(outcomes, energy_error=errors)
 
     def progress(self) -> float:
-        """Share of the work done: the time covered, as a share of t_max, averaged over the interior pixels."""
+        """Return the share of the work done: the time covered, as a share of t_max, averaged over the interior pixels."""
         fate = self._batch.fate
         covered = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self._batch.t / self.spec.t_max, 1.0), 1.0)
         # Second mirror images are copied later.
@@ -249,13 +250,13 @@ class MapRun:
 
 
 def _start_states(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    """(n, 4) initial states of pixels (n,) of a map with these centres; runs in a worker."""
+    """Return (n, 4) initial states of pixels (n,) of a map with these pixel centres; runs in a worker."""
     rows, columns = np.divmod(pixels, x.size)
     return spec.start_states(x[columns], ordinate[rows])
 
 
 def _coarsest_stride(shape: tuple[int, int]) -> int:
-    """The smallest power of 2 with which one pixel per square gives at most `COARSE_PIXELS`."""
+    """Return the smallest power of 2 with which one pixel per square gives at most `COARSE_PIXELS` pixels."""
     stride = 1
     while math.ceil(shape[0] / stride) * math.ceil(shape[1] / stride) > COARSE_PIXELS:
         stride *= 2

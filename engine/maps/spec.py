@@ -1,4 +1,4 @@
-"""The request for an escape map; frozen, validated and hashable, so that it also serves as a cache key."""
+"""The request for an escape map, which is frozen, validated and hashable, so that it also serves as a cache key."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
 
 DEFAULT_RESOLUTION = (224, 224)
-"""Columns and rows of a map by default: even, so that no pixel lies on a line of symmetry."""
+"""Default number of columns and rows of a map: even, so that no pixel lies on a line of symmetry."""
 
 FINEST_PIXEL = 1e-15
-"""Smallest distance of neighbouring pixels in units of the well: a few units in the last place of coordinates of order 1."""
+"""Smallest distance of neighbouring pixels, in units of the well: a few units in the last place of coordinates of order 1."""
 
 
 @with_former_fields
@@ -44,37 +44,38 @@ FINEST_PIXEL = 1e-15
 class MapSpec:
     """An escape map: the orbits, the resolution and the integration time.
 
-    Making a request computes nothing: the default window, which depends on the exits, is found by `find_window`.
+    Making a request computes nothing; `find_window` computes the default window, which depends on the exits.
 
     Parameters
     ----------
     potential
         The `Potential`.
     plane
-        The slice of starts: a `Plane` or another `Slice`; named ones also by name, "x_px", as on the command line, or "(x, px)".
+        The slice of starts: a `Plane` or another `Slice`. A plane can be given by name, "x_px", as on the command line, or "(x,
+        px)".
     energy
         h, finite, dimensionless; on a slice with an axis h a pair (low, high). At or below the escape energy no orbit escapes.
     resolution
         Columns and rows, each 1 to 4096.
     window
         Part of the slice, by default the whole interior. A `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for
-        the default window, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows the
-        default window is moved by half a pixel where its middle line would be one of symmetry, on which orbits stay for ever.
+        the default window, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows, the default
+        window is shifted by half a pixel if its middle line would be a line of symmetry, on which orbits stay for ever.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless; where the unit 1/ω of time of the well is above 1, in this unit. By
-        default 1e5; in rotating frames 1000/Ω, and with centres or an escape radius 1000: there bounded orbits are followed to
-        the end.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless; if the unit of time 1/ω of the well is above 1, in this unit. The
+        default is 1e5; in rotating frames 1000/Ω, and with centres or an escape radius 1000, because bounded orbits are
+        integrated to the end there.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
         Whether orbits are followed into the past. This equals following (x, y, −px, −py) into the future, in a rotating frame
         with −Ω for Ω. Fates are then the outcomes backward in time, such as the channels through which orbits entered,
-        escape times tell how long ago, and crossings are the upward crossings of the reversed orbit.
+        escape times count backward from the start, and crossings are the upward crossings of the reversed orbit.
 
     Raises
     ------
     ValueError
-        When a parameter is invalid; the message names it, its value and what is legal.
+        When a parameter is invalid; the message names it, its value and the legal values.
 
     Examples
     --------
@@ -97,7 +98,7 @@ class MapSpec:
     use_evidence: bool = True
     backward: bool = False
 
-    # Type checkers accept what is converted; fields have the types of what is kept.
+    # Type checkers accept the types that are converted; the fields have the types of the stored values.
     if TYPE_CHECKING:
 
         def __init__(
@@ -127,7 +128,7 @@ class MapSpec:
         for name, value in checked.items():
             object.__setattr__(self, name, value)
         if plane.parameter is not None and plane.parameter.system.potential != self.potential:
-            raise ValueError(f"plane={plane.title}: its parameter is one of another system; must be one of {self.potential.name}")
+            raise ValueError(f"plane={plane.title}: its parameter belongs to another system; must be of {self.potential.name}")
 
     @property
     def common_energy(self) -> float | None:
@@ -136,17 +137,17 @@ class MapSpec:
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """What orbits can end at, the first one is fate 1; along a parameter, those of all its potentials."""
+        """The outcomes of orbits, of which the first is fate 1; along a parameter, those of all its potentials."""
         axis = self.plane.parameter
         return self.potential.outcomes_at(self.energy) if axis is None else parameter_family(axis).outcomes
 
     @property
     def given_window(self) -> Window | None:
-        """The window as it was given; None for the default window."""
+        """The window as given; None for the default window."""
         return None if self.window is None else checked_window(self.window)
 
     def find_window(self) -> Window:
-        """The window of the map: the given one, or the default window.
+        """Return the window of the map: the given one, or the default window.
 
         Raises
         ------
@@ -158,7 +159,7 @@ class MapSpec:
         return window
 
     def trace_zero_velocity_curve(self) -> list[np.ndarray]:
-        """The pieces (n, 2) of the boundary of the forbidden region, such as V(x, y) = h, in the window of the map.
+        """Return the pieces (n, 2) of the boundary of the forbidden region, such as V(x, y) = h, in the window of the map.
 
         Examples
         --------
@@ -169,7 +170,7 @@ class MapSpec:
         return trace_zero_velocity_curve(self.potential, self.plane, self.energy, self.find_window())
 
     def in_well_units(self) -> MapSpec:
-        """The same map in units of the well, with its window; the legal range of t_max and of energies does not apply to it."""
+        """Return the map in units of the well, with its window; the legal ranges of t_max and of energies do not apply to it."""
         units, window = self.potential.units, self.find_window()
         potential = self.potential.reversed_in_time if self.backward else self.potential
         return replace_unchecked(
@@ -183,22 +184,22 @@ class MapSpec:
         )
 
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
-        """x (columns,) and ordinate (rows,) of the pixel centres."""
+        """Return x (columns,) and ordinate (rows,) of the pixel centres."""
         return self.find_window().pixel_centres(*self.resolution)
 
     def energies(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """(n,) h of points (n,), (n,) of the slice."""
+        """Return (n,) h of points (n,), (n,) of the slice."""
         return np.broadcast_to(self.plane.energies(self.common_energy, x, ordinate), np.shape(x))
 
     def start_states(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """(n, 4) initial states x, y, px, py of points (n,), (n,) of the slice; NaN where forbidden."""
+        """Return (n, 4) initial states x, y, px, py of points (n,), (n,) of the slice; NaN where forbidden."""
         states = self.plane.states(self.potential, self.common_energy, x, ordinate)
         if self.backward:
             states[:, 2:] *= -1.0
         return states
 
     def provenance(self) -> dict[str, Any]:
-        """The request in plain values, with the integrator and the package version."""
+        """Return the request in plain values, with the integrator and the package version."""
         window, (axes, held), axis = self.find_window(), write_slice(self.plane), self.plane.parameter
         return describe_run(
             self.potential,
@@ -216,7 +217,7 @@ class MapSpec:
         )
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
-        """(row, column) of the pixel that contains a point of the plane; None outside the window."""
+        """Return (row, column) of the pixel that contains a point of the plane; None outside the window."""
         window, (columns, rows) = self.find_window(), self.resolution
         column = int(np.floor((x - window.x_low) / (window.x_high - window.x_low) * columns))
         row = int(np.floor((ordinate - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows))
@@ -224,7 +225,7 @@ class MapSpec:
 
 
 def finest_pixel(spec: MapSpec, window: Window) -> tuple[float, float]:
-    """Least distances of neighbouring pixels, in x and in the ordinate, that double precision allows in a window."""
+    """Return the smallest distances of pixels, in x and in the ordinate, that double precision allows in a window."""
     x_unit, unit = spec.plane.axis_units(spec.potential.units)
     x, ordinate = max(map(abs, (window.x_low, window.x_high))), max(map(abs, (window.ordinate_low, window.ordinate_high)))
     return FINEST_PIXEL * max(x_unit, x), FINEST_PIXEL * max(unit, ordinate)
@@ -248,7 +249,7 @@ def _checked_resolution(resolution: Any) -> tuple[int, int]:
 
 
 def read_spec(dataset: xr.Dataset) -> MapSpec:
-    """The request of a map, from the attributes of its dataset; the energy of one map of a sweep is its coordinate h."""
+    """Return the request of a map, from the attributes of its dataset; the energy of one map of a sweep is its coordinate h."""
     found = dataset.attrs
     if found.get("along"):
         raise ValueError(
@@ -263,7 +264,7 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
         window = None if found["default_window"] else tuple(float(edge) for edge in found["window"])
         columns, rows = map(int, found["resolution"])
     except KeyError as error:
-        raise ValueError(f"dataset: has no attribute {error}; must be one of a map, written by this version") from None
+        raise ValueError(f"dataset: has no attribute {error}; must be the dataset of a map written by this version") from None
     return MapSpec(
         read_potential(found), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
         float(found["t_max"]), use_evidence=bool(found["use_evidence"]), backward=bool(found["backward"]),
@@ -271,5 +272,5 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
 
 
 def _plain(energy: Any) -> Any:
-    """An energy, or a pair of them, as a request has it."""
+    """Return an energy, or a pair of energies, in the form of a request."""
     return tuple(map(float, energy)) if np.ndim(energy) else float(energy)

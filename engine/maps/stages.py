@@ -1,4 +1,4 @@
-"""The loop that computes maps and their analyses: stage after stage, with progress, frames and cancellation."""
+"""The loop that computes maps and their analyses in stages, with progress, frames and cancellation."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from engine.foundations.execution import Execution
 SHORTEST_PAUSE, LONGEST_PAUSE = 0.1, 1.0
 """Limits of the pause between two frames, in seconds."""
 
-# Pause between frames as a share of the time elapsed.
+# Pause between frames as a share of the elapsed time.
 _PAUSE_SHARE = 0.3
 
 Stage = Callable[[], None]
-"""A part of a computation, which ends early when the execution is cancelled."""
+"""A function that does a part of a computation, and returns early when the execution is cancelled."""
 
 Pause = Callable[[float], float]
-"""The pause in seconds after a frame, given the time in seconds since the start of the computation."""
+"""A function that returns the pause in seconds after a frame, given the time in seconds since the start of the computation."""
 
 OnChange = Callable[[bool], None]
-"""Called whenever pixels may have changed, with whether a stage is over."""
+"""A function to call whenever pixels may have changed; its argument tells whether a stage has ended."""
 
 
 class Frame(Protocol):
@@ -33,27 +33,27 @@ class Frame(Protocol):
 
 
 class Staged[F: Frame](Protocol):
-    """A computation in stages: coarse to fine, short to long integration times, or part of a map after part."""
+    """A computation in stages: coarse to fine, short to long integration times, or part by part of a map."""
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """The parts of the work; each is called before the next one is asked for. They call `on_change` on the way."""
+        """Yield the stages; each is called before the next one is requested. They call `on_change` repeatedly."""
 
     def progress(self) -> float:
-        """Share of the work done, 0 to 1."""
+        """Return the share of the work done, 0 to 1."""
 
     def frame(self) -> F:
-        """The result so far."""
+        """Return the result so far."""
 
 
 def frame_pause(elapsed: float) -> float:
-    """Pause in seconds after a frame, given the time in seconds since the start of the computation."""
+    """Return the pause in seconds after a frame, given the time in seconds since the start of the computation."""
     return min(max(SHORTEST_PAUSE, _PAUSE_SHARE * elapsed), LONGEST_PAUSE)
 
 
 def run_stages[F: Frame](
     work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None = None, pause: Pause = frame_pause
 ) -> None:
-    """Run all stages until done or cancelled.
+    """Run all stages until they are finished or cancelled.
 
     Parameters
     ----------
@@ -62,9 +62,10 @@ def run_stages[F: Frame](
     execution
         How it runs; its progress is reported whenever pixels may have changed.
     on_frame
-        Called in this thread with incomplete frames: first when a stage is over, so that its frame is even, then with pauses.
+        Called in this thread with incomplete frames: first at the end of a stage, whose frame has one resolution, then after
+        pauses.
     pause
-        The pauses, which grow by default.
+        Returns the pauses; by default they grow.
     """
     follow = _Follower(work, execution, on_frame, pause)
     for stage in work.stages(execution, follow):
@@ -77,7 +78,7 @@ def run_stages[F: Frame](
 def run_to_frame[F: Frame](
     work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None = None, pause: Pause = frame_pause
 ) -> F:
-    """The last frame after `run_stages`, which is published, too, if it is complete."""
+    """Return the last frame after `run_stages`; if it is complete, `on_frame` also receives it."""
     run_stages(work, execution, on_frame, pause)
     frame = work.frame()
     if on_frame is not None and frame.complete:
@@ -86,7 +87,7 @@ def run_to_frame[F: Frame](
 
 
 class _Follower[F: Frame]:
-    """Publishes incomplete frames of a computation, with pauses between them, and reports its progress."""
+    """Reports progress, and publishes incomplete frames of a computation with pauses between them."""
 
     def __init__(self, work: Staged[F], execution: Execution, on_frame: Callable[[F], None] | None, pause: Pause) -> None:
         self._work, self._execution, self._on_frame, self._pause = work, execution, on_frame, pause

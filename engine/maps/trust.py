@@ -34,10 +34,10 @@ Along a chaotic orbit SALI falls as exp(−λt) while a shift grows as exp(λt):
 threshold. Along a regular orbit a shift grows like t, to about 1e-6 at t = 1e5.
 """
 
-# Horizons are doubled in each stage, so that few orbits are integrated longer than needed; one of them is FIRST_TEST_TIME.
+# Horizons are doubled in each stage, so that few orbits are integrated longer than needed. One horizon is FIRST_TEST_TIME.
 _FIRST_HORIZON = FIRST_TEST_TIME / 8.0
 _HORIZON_FACTOR = 2.0
-# A grid index on the coarsest lattice of `BoundedOrbitSearch`. The bounded pixels to test are few and lie around islands, so
+# A grid index on the coarsest lattice of `BoundedOrbitSearch`. The bounded pixels to test are few and lie around islands, so that
 # one round with all of them fills the lanes of the kernels better than one round per lattice.
 _COARSEST_LATTICE_INDEX = 8
 
@@ -47,8 +47,8 @@ class Trust(IntEnum):
 
     ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
     outcome, and the orbit escapes or is bounded on evidence. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its
-    number of crossings before the escape or its escape time changed, or it is bounded only by chance.
-    ``NOT_TESTED``: not computed yet.
+    number of crossings before the escape or its escape time changed, or it is bounded only by chance. ``NOT_TESTED``: not
+    computed yet.
     """
 
     NOT_APPLICABLE = 0
@@ -90,7 +90,7 @@ class TrustMap(PixelAnalysis):
         return self._share(Trust.CONFIRMED, Trust.DOUBTFUL)
 
     def describe(self) -> str:
-        """The shares in one sentence."""
+        """Return the shares in one sentence."""
         if np.isnan(self.doubtful_share):
             return "There are no pixels inside to test."
         doubtful, tested = (f"{100.0 * share:.2f} %" for share in (self.doubtful_share, self.tested_share))
@@ -111,14 +111,15 @@ def compute_trust(
 ) -> TrustMap:
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
-    A pixel is tested if one of its eight neighbours has another fate or, both having escaped, other crossings, and also if it is
-    bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different directions by 1e-11 length
-    units of the well, at most a hundredth of a pixel, the second time with ten times the tolerance. The pixel is doubtful if in
-    either rerun its fate changes, or its crossings before the escape, or its escape time by more than 0.01 time units of the
-    well. Crossings of bounded orbits are not compared, as orbits that are bounded on evidence are not integrated to t_max.
+    A pixel is tested if one of its eight neighbours has another fate, or if both escape but with different numbers of crossings,
+    and also if it is bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different
+    directions by 1e-11 length units of the well, but at most a hundredth of a pixel; the second time with ten times the
+    tolerance. The pixel is doubtful if in either rerun its fate changes, or its crossings before the escape, or its escape time
+    by more than 0.01 time units of the well. Crossings of bounded orbits are not compared, because orbits that are bounded on
+    evidence are not integrated to t_max.
 
-    A pixel that is bounded without evidence is also doubtful if the two reruns come to differ by 1e-4 in phase space. Such an
-    orbit is chaotic, and only chance keeps it inside until t_max. Of two pixels that are mirror images only the first is tested.
+    A pixel that is bounded without evidence is also doubtful if the distance of the two reruns in phase space reaches 1e-4. Such
+    an orbit is chaotic, and only chance keeps it inside until t_max. If two pixels are mirror images, only the first is tested.
 
     Parameters
     ----------
@@ -152,9 +153,9 @@ def compute_trust(
 
 
 def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarray:
-    """Find the interior pixels with an interior neighbour, of eight, whose outcome differs.
+    """Find the interior pixels that have, among their eight neighbours, an interior pixel with a different outcome.
 
-    Outcomes differ if the fates do or, for escaping orbits, the crossings.
+    Outcomes differ if the fates differ or, for escaping orbits, the crossings.
 
     Parameters
     ----------
@@ -177,7 +178,7 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
 
 
 def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
-    """(rows, columns) bool: bounded pixels above the escape energy that have no evidence."""
+    """Return (rows, columns) bool: whether pixels are bounded, above the escape energy, without evidence."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
     without_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
@@ -185,7 +186,7 @@ def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
 
 
 class TrustTest:
-    """The pixels of a map to test and the state of their reruns, in units of the well; `unlike`: see `find_unlike_neighbours`."""
+    """Test of the pixels of a map by reruns, in units of the well; for `unlike` see `find_unlike_neighbours`."""
 
     def __init__(self, given: EscapeMap, unlike: np.ndarray, perturbation: Perturbation) -> None:
         self._given_spec, escape_map = given.spec, given.in_well_units()
@@ -194,17 +195,17 @@ class TrustTest:
         without_evidence = _find_without_evidence(escape_map)
         codes[without_evidence | unlike] = Trust.NOT_TESTED
         self._codes = PixelCodes(escape_map, codes, Trust.NOT_TESTED)
-        # Of the tested pixels: those whose reruns must stay together, and those whose reruns did not; the time up to which both
+        # For the tested pixels: whether their reruns must stay together, whether they did not, and the time up to which both
         # reruns have been compared.
         self._without_evidence = without_evidence.ravel()[self._codes.pixels]
         self._chaotic = np.zeros(self._codes.pixels.size, bool)
         self._compared = 0.0
-        # Positions in the arrays of the reruns whose pixels are undecided.
+        # Positions of undecided pixels in the arrays of the reruns.
         self._undecided = np.arange(self._codes.pixels.size)
         self._curves, self._reruns = self._prepare_reruns(escape_map, perturbation)
 
     def _prepare_reruns(self, escape_map: EscapeMap, perturbation: Perturbation) -> tuple[np.ndarray, list[Rerun]]:
-        """The exit curves of each energy, and the reruns at t = 0."""
+        """Return the exit curves of each energy, and the reruns at t = 0."""
         spec, potential, pixels = self.spec, self.spec.potential, self._codes.pixels
         x, ordinate = escape_map.coordinates(pixels)
         fate, crossings, escape_time = (
@@ -222,7 +223,7 @@ class TrustTest:
         return curves, reruns
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """See `Staged`: a stage integrates the reruns of all undecided pixels to a horizon, or tests those inside there."""
+        """Yield the stages, see `Staged`; each integrates the undecided reruns to a horizon, or tests those inside there."""
         reached = 0.0
         for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max):
             if not self._undecided.size:
@@ -234,7 +235,7 @@ class TrustTest:
 
     def _propagate(self, horizon: float, execution: Execution) -> None:
         """Integrate the reruns of all undecided pixels to the horizon."""
-        # Together, as there may be too few orbits to keep all workers busy; each thread waits for its tiles most of the time.
+        # Both reruns run concurrently, because one alone may not keep all workers busy; their threads mostly wait for tiles.
         with ThreadPoolExecutor(len(self._reruns)) as threads:
             list(threads.map(partial(self._propagate_rerun, horizon, execution), self._reruns))
         self._update_codes()
@@ -249,7 +250,7 @@ class TrustTest:
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
-        """Find the pixels bounded without evidence whose reruns, all integrated to `time`, are `APART`."""
+        """Find pixels bounded without evidence whose reruns, all integrated to `time`, are at the distance `APART` or more."""
         tested = self._undecided[self._without_evidence[self._undecided]]
         kernels = kernels_of(self.spec.potential)
         batches = [rerun.batch for rerun in self._reruns]
@@ -260,8 +261,8 @@ class TrustTest:
     def _find_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
         """Mark reruns of pixels bounded on the map as bounded if there is evidence, from their states at t = `reached`.
 
-        The evidence of the first rerun holds for both: the difference between them on a regular orbit is far below the digits
-        that are compared.
+        The evidence of the first rerun holds for both, because on a regular orbit their difference is far below the digits that
+        are compared.
         """
         first, undecided = self._reruns[0], self._undecided
         tested = undecided[(first.fate[undecided] == Fate.BOUNDED) & ~first.is_decided()[undecided]]
@@ -294,10 +295,10 @@ class TrustTest:
         self._undecided = np.flatnonzero(~finished & ~changed)
 
     def progress(self) -> float:
-        """Share of the pixels that are decided."""
+        """Return the share of the pixels that are decided."""
         return 1.0 - self._undecided.size / max(self._codes.pixels.size, 1)
 
     def frame(self) -> TrustMap:
-        """The result so far."""
+        """Return the result so far."""
         codes, complete = self._codes.snapshot()
         return TrustMap(self._given_spec, codes, complete=complete)

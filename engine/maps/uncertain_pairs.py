@@ -20,27 +20,27 @@ from engine.propagation.fates import Fate
 HORIZON = 1e4
 """Longest integration time of the pairs, in units of the well.
 
-Continuing to t = 1e5 moved the exponents of I (h = 0.15), II (0.17) and III (0.45) within their intervals only. Stopping at t =
-1000 made the exponent of I at h = 0.15 too large by 0.02: a slowly leaking chaotic sea looks like an island.
+Continuing to t = 1e5 changed the exponents of I (h = 0.15), II (0.17) and III (0.45) only within their intervals. Stopping at t =
+1000 made the exponent of I at h = 0.15 too large by 0.02, because a slowly leaking chaotic sea looks like an island.
 """
 
 MIN_SEPARATION = 1e-10
-"""Smallest distance of two starts in units of the well, except in deep zooms, where pixels themselves are small."""
+"""Smallest distance of two starts, in units of the well, except in deep zooms, where the pixels themselves are small."""
 
 WORK = 1.5e8
-"""Default limit of the total integration time of all orbits, in units of the well: a few seconds of computation."""
+"""Default limit of the total integration time of all orbits, in units of the well, which is a few seconds of computation."""
 
 # In a deep zoom the smallest separation is this many decades below a pixel, but not below `_MIN_ZOOM_SEPARATION`, a few hundred
 # units in the last place of coordinates of order 1.
 _DECADES_BELOW_PIXEL, _MIN_ZOOM_SEPARATION = 4.0, 1e-13
 _MAX_SEPARATIONS, _MAX_PAIRS = 100, 100_000
 # After the requested pairs, each separation gets more pairs until the fitted law expects this many uncertain ones, which
-# determines a share to 7 %, limited to `_MAX_GROWTH` times as many pairs and by the total integration time.
+# determine a share to 7 %. Their number is limited to `_MAX_GROWTH` times as many pairs and by the total integration time.
 _WANTED_UNCERTAIN, _MAX_GROWTH = 200, 2000
-# Cost of a pair in addition to its integration, in time units of integration.
+# Cost of a pair besides its integration, in time units of integration.
 _PAIR_COST = 20.0
 _CHUNK = 2**17
-# Integration stops at these times to regroup the few orbits that remain.
+# Times at which the integration stops, to regroup the few remaining orbits.
 _STAGES = (30.0, 300.0)
 # Drawing stops if less than this share of the points drawn in the window is interior.
 _MIN_YIELD = 1e-3
@@ -62,12 +62,12 @@ def compute_uncertainty_exponent(
     A start is ε-uncertain if a start at distance ε has a different fate. The share of such starts falls as f(ε) ~ ε^α, and the
     basin boundary has dimension 2 − α in the plane of initial conditions (Grebogi, McDonald, Ott & Yorke 1983, Phys. Lett. A 99,
     415; McDonald, Grebogi, Ott & Yorke 1985, Physica D 17, 125). Each ε has its own random pairs: the first start is uniform over
-    the interior of the window, the second one lies at distance ε in a random direction of the plane. On (x, h) both have the
-    energy of a row of pixels, and the second one is displaced along x. Pairs with a forbidden or outside start are drawn again.
+    the interior of the window, and the second lies at distance ε in a random direction of the plane. On (x, h) both have the
+    energy of a row of pixels, and the second is displaced along x. Pairs with a forbidden or outside start are drawn again.
 
     Orbits are integrated to t_max, at most 1e4 time units of the well, and being inside at that time is a fate like a channel.
-    The result's `one_inside` and `both_inside` count the pairs that this can affect. The pairs of escaping orbits alone are
-    ``pairs − one_inside − both_inside``, the uncertain ones among them ``uncertain − one_inside``.
+    The result's `one_inside` and `both_inside` count the pairs that this can affect. Pairs of which both orbits escape number
+    ``pairs − one_inside − both_inside``, and the uncertain ones among them ``uncertain − one_inside``.
 
     Separations with few uncertain pairs get more pairs, as many as the law fitted to the first pairs suggests, within a fixed
     total integration time.
@@ -77,14 +77,14 @@ def compute_uncertainty_exponent(
     spec
         Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel of its resolution. The
         smallest ε is 1e-10 length units of the well or, in a deep zoom, four decades below a pixel, but not below 1e-13 units.
-        Momenta are measured in units in which the well's time unit is 1.
+        Momenta are measured in units in which the unit of time of the well is 1.
     pairs
         Initial number of pairs at each separation, 10 to 100 000.
     separations
         Number of values of ε, evenly spaced on a logarithmic scale, 5 to 100.
     work
-        Limit of the total integration time of all orbits, above 0, in time units of the well. The initial pairs are integrated in
-        any case.
+        Limit of the total integration time of all orbits, above 0, in time units of the well. The initial pairs are always
+        integrated.
     seed
         Seed of the random numbers, 0 or more. The same seed gives a bit-identical result.
     execution
@@ -126,7 +126,7 @@ def compute_uncertainty_exponent(
 
 
 def _separations(spec: MapSpec, count: int) -> np.ndarray:
-    """(count,) ε in units of the well, decreasing from the side of a pixel."""
+    """Return (count,) ε in units of the well, decreasing from the side of a pixel."""
     given_window, spec = spec.find_window(), spec.in_well_units()
     window, (columns, rows) = spec.find_window(), spec.resolution
     sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
@@ -141,7 +141,7 @@ def _separations(spec: MapSpec, count: int) -> np.ndarray:
 
 
 class _PairSampler:
-    """Draws and integrates pairs of starts, and counts their outcomes for each separation (m,), all in units of the well."""
+    """Draws and integrates pairs of starts, and counts their outcomes for each separation (m,), in units of the well."""
 
     def __init__(
         self,
@@ -162,13 +162,13 @@ class _PairSampler:
         self.curves = exit_curves_at(spec.potential, self.row_energy, execution)
 
     def plan_more_pairs(self, work: float) -> np.ndarray:
-        """(m,) number of additional pairs at each separation, within the total integration time `work`."""
+        """Return (m,) number of additional pairs at each separation, within the total integration time `work`."""
         if not self.uncertain.any() or np.any(self.uncertain == self.pairs):
             return np.zeros_like(self.pairs)
         if np.count_nonzero(self.uncertain) > 1:
             share = predict_shares(self.separations, self.pairs, self.uncertain)
         else:
-            # One separation does not determine a law; f ~ ε, the law of a smooth boundary, gives the largest number of pairs.
+            # One separation does not determine a law. The law of a smooth boundary, f ~ ε, gives the largest number of pairs.
             share = self.uncertain.max() / self.pairs.max() * self.separations / self.separations[0]
         most = _MAX_GROWTH * self.pairs
         wanted = np.clip(_WANTED_UNCERTAIN / share, self.pairs, most) - self.pairs
@@ -190,7 +190,7 @@ class _PairSampler:
             self._count_outcomes(index, *batch.fate.reshape(2, -1))
 
     def _draw_chunk(self, wanted: np.ndarray) -> tuple[OrbitBatch, np.ndarray]:
-        """Orbits of `wanted` (m,) pairs, all first starts before all second ones, and the separation index of each pair."""
+        """Return the orbits of `wanted` (m,) pairs, first starts before second starts, and the separation index of each pair."""
         present = np.flatnonzero(wanted)
         drawn = [self._draw_pairs(index, int(wanted[index])) for index in present.tolist()]
         states = np.concatenate([states for states, _ in drawn], axis=1).reshape(-1, 4)
@@ -200,7 +200,7 @@ class _PairSampler:
         return batch, np.repeat(present, [rows.size for _, rows in drawn])
 
     def _integrate(self, batch: OrbitBatch, execution: Execution) -> None:
-        """Integrate all orbits in stages, so that the few long ones are grouped into full tiles."""
+        """Integrate all orbits in stages, so that the few long orbits are grouped into full tiles."""
 
         def progress() -> float:
             return float(np.mean(np.where(batch.fate == Fate.NOT_COMPUTED, batch.t / self.horizon, 1.0)))
@@ -226,7 +226,7 @@ class _PairSampler:
             counts += np.bincount(index[which], minlength=counts.size)
 
     def _draw_pairs(self, index: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """(2, n, 4) states and (n,) energy rows of pairs at one separation; n is `count`, or less if few points are interior."""
+        """Return (2, n, 4) states and (n,) energy rows of pairs at one separation, at most `count`."""
         states, rows = np.zeros((2, 0, 4)), np.zeros(0, np.int64)
         drawn = 0
         while rows.size < count and drawn * _MIN_YIELD < rows.size + 10:
@@ -238,7 +238,7 @@ class _PairSampler:
         return states[:, :count], rows[:count]
 
     def _draw_interior_pairs(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """States and energy rows of the interior ones among `size` random pairs in the window."""
+        """Return states and energy rows of the interior pairs among `size` random pairs in the window."""
         points, rows = self._draw_points(index, size)
         batch = OrbitBatch.from_starts(self.spec.start_states(*points), np.tile(rows, 2))
         batch.mark_outside(self.spec.potential, np.arange(2 * size), self.curves)
@@ -246,7 +246,7 @@ class _PairSampler:
         return batch.state.reshape(2, -1, 4)[:, inside], rows[inside]
 
     def _draw_points(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """(2, 2 size) x and ordinate of all first starts and then all second ones, and (size,) energy rows of the pairs."""
+        """Return (2, 2 size) x and ordinate of all first and then all second starts, and (size,) energy rows of the pairs."""
         window, random, axis = self.spec.find_window(), self.random[index], self.spec.plane.energy_axis
         edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
         rows = np.zeros(size, np.int64)
@@ -263,7 +263,7 @@ class _PairSampler:
         return np.concatenate([points, points + shift], axis=1), rows
 
     def fit(self) -> UncertaintyExponent:
-        """Exponent from all pairs so far."""
+        """Fit the exponent to all pairs so far."""
         fit = fit_uncertainty(self.separations, self.pairs, self.uncertain)
         one_inside, both_inside = read_only(self.one_inside), read_only(self.both_inside)
         return replace(fit, one_inside=one_inside, both_inside=both_inside, horizon=self.horizon)

@@ -1,4 +1,4 @@
-"""Basin entropy: uncertainty of the outcome of an orbit whose start is only known to lie within a small box of pixels."""
+"""Basin entropy: uncertainty of the outcome of an orbit whose start is known only up to a small box of pixels."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from engine.foundations.wording import format_count
 from engine.measures.starts import checked_labels, describe_labels
 
 BOX = 5
-"""Default side of a box in pixels, that is 25 starts per box, as in Daza et al. (2016)."""
+"""Default side of a box in pixels; a box has 25 starts, as in Daza et al. (2016)."""
 
 COUNTS_BOUNDED = True
-"""Whether bounded orbits are a label: yes, staying bounded is one of the possible outcomes of a start."""
+"""Whether bounded orbits are a label. They are, because staying bounded is one of the possible outcomes of a start."""
 
 # Two labels in equal parts give exactly ln 2, and the mean over boxes can exceed it by rounding.
 _ROUNDING = 1e-12
@@ -30,15 +30,15 @@ class BasinEntropy(RecordedResult):
     Attributes
     ----------
     s_b
-        S_b, the mean entropy of all boxes that count, 0 to ln(labels); NaN if there are none.
+        S_b, the mean entropy of all boxes that count, 0 to ln(labels); NaN if no box counts.
     s_bb
-        S_bb, the mean entropy of the boxes with more than one label; NaN if there are none.
+        S_bb, the mean entropy of the boxes with more than one label; NaN if there are no such boxes.
     s_b_error, s_bb_error
-        Standard errors of these means for independent boxes; NaN for fewer than two boxes. A tiling is more even than independent
-        boxes: shifting it by a few pixels changed S_b and S_bb of some maps by up to about two thirds of these errors. The errors
-        do not include the effect of another box size or resolution, which is larger.
+        Standard errors of these means for independent boxes; NaN for fewer than two boxes. The boxes of a tiling are more evenly
+        distributed: shifting it by a few pixels changed S_b and S_bb of some maps by up to about two thirds of these errors. The
+        errors do not include the effect of another box size or resolution, which is larger.
     boxes, boundary_boxes
-        Number of boxes that count, and number of those with more than one label.
+        Number of boxes that count, and number of these boxes with more than one label.
     labels
         Number of different labels in the boxes that count.
     box
@@ -60,17 +60,17 @@ class BasinEntropy(RecordedResult):
 
         A smooth boundary separates two labels almost everywhere, and a box with two labels has an entropy of at most ln 2. Three
         labels meet only at isolated points, whose share of the boundary boxes vanishes as boxes shrink. Beyond ln 2 the boundary
-        is therefore fractal, or has smooth parts closer together than a box, which a finer image resolves. The converse does not
-        hold: fractal boundaries between two basins never exceed ln 2.
+        is therefore fractal, or has smooth parts closer together than a box, which a finer image would resolve. The converse does
+        not hold: fractal boundaries between two basins never exceed ln 2.
         """
         return self.s_bb > math.log(2.0) + _ROUNDING
 
     def numbers(self) -> dict[str, Any]:
-        """The scalar attributes, and the conclusion."""
+        """Return the scalar attributes, and the conclusion."""
         return {**super().numbers(), "beyond_ln2": self.beyond_ln2}
 
     def describe(self) -> str:
-        """The result in one or two sentences."""
+        """Return the result in one or two sentences."""
         size = f"{self.box} × {self.box} starts"
         if not self.boxes:
             return f"No basin entropy: no box of {size} consists only of starts that count."
@@ -91,8 +91,8 @@ class BasinEntropy(RecordedResult):
 def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> BasinEntropy:
     """Compute the basin entropies S_b and S_bb of a labelled image.
 
-    The image is tiled with boxes from its first row and column. A strip narrower than a box at the far edges and boxes with a
-    pixel that does not count are left out. With p_ij the share of label j in box i,
+    The image is tiled with boxes from its first row and column. A strip at the far edges that is narrower than a box is left out,
+    and so are boxes with a pixel that does not count. With p_ij the share of label j in box i,
 
         S_i = Σ_j p_ij ln(1/p_ij),   S_b = mean of all S_i,   S_bb = mean of those S_i with more than one label
 
@@ -105,7 +105,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
         A map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits are a basin of their own, or
         (rows, columns) integers; equal ones are one basin.
     valid
-        (rows, columns) bool, the pixels that count; of a map those inside. None for all, if no label is negative.
+        (rows, columns) bool, the pixels that count; for a map, the interior pixels. None for all, if no label is negative.
     box
         Side of a box in pixels, 2 to the shorter side of the image.
 
@@ -141,17 +141,17 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
 
 
 def _tile(image: np.ndarray, box: int) -> np.ndarray:
-    """(boxes, box²) pixels of each complete box."""
+    """Return (boxes, box²) pixels of each complete box."""
     rows, columns = (side // box for side in image.shape)
     tiles = image[: rows * box, : columns * box].reshape(rows, box, columns, box)
     return tiles.swapaxes(1, 2).reshape(rows * columns, box * box)
 
 
 def _box_entropies(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """S_i (boxes,), exactly 0 for one label, and the number of labels (boxes,) in each box."""
+    """Return S_i (boxes,), exactly 0 for one label, and the number of labels (boxes,) in each box."""
     count, size = boxes.shape
     ordered = np.sort(boxes, axis=1)
-    # Runs of equal labels in the sorted boxes, by the index of their first pixel.
+    # Runs of equal labels in the sorted boxes, given by the index of their first pixel.
     is_first = np.ones(boxes.shape, np.bool_)
     is_first[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
     first = np.flatnonzero(is_first)

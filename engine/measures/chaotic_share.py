@@ -1,4 +1,4 @@
-"""The share of chaotic orbits among those that stay."""
+"""The share of chaotic orbits among the bounded ones."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class ChaoticShare(Result):
     share
         Share of the chaotic ones; NaN if none is judged.
     low, high
-        95 % Wilson interval of the share, as for independent random starts; NaN if none is judged.
+        95 % Wilson interval of the share, which holds for independent random starts; NaN if none is judged.
     """
 
     chaotic: int
@@ -36,7 +36,7 @@ class ChaoticShare(Result):
     high: float
 
     def describe(self) -> str:
-        """The share with its interval in a sentence."""
+        """Return the share with its interval in a sentence."""
         if not self.judged:
             return "No orbit is bounded."
         interval = f"{100.0 * self.low:.1f} to {100.0 * self.high:.1f} %"

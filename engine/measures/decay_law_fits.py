@@ -1,4 +1,4 @@
-"""Fits of decay laws to escape times: choice of the window, rates with standard errors, comparison of the laws."""
+"""Fits of decay laws to escape times: choice of the window, rates with standard errors, and comparison of the laws."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ from engine.measures.starts import Measurable, Starts, read_starts
 
 # Half-width of the 95 % interval of a normal distribution, in standard deviations.
 _DEVIATIONS = 1.96
-# Number of escapes in the next window tried, relative to the current one.
+# Ratio of the number of escapes in the next window tried to that in the current one.
 _WINDOW_RATIO = 0.9
-# Where a law first seems to hold, an undetectable rest of the transient still biases the rate, so the fit uses this share of
-# the escapes, the latest ones.
+# Where a law first appears to hold, an undetectable remainder of the transient still biases the rate, so that the fit uses only
+# this share of the escapes, the latest ones.
 _SETTLED_SHARE = 0.5
 # Degrees of the polynomials in the test of a law; the first one is almost the score.
 _DEGREES = (2, 3, 4)
 _NORMS = np.sqrt(2.0 * np.array(_DEGREES) + 1.0)
-# Steepness below which the variance is that of the uniform distribution.
+# Steepness below which the variance of the uniform distribution is used.
 _FLAT = 1e-2
 
 
@@ -44,24 +44,24 @@ def fit_decay_laws(
 ) -> DecayLaws:
     """Fit an exponential law and a power law to the escape times in a window, and decide which one holds, if any.
 
-    Rates are maximum-likelihood estimates from the escape times inside the window, given that they lie in it, so neither regular
-    orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong to mirror images and count
-    once. The others are treated as independent draws although the starts form a grid: where a law held, rates from shifted grids
-    scattered 0.8 to 1.1 times as much as the interval says (docs/statistics.md). A law is ruled out by Neyman's smooth test,
-    with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
+    Rates are maximum-likelihood estimates from the escape times inside the window, given that they lie in it, so that neither
+    regular orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong to mirror images
+    and count once. The others are treated as independent draws although the starts form a grid: where a law held, rates from
+    shifted grids scattered 0.8 to 1.1 times as much as the interval implies (docs/statistics.md). A law is ruled out by Neyman's
+    smooth test, with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
 
-    A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until one law is ruled out
-    neither for them nor for their later half, and this half is the window: the rule of Deluca & Corral (2013, Acta Geophys. 61,
-    1351) with an additional margin. If there is no such window, the one with the largest p value is used, and no law is
+    A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until one law is not ruled
+    out, neither for them nor for their later half. This half is the window, by the rule of Deluca & Corral (2013, Acta Geophys.
+    61, 1351) with an additional margin. If there is no such window, the one with the largest p value is used, and no law is
     preferred. The laws are compared by their log-likelihood ratio (Vuong 1989, Econometrica 57, 307).
 
     Parameters
     ----------
     statistics
-        The escapes, or the map or the outcomes of `classify_orbits` in which they are counted.
+        The escapes, or a map or the outcomes of `classify_orbits`, whose escapes are then counted.
     t_max
-        Integration time of the orbits that did not escape, 0 < t_max ≤ 1e8, dimensionless; None for that of the statistics, the
-        largest one that is legal. Later escapes are left out.
+        Integration time of the orbits that did not escape, 0 < t_max ≤ 1e8, dimensionless; at most that of the statistics, which
+        is the default. Later escapes are left out.
     window
         (t_low, t_high), 0 < t_low < t_high ≤ t_max; None to choose it automatically.
 
@@ -102,7 +102,7 @@ def fit_decay_laws(
 
 
 def _checked_horizon(statistics: EscapeStatistics, t_max: float | None) -> float:
-    """Time up to which the escapes are known."""
+    """Return the time up to which the escapes are known."""
     checked = checked_t_max(statistics.t_max if t_max is None else t_max)
     if checked > statistics.t_max:
         raise ValueError(f"t_max={t_max:g}: must be at most {statistics.t_max:g}, the integration time of the statistics")
@@ -111,7 +111,7 @@ def _checked_horizon(statistics: EscapeStatistics, t_max: float | None) -> float
 
 @dataclass(frozen=True, eq=False)
 class _Sample:
-    """The different escape times in a window, in increasing order."""
+    """The distinct escape times in a window, in increasing order."""
 
     t_low: float
     t_high: float
@@ -122,7 +122,7 @@ class _Sample:
         return to_unit_time(law, self.t_low, self.t_high, self.times)
 
     def p_value(self, law: DecayLaw) -> float:
-        """Probability that a sample of the law deviates as much from its own fit, by Neyman's smooth test.
+        """Return the probability that a sample of the law deviates as much from its own fit, by Neyman's smooth test.
 
         Under the law, the means of the Legendre polynomials of the cumulative shares are normally distributed around 0. The fit
         reduces their covariance by the part along the score u − ⟨u⟩.
@@ -139,13 +139,13 @@ class _Sample:
         return float(special.chdtrc(len(_DEGREES), u.size * means @ np.linalg.solve(covariance, means)))
 
     def log_likelihoods(self, law: DecayLaw) -> np.ndarray:
-        """(n,) logarithms of the largest likelihood of a law, up to a constant that both laws have in common."""
+        """Return (n,) logarithms of the largest likelihood of a law, up to a constant common to both laws."""
         from scipy import special
 
         u = self.unit_times(law)
         steepness = _fit_steepness(u)
         k, forward = abs(steepness), u if steepness > 0.0 else 1.0 - u
-        # The Jacobian du/dt of the unit time linear in ln t is 1 / (t · length).
+        # The Jacobian du/dt of the unit time that is linear in ln t is 1 / (t · length).
         jacobian = 0.0 if law is DecayLaw.EXPONENTIAL else np.log(self.times)
         likelihoods: np.ndarray = (
             -np.log(special.exprel(-k)) - k * forward - np.log(window_length(law, self.t_low, self.t_high)) - jacobian
@@ -154,7 +154,7 @@ class _Sample:
 
 
 def _choose_t_low(times: np.ndarray, t_high: float) -> tuple[float, bool]:
-    """Start of the window, and whether a law holds from there on; (NaN, False) if there are too few escapes."""
+    """Return the start of the window, and whether a law holds from there on; (NaN, False) if there are too few escapes."""
     largest, t_low = 0.0, float("nan")
     remaining = times.size - 1
     while int(remaining * _SETTLED_SHARE) >= MIN_ESCAPES:
@@ -170,12 +170,12 @@ def _choose_t_low(times: np.ndarray, t_high: float) -> tuple[float, bool]:
 
 
 def _latest(times: np.ndarray, t_high: float, count: int) -> _Sample:
-    """The latest `count` escapes; the window begins at the escape before them."""
+    """Return the latest `count` escapes; the window begins at the preceding escape."""
     return _Sample(float(times[-count - 1]), t_high, times[-count:])
 
 
 def _compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> DecayLaws:
-    """Both laws fitted to a sample, and the one that holds and is significantly more likely."""
+    """Fit both laws to a sample, and find the one that holds and is significantly more likely."""
     escaped = [int(np.count_nonzero(statistics.escape_times <= t)) for t in (sample.t_low, sample.t_high)]
     survival = [1.0 - count / statistics.decided for count in escaped]
     exponential, power_law = (_fit_law(law, sample, *survival) for law in DecayLaw)
@@ -193,7 +193,7 @@ def _compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> 
 
 
 def _fit_law(law: DecayLaw, sample: _Sample, survival_low: float, survival_high: float) -> LawFit:
-    """One law. The standard error of the rate is valid even if the law does not hold (White 1982, Econometrica 50, 1)."""
+    """Fit one law. The standard error of the rate is valid even if the law does not hold (White 1982, Econometrica 50, 1)."""
     u, length = sample.unit_times(law), window_length(law, sample.t_low, sample.t_high)
     steepness = _fit_steepness(u)
     half_width = _DEVIATIONS * float(u.std()) / (np.sqrt(u.size) * _variance(steepness)) / length
@@ -203,10 +203,10 @@ def _fit_law(law: DecayLaw, sample: _Sample, survival_low: float, survival_high:
 
 
 def _fit_steepness(u: np.ndarray) -> float:
-    """Maximum-likelihood steepness k of a density ∝ exp(−k u) on 0 ≤ u ≤ 1, of either sign.
+    """Return the maximum-likelihood steepness k, of either sign, of a density ∝ exp(−k u) on 0 ≤ u ≤ 1.
 
-    It solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean of u; the left form is accurate for small k too.
-    u ↔ 1 − u changes the sign of k and nothing else.
+    It solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean of u; the left form is also accurate for small k.
+    Replacing u by 1 − u changes only the sign of k.
     """
     from scipy import special
 
@@ -221,6 +221,6 @@ def _fit_steepness(u: np.ndarray) -> float:
 
 
 def _variance(steepness: float) -> float:
-    """Variance of u."""
+    """Return the variance of u."""
     k = abs(steepness)
     return 1.0 / k**2 - float(np.exp(-k) / np.expm1(-k) ** 2) if k > _FLAT else 1.0 / 12.0

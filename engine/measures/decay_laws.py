@@ -1,7 +1,7 @@
-"""Decay laws of the escapes from a map: exponential, power law or neither, as numbers, curves and sentences.
+"""Decay laws of the escapes of a map, exponential, power law or neither, as numbers, curves and sentences.
 
-Both laws are truncated exponentials in a unit time u that runs from 0 at t_low to 1 at t_high: linear in t for the exponential
-law, linear in ln t for the power law. One estimator and one test therefore serve both.
+Both laws are truncated exponentials in a unit time u from 0 at t_low to 1 at t_high, which is linear in t for the exponential law
+and in ln t for the power law. Both therefore share one estimator and one test.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count, format_number, format_whole
 
 MIN_ESCAPES = 100
-"""Fewest escapes in a window for a fit, which determine the rate to about 20 %. Choosing a window takes twice as many."""
+"""Smallest number of escapes in a window for a fit, which gives the rate to about 20 %. Choosing a window needs twice as many."""
 
 MIN_P_VALUE = 0.1
 """Laws with a smaller p value are ruled out (Clauset, Shalizi & Newman 2009, SIAM Rev. 51, 661, section 4.1)."""
 
 
 class DecayLaw(StrEnum):
-    """A decay law; the value is its name in text."""
+    """A decay law; the value is its name in texts."""
 
     EXPONENTIAL = "exponential"
     POWER_LAW = "power law"
@@ -62,11 +62,11 @@ class LawFit:
 
     @property
     def plausible(self) -> bool:
-        """Whether the escapes decay and do not rule this law out."""
+        """Whether the escapes decay and do not rule out this law."""
         return self.p_value >= MIN_P_VALUE and self.low > 0.0
 
     def curve(self, t: Any) -> np.ndarray:
-        """Fitted S(t), which equals the survival at both ends of the window; NaN outside the window."""
+        """Return the fitted S(t), which equals the survival at both ends of the window; NaN outside the window."""
         t_array = np.asarray(t, dtype=float)
         inside = (t_array >= self.t_low) & (t_array <= self.t_high)
         u = to_unit_time(self.law, self.t_low, self.t_high, np.where(inside, t_array, self.t_low))
@@ -86,17 +86,17 @@ class DecayLaws(RecordedResult):
     t_low, t_high
         Window of the fits; t_low is NaN if no window could be chosen.
     escapes
-        Number of different escape times in the window, or in (0, t_high] if t_low is NaN.
+        Number of distinct escape times in the window, or in (0, t_high] if t_low is NaN.
     escapes_in_all
-        Number of different escape times.
+        Number of distinct escape times.
     undecided
-        Number of starts not decided yet; there is no fit unless it is 0.
+        Number of starts not decided yet; if it is not 0, there is no fit.
     settled
-        Whether the window was given or begins where a law was found to hold; otherwise no law is preferred.
+        Whether the window was given, or begins where a law was found to hold; otherwise no law is preferred.
     exponential, power_law
-        The fits; None without a fit.
+        The fits; None if there is no fit.
     preferred
-        The law that describes these escapes: not ruled out and significantly more likely than the other; otherwise None.
+        The law that describes these escapes, which is not ruled out and significantly more likely than the other; otherwise None.
     ratio, ratio_low, ratio_high
         Log-likelihood per escape of the exponential law minus the one of the power law, and its 95 % interval;
         NaN without fits.
@@ -123,7 +123,7 @@ class DecayLaws(RecordedResult):
         return self.times.nbytes + self.survival.nbytes
 
     def describe(self) -> str:
-        """The law with its interval, or why there is none, in one or two sentences."""
+        """Describe the law with its interval, or the reason why there is none, in one or two sentences."""
         if self.exponential is None or self.power_law is None:
             return self._describe_missing_fit()
         kappa, gamma = _describe_fit("κ", self.exponential), _describe_fit("γ", self.power_law)
@@ -173,21 +173,21 @@ def _describe_exclusion(fit: LawFit) -> str:
 
 
 def window_length(law: DecayLaw, t_low: float, t_high: float) -> float:
-    """Length of the window in t for the exponential law, in ln t for the power law; times the rate, it is the steepness."""
+    """Return the length of the window in t (exponential law) or ln t (power law); times the rate it is the steepness."""
     return t_high - t_low if law is DecayLaw.EXPONENTIAL else float(np.log(t_high / t_low))
 
 
 def to_unit_time(law: DecayLaw, t_low: float, t_high: float, t: np.ndarray) -> np.ndarray:
-    """Unit time u of a law at times t, 0 at t_low and 1 at t_high."""
+    """Return the unit time u of a law at times t, 0 at t_low and 1 at t_high."""
     elapsed: np.ndarray = t - t_low if law is DecayLaw.EXPONENTIAL else np.log(t / t_low)
     return elapsed / window_length(law, t_low, t_high)
 
 
 def cumulative_share(steepness: float, u: np.ndarray) -> np.ndarray:
-    """Cumulative distribution function at u of a density ∝ exp(−k u) on 0 ≤ u ≤ 1, where the steepness k has either sign."""
+    """Return the cumulative distribution function at u of a density ∝ exp(−k u) on 0 ≤ u ≤ 1; k may have either sign."""
     from scipy import special
 
     k = abs(steepness)
     share: np.ndarray = u * special.exprel(-k * u) / special.exprel(-k)
-    # With exp k divided out, which overflows.
+    # The factor exp k, which overflows, is divided out.
     return np.exp(-k * (1.0 - u)) * share if steepness < 0.0 else share

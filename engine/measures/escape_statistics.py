@@ -18,9 +18,9 @@ MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""
 
 _LOWEST_CODE = int(min(Fate))
-# Relative difference below which times are considered equal: no bins fit between them.
+# Relative difference below which times count as equal, because no bins fit between them.
 _EQUAL_TIMES = 1e-9
-# A histogram of equal times extends from this factor times the time to the time divided by it.
+# A histogram of equal times extends from the time multiplied by this factor to the time divided by it.
 _LOWER_EDGE = 0.5
 
 
@@ -31,7 +31,7 @@ class EscapeStatistics(OrbitResult):
     Attributes
     ----------
     channel_counts
-        Number of escapes through channel 1, 2, …, and at the other `outcomes`: collisions count as escapes.
+        Number of escapes at each of the `outcomes`: through channel 1, 2, … and at other ends. Collisions count as escapes.
     bounded, undecided, failed
         Number of starts with the fate `Fate.BOUNDED`, `Fate.NOT_COMPUTED` (including orbits not started yet) and `Fate.FAILED`.
     mean_escape_time, median_escape_time
@@ -43,7 +43,7 @@ class EscapeStatistics(OrbitResult):
     t_max
         Integration time of the orbits, dimensionless; infinite if it is not known.
     outcomes
-        What the counts are of, see `Potential.outcomes`; empty if it is not known.
+        The outcomes that are counted, see `Potential.outcomes`; empty if they are not known.
     """
 
     channel_counts: tuple[int, ...]
@@ -60,7 +60,7 @@ class EscapeStatistics(OrbitResult):
 
     @property
     def starts(self) -> int:
-        """N0: all starts that are neither forbidden nor outside."""
+        """N0: number of starts that are neither forbidden nor outside."""
         return self.decided + self.undecided + self.failed
 
     @property
@@ -69,7 +69,7 @@ class EscapeStatistics(OrbitResult):
         return self.escaped + self.bounded
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Escapes and the probability of an escape by the number of crossings before it."""
+        """Return the escapes and the probability of an escape by the number of crossings before it."""
         counts = self.crossing_counts
         return {"crossings": np.arange(counts.size), "escapes": counts, "escape_probability": self.escape_probabilities}
 
@@ -90,14 +90,14 @@ class EscapeStatistics(OrbitResult):
 
     @property
     def shares(self) -> dict[int, float]:
-        """Share of N0 by outcome, 1 for the first, and by `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
+        """Share of N0 by outcome, from 1 on, and by `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
         counts = dict(enumerate(self.channel_counts, start=1))
         counts |= {int(Fate.BOUNDED): self.bounded, int(Fate.NOT_COMPUTED): self.undecided, int(Fate.FAILED): self.failed}
         return {code: count / self.starts if self.starts else 0.0 for code, count in counts.items()}
 
     @property
     def share_intervals(self) -> dict[int, tuple[float, float]]:
-        """95 % Wilson interval of each of the `shares`, as for independent random starts."""
+        """95 % Wilson interval of each of the `shares`, which holds for independent random starts."""
         limits = {code: wilson_interval(round(share * self.starts), self.starts) for code, share in self.shares.items()}
         return {code: (float(low), float(high)) for code, (low, high) in limits.items()}
 
@@ -105,14 +105,14 @@ class EscapeStatistics(OrbitResult):
     def escape_probabilities(self) -> np.ndarray:
         """p_n = dN_n / N_n, where N_n orbits have not escaped before their n-th crossing; shaped like `crossing_counts`.
 
-        N_0 is the number of decided starts, so the product of all 1 − p_n is the bounded share of these. It equals N0 in a
-        finished map without failures. An unfinished map still lacks late escapes, and every p_n can change.
+        N_0 is the number of decided starts, so that the product of all 1 − p_n is the bounded share of these. In a finished map
+        without failures it equals N0. An unfinished map lacks late escapes, and all of its p_n can change.
         """
         escaped_before = np.cumsum(self.crossing_counts) - self.crossing_counts
         return read_only(self.crossing_counts / (self.decided - escaped_before))
 
     def time_histogram(self, bins: int) -> tuple[np.ndarray, np.ndarray]:
-        """Histogram of the escape times.
+        """Compute the histogram of the escape times.
 
         Parameters
         ----------
@@ -125,7 +125,7 @@ class EscapeStatistics(OrbitResult):
             (bins + 1,) times, evenly spaced on a logarithmic scale from the first escape to the last; from half to twice the time
             if all times are equal, and from 0.5 to 2 without escapes.
         counts
-            (bins,) int64. The last bin includes its upper edge, and the first one escapes at t = 0.
+            (bins,) int64. The last bin includes its upper edge, and the first bin includes escapes at t = 0.
 
         Raises
         ------
@@ -152,8 +152,8 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
     frame
         The map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep; or the outcomes of `classify_orbits`.
     window
-        Only pixels whose centre lies in this rectangle, edges included, count; given as in `MapSpec`, it can extend beyond the
-        map or miss it. None for all pixels, and for orbits that are no map.
+        Only pixels whose centre lies in this rectangle, edges included, count; given as in `MapSpec`. It can extend beyond the
+        map or miss it. None for all pixels, and for orbits that do not form a map.
 
     Examples
     --------
@@ -191,14 +191,14 @@ def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarr
     Parameters
     ----------
     statistics
-        The escapes. Undecided starts count neither as inside nor as escaped, so in an unfinished map S is too small at late
-        times.
+        The escapes. Undecided starts count neither as inside nor as escaped, so that S is too small at late times in an
+        unfinished map.
 
     Returns
     -------
     times
-        (m,) increasing escape times, dimensionless; read-only. All of them, or about `MAX_SURVIVAL_POINTS` evenly spaced in ln t
-        that include the first and the last one. Empty without escapes.
+        (m,) increasing escape times, dimensionless; read-only. All of them, or about `MAX_SURVIVAL_POINTS` evenly spaced in ln t,
+        which include the first and the last one. Empty without escapes.
     survival
         (m,) S at these times; read-only. S is 1 before the first and constant after the last.
     """

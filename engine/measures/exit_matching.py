@@ -1,4 +1,4 @@
-"""Through which exit orbits leave, by the exit through which they entered."""
+"""Shares of the exits through which orbits leave, for each exit through which they entered."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class ExitMatching(OrbitResult):
     entrances
         (m,) numbers of the exits through which orbits enter.
     ends
-        (k,) fates of orbits: `Fate.BOUNDED` of those that stay until t_max, and the outcomes from 1 on that occur.
+        (k,) fates of orbits: `Fate.BOUNDED` for those that stay until t_max, and the outcomes from 1 on that occur.
     counts
-        (m, k) numbers of orbits that enter and end so. Orbits whose integration failed do not count.
+        (m, k) numbers of orbits with each entrance and end. Orbits whose integration failed do not count.
     outcomes
-        What the numbers of exits are, see `Potential.outcomes`.
+        The outcomes to which the numbers of exits refer, see `Potential.outcomes`.
     """
 
     entrances: np.ndarray
@@ -51,28 +51,28 @@ class ExitMatching(OrbitResult):
 
     @property
     def returning_share(self) -> float:
-        """Share of the orbits that leave through the exit by which they entered; NaN without orbits."""
+        """Share of the orbits that leave through the exit through which they entered; NaN without orbits."""
         total = int(self.counts.sum())
         same = self.counts[self.entrances[:, None] == self.ends]
         return float(same.sum()) / total if total else float("nan")
 
     def name_ends(self) -> Sequence[str]:
-        """The ends in words."""
+        """Return the ends in words."""
         return ["stays" if end == Fate.BOUNDED else name_fate(end, self.outcomes) for end in self.ends.tolist()]
 
     def numbers(self) -> dict[str, Any]:
-        """Number of orbits, and share of those that leave through their entrance."""
+        """Return the number of orbits, and share of those that leave through their entrance."""
         return {"orbits": int(self.counts.sum()), "returning_share": self.returning_share}
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """A row for each pair of an entrance and an end."""
+        """Return a row for each pair of an entrance and an end."""
         entrance, end = (grid.ravel() for grid in np.meshgrid(self.entrances, self.ends, indexing="ij"))
         low, high = self.share_intervals
         numbers = {"count": self.counts, "share": self.shares, "share_low": low, "share_high": high}
         return {"entrance": entrance, "exit": end, **{name: values.ravel() for name, values in numbers.items()}}
 
     def describe(self) -> str:
-        """The share of orbits that return, in a sentence."""
+        """Return the share of orbits that return, in a sentence."""
         total = int(self.counts.sum())
         stay = int(self.counts[:, self.ends == Fate.BOUNDED].sum())
         if not total:
@@ -82,16 +82,16 @@ class ExitMatching(OrbitResult):
 
 
 def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> ExitMatching:
-    """Count entering orbits by the exit through which they entered and that through which they leave.
+    """Count entering orbits by the exit through which they enter and the exit through which they leave.
 
     If orbits forget how they entered before they leave, the shares are the same for all entrances: those of the exits in the
-    flux. Differences are due to orbits that pass quickly, along the tubes that connect entrances and exits: "dynamical matching"
-    (Collins, Kramer, Carpenter, Ezra & Wiggins 2014, J. Chem. Phys. 141, 034111).
+    flux. Differences are due to orbits that pass quickly, along the tubes that connect entrances and exits, called "dynamical
+    matching" (Collins, Kramer, Carpenter, Ezra & Wiggins 2014, J. Chem. Phys. 141, 034111).
 
     Parameters
     ----------
     entrances
-        (n,) number of the exit through which each orbit entered, 1 or more, as from `sample_entrances_by_exit`.
+        (n,) number of the exit through which each orbit entered, 1 or more, as returned by `sample_entrances_by_exit`.
     outcomes
         The outcomes of these orbits, from `classify_orbits`.
 

@@ -1,4 +1,4 @@
-"""Islands: connected parts of the bounded starts, and their areas with the error of the resolution."""
+"""Islands: connected parts of the bounded starts, and their areas with the error due to the resolution."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from engine.measures.starts import Measurable, Starts, read_starts
 from engine.propagation.fates import Fate
 
 LEAST_ISLAND = 4
-"""Smaller connected parts of the bounded starts are not counted as islands, in pixels."""
+"""Smallest number of pixels of an island; smaller connected parts of the bounded starts do not count."""
 
-# Variance of a number of points of a square lattice in a region with a smooth edge, over the length of the edge.
+# Variance of the number of points of a square lattice in a region with a smooth edge, divided by the length of the edge.
 _VARIANCE_PER_LENGTH = 0.0724
 
 
@@ -30,7 +30,7 @@ class Islands(RecordedResult):
     count
         Number of connected parts of at least four pixels; pixels that share a corner are connected.
     largest, largest_error
-        Area of the largest of these parts, and its error; 0 without any.
+        Area of the largest of these parts, and its error; 0 if there are no parts.
     """
 
     area: float
@@ -40,7 +40,7 @@ class Islands(RecordedResult):
     largest_error: float
 
     def describe(self) -> str:
-        """The areas in a sentence."""
+        """Return the areas in a sentence."""
         if not self.area:
             return "No start is bounded."
         parts = format_count(self.count, "island")
@@ -51,13 +51,13 @@ class Islands(RecordedResult):
 
 
 def compute_islands(starts: Measurable | Starts) -> Islands:
-    """Count the islands of a map and add up their areas.
+    """Count the islands of a map and compute their areas.
 
-    An area is the number of pixels times the area of one. Its error comes from the resolution alone: the number of points of a
+    An area is the number of pixels times the area of a pixel. Its error is due to the resolution alone: the number of points of a
     square lattice in a region with a smooth edge of length L, in units of the spacing, has the variance 0.0724 L if the lattice
     lies at random (Matérn 1989, J. Microsc. 153, 269; Gundersen & Jensen 1987, J. Microsc. 147, 229). L is π/4 times the number
     of pairs of neighbours of which one is bounded, as for an edge of all directions. Islands with an edge that is not smooth at
-    the scale of a pixel have larger errors. Orbits that escape after t_max are not part of the error.
+    the scale of a pixel have larger errors. The error does not include orbits that escape after t_max.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     Raises
     ------
     ValueError
-        If it is no map.
+        If it is not a map.
 
     Examples
     --------
@@ -80,7 +80,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     >>> islands.count > 1, 0.5 < islands.area < 1.0, islands.area_error < 0.01
     (True, True, True)
     """
-    # Slow to import.
+    # This import is slow.
     from scipy import ndimage
 
     found = read_starts("starts", starts)
@@ -101,7 +101,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
 
 
 def _find_area(inside: np.ndarray, pixel_area: float) -> tuple[float, float]:
-    """Area of the pixels (rows, columns) bool, and its error."""
+    """Return the area of the pixels (rows, columns) bool, and its error."""
     edges = sum(int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in (0, 1))
     length: Any = 0.25 * np.pi * edges
     return float(np.count_nonzero(inside) * pixel_area), float(np.sqrt(_VARIANCE_PER_LENGTH * length) * pixel_area)

@@ -1,4 +1,4 @@
-"""A measure as one entry: its name, its computation, its numbers with their errors, and its words."""
+"""Entries of the table of measures, each with its name, its computation, its numbers with their errors, and its texts."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from enum import StrEnum
 from typing import Any
 
 Variables = Mapping[str, Any]
-"""Variables of a dataset by name, as xarray takes them: dimensions, values and attributes."""
+"""Variables of a dataset by name, in the form of xarray: dimensions, values and attributes."""
 
 
 class Bars(StrEnum):
-    """What the error bars of a number are; the value is their name in texts."""
+    """Meaning of the error bars of a number; the value is its name in texts."""
 
     NONE = ""
     INTERVAL = "95 % interval"
@@ -22,7 +22,7 @@ class Bars(StrEnum):
 
 
 LOW, HIGH = "lower end of the 95 % interval of the {}", "upper end of the 95 % interval of the {}"
-# Endings of the names of the variables of a number, with their words.
+# Suffixes of the names of the variables of a number, with their descriptions.
 _ENDINGS: Mapping[Bars, Mapping[str, str]] = {
     Bars.NONE: {"": "{}"},
     Bars.INTERVAL: {"": "{}", "_low": LOW, "_high": HIGH},
@@ -38,15 +38,15 @@ class Quantity:
     Attributes
     ----------
     name
-        In files, tables and CSV.
+        Name in files, tables and CSV.
     words
-        What it is.
+        Description of the number.
     read
-        Returns it from a result: one number, a number and its error, or a number and both ends of its interval, as `bars` says.
+        A function that returns it from a result: one number, a number and its error, or a number and the ends of its interval.
     bars
-        What its error bars are.
+        Meaning of its error bars.
     label
-        In the legend of its curve; empty for a number that is no curve.
+        Label in the legend of its curve; empty for a number without a curve.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Quantity:
     label: str = ""
 
     def variables(self, result: Any) -> Variables:
-        """The number and its errors as variables of a dataset; NaN if `result` is None."""
+        """Return the number and its errors as variables of a dataset; NaN if `result` is None."""
         endings = _ENDINGS[self.bars]
         found = (math.nan,) * len(endings) if result is None else self.read(result)
         values = found if isinstance(found, tuple) else (found,)
@@ -67,24 +67,24 @@ class Quantity:
 
 
 def describe_number(value: float, words: str) -> tuple[tuple[()], float, dict[str, str]]:
-    """A number as a variable of a dataset."""
+    """Return a number as a variable of a dataset."""
     return (), value, {"long_name": words, "units": "1"}
 
 
 @dataclass(frozen=True)
 class Curve:
-    """How the numbers of a measure are drawn against the energy or a parameter.
+    """The diagram of the numbers of a measure against the energy or a parameter.
 
     Attributes
     ----------
     axis
         Label of the vertical axis.
     logarithmic
-        Whether the vertical axis is.
+        Whether the vertical axis is logarithmic.
     least_top
-        Least height of a linear axis, which begins at 0.
+        Smallest upper limit of a linear axis, which begins at 0.
     level
-        Height of a marked line, and its label.
+        Value of a marked horizontal line, and its label.
     """
 
     axis: str
@@ -94,7 +94,7 @@ class Curve:
 
 
 NO_CURVE = Curve("")
-"""Of measures that are not drawn."""
+"""The curve of measures that are not drawn."""
 
 
 @dataclass(frozen=True)
@@ -104,27 +104,27 @@ class Measure:
     Attributes
     ----------
     name
-        In the library, in files, in links and on the command line.
+        Name in the library, in files, in links and on the command line.
     title
-        On the page and in figures.
+        Title on the page and in figures.
     meaning
-        What it tells, in about five words.
+        Its meaning in about five words.
     compute
-        Returns its result for a map and what is measured on it; None where it is not defined.
+        Returns the result for a map and what is measured on it; None if it is not defined.
     quantities
         Its numbers.
     help
-        What it is and how to read its curve, in two to four sentences; empty without a curve.
+        Explanation of the measure and of its curve, in two to four sentences; empty without a curve.
     curve
-        How its numbers are drawn against the energy or a parameter; an empty curve if they are not.
+        The diagram of its numbers against the energy or a parameter; an empty curve if they are not drawn.
     sentence
-        Returns the result in words; None if the measure is not told in words.
+        Returns a description of the result; None if the measure has no description.
     slow
-        Whether it integrates further orbits, and is measured on demand.
+        Whether it integrates further orbits, and is therefore measured on demand.
     place
-        What it counts in place of the starts in a box, in words; empty if it counts those.
+        Description of what it counts instead of the starts in a box; empty if it counts these.
     terms
-        Terms of the glossary that it needs, with their meanings.
+        Terms of the glossary that it needs, with their definitions.
     other_variables
         Returns further variables of the dataset for a point of a sweep and the result.
     """
@@ -149,7 +149,7 @@ class Measure:
 
     @property
     def bars(self) -> Bars:
-        """What the error bars of its curves are."""
+        """Meaning of the error bars of its curves."""
         return next((quantity.bars for quantity in self.quantities if quantity.label), Bars.NONE)
 
     def variables(self, point: Any, result: Any) -> Variables:

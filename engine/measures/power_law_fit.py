@@ -15,26 +15,26 @@ from engine.measures.starts import wilson_interval
 from engine.systems.well_units import LENGTH, TIME
 
 MIN_EXPECTED_PAIRS = 5.0
-"""Expected number of uncertain pairs, and of certain ones, for a separation to count; χ² requires it (Cochran 1954).
+"""Expected number of uncertain pairs, and of certain pairs, for a separation to count; χ² requires it (Cochran 1954).
 
-The expected number decides, not the observed one, which would select separations with many uncertain pairs by chance.
+The expected number is used, because the observed number would select separations with many uncertain pairs by chance.
 """
 
 MIN_SEPARATIONS, MIN_DECADES = 5, 1.9
-"""Fewest separations, and their smallest range in decades, for an exponent."""
+"""Smallest number of separations, and smallest range of separations in decades, for an exponent."""
 
 MAX_BEND = 2.0
-"""Largest quadratic term of log f in log ε, in standard errors, that counts as a straight line."""
+"""Largest quadratic term of log f in log ε, in standard errors, with which the curve counts as a straight line."""
 
 TRANSITION_FACTOR = 10.0
-"""The fit begins this factor below the largest separation from which the shares look straight: noise hides the end of a bend.
+"""The fit begins this factor below the largest separation of the straight range, because noise hides the end of a bend.
 
 In trials with shares that saturate at some ε, the 95 % interval held the exponent in 63 to 76 % of the cases without this factor,
 and in 94 to 97 % with it.
 """
 
 MIN_PROBABILITY = 1e-4
-"""No power law is claimed if scatter as large as observed is less probable than this."""
+"""No power law is claimed if the probability of a scatter at least as large as observed is below this."""
 
 _CONFIDENCE = 0.95
 _ROUNDING = 1e-9
@@ -57,7 +57,7 @@ class UncertaintyExponent(RecordedResult):
     pairs, uncertain
         (m,) int64, number of pairs of starts at each separation, and of those with two different fates.
     used
-        (m,) bool, the separations in the fit; without an exponent, those of the last attempt.
+        (m,) bool, the separations in the fit; if there is no exponent, those of the last attempt.
     exponent
         α of f(ε) = A ε^α; NaN if the shares follow no power law or are too few.
     low, high
@@ -67,8 +67,8 @@ class UncertaintyExponent(RecordedResult):
     misfit
         χ² per degree of freedom of the used shares about the fitted line; NaN if they are too few for a fit.
     one_inside, both_inside
-        (m,) int64, number of pairs with one orbit or both still inside at the horizon, the only pairs that a longer integration
-        could change. Those of `one_inside` are part of `uncertain`. Empty if not known.
+        (m,) int64, number of pairs with one orbit, or with both orbits, still inside at the horizon, the only pairs that a longer
+        integration could change. The pairs of `one_inside` are part of `uncertain`. Empty if not known.
     horizon
         Integration time of the orbits, dimensionless; NaN if not known.
     """
@@ -102,7 +102,7 @@ class UncertaintyExponent(RecordedResult):
         return 2.0 - self.exponent
 
     def numbers(self) -> dict[str, Any]:
-        """The scalar attributes, and the dimension of the boundary."""
+        """Return the scalar attributes, and the dimension of the boundary."""
         return {**super().numbers(), "dimension": self.dimension}
 
     @property
@@ -112,7 +112,7 @@ class UncertaintyExponent(RecordedResult):
         return sum(array.nbytes for array in arrays)
 
     def describe(self) -> str:
-        """The result, or why there is none, in one sentence."""
+        """Describe the result, or the reason why there is none, in one sentence."""
         if np.isnan(self.exponent):
             return f"No uncertainty exponent: {self._obstacle()}."
         decimals = int(np.clip(np.ceil(-np.log10((self.high - self.low) / 2.0)), 1, 4))
@@ -146,14 +146,14 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
     A and α maximise the binomial likelihood of k uncertain pairs out of n at each ε (for the law see Grebogi, McDonald, Ott &
     Yorke 1983, Phys. Lett. A 99, 415). The law holds for small ε. The largest separation is therefore left out as long as the
     shares bend (`MAX_BEND`) or scatter too much (`MIN_PROBABILITY`), as they do where they saturate. From the first straight
-    range the separations within a factor of `TRANSITION_FACTOR` of its largest one are left out too. Separations with too few
+    range, the separations within a factor of `TRANSITION_FACTOR` of its largest one are also left out. Separations with too few
     pairs (`MIN_EXPECTED_PAIRS`) never count. There is no exponent if too few separations remain (`MIN_SEPARATIONS`,
     `MIN_DECADES`).
 
     The 95 % interval is the wider of two: a normal interval from the binomial errors alone, and a Student t interval with these
     errors times √(χ² per degree of freedom), which includes the scatter of a boundary that differs slightly from scale to scale.
-    In trials it held the exponent in 94 to 97 % of the cases, and in 93 % if each of 17 shares, known to 7 %, was off by another
-    8 %. With 15 %, half of the trials gave no exponent, and the interval held it in 89 % of the others.
+    In trials it contained the exponent in 94 to 97 % of the cases, and in 93 % if each of 17 shares, known to 7 %, was wrong by a
+    further 8 %. With 15 %, half of the trials gave no exponent, and the interval contained it in 89 % of the other half.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def _checked_counts(separations: Any, pairs: Any, uncertain: Any) -> tuple[np.nd
 
 @dataclass(frozen=True, eq=False)
 class _Law:
-    """Most likely power law for the shares at the separations `used` (indices), and its goodness of fit."""
+    """The most likely power law for the shares at the separations `used` (indices), and its goodness of fit."""
 
     used: np.ndarray
     exponent: float = np.nan
@@ -210,7 +210,7 @@ class _Law:
 
 
 def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
-    """The power law that holds from the largest possible ε downwards; if there is none, the last attempt, which does not hold."""
+    """Find the power law that holds from the largest possible ε downwards; if there is none, return the last attempt."""
     decreasing = np.argsort(-epsilon, kind="stable")
     last = _Law(decreasing[:0])
     for begin in range(decreasing.size):
@@ -231,7 +231,7 @@ def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
 
 
 def _with_enough_pairs(which: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Separations of `which` for which the law fitted to all of them expects enough uncertain and enough certain pairs."""
+    """Return those separations of `which` for which the law fitted to all of them expects enough uncertain and certain pairs."""
     which = which[k[which] < n[which]]
     if np.count_nonzero(k[which]) < MIN_SEPARATIONS:
         return which[:0]
@@ -241,14 +241,14 @@ def _with_enough_pairs(which: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k:
 
 
 def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """f at each separation by the most likely power law; at least two of the k must be above 0, and all k below n."""
+    """Return f at each separation by the most likely power law; at least two of the k must be above 0, and all k below n."""
     design = _powers(np.log(epsilon), 1)
     shares: np.ndarray = np.exp(design @ _maximise_likelihood(design, n, k)[0])
     return shares
 
 
 def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:
-    """Power law fitted to the separations `used`; None if they are too few or cover too short a range."""
+    """Fit a power law to the separations `used`; return None if they are too few or cover too short a range."""
     from scipy import special
 
     if used.size < MIN_SEPARATIONS or np.ptp(np.log10(epsilon[used])) < MIN_DECADES:
@@ -274,7 +274,7 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
 
 
 def _measure_bend(x: np.ndarray, n: np.ndarray, k: np.ndarray) -> float:
-    """Quadratic term of log f in x, in standard errors, which include the scatter about the fitted parabola."""
+    """Return the quadratic term of log f in x in standard errors, which include the scatter about the fitted parabola."""
     design = _powers(x, 2)
     coefficients, covariance = _maximise_likelihood(design, n, k)
     share = np.exp(design @ coefficients)
@@ -283,12 +283,12 @@ def _measure_bend(x: np.ndarray, n: np.ndarray, k: np.ndarray) -> float:
 
 
 def _powers(x: np.ndarray, degree: int) -> np.ndarray:
-    """(m, degree + 1) powers of x, shifted to mean 0 and scaled to a range of length 1."""
+    """Return (m, degree + 1) powers of x, shifted to mean 0 and scaled to a range of length 1."""
     return np.vander((x - x.mean()) / np.ptp(x), degree + 1, increasing=True)
 
 
 def _maximise_likelihood(design: np.ndarray, n: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients of log f and their covariance; the log-likelihood is concave in the coefficients."""
+    """Return the coefficients of log f and their covariance; the log-likelihood is concave in the coefficients."""
     from scipy import optimize
 
     def loss(coefficients: np.ndarray) -> float:

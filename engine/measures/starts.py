@@ -1,4 +1,4 @@
-"""What measures count: starts with the outcomes of their orbits, their labels, and confidence intervals of shares."""
+"""Starts with the outcomes of their orbits, which measures count; their labels, and confidence intervals of shares."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Z_95 = 1.959963984540054
 """Half-width of the central 95 % of the normal distribution, in standard deviations."""
 
-# Attributes of datasets that say what was found, not how.
+# Attributes of datasets that contain results, not the way they were made.
 _FOUND = {"result", "outcomes", "worst_energy_error", "complete", "counts", "rounded_share"}
 
 
@@ -48,11 +48,11 @@ class Classified(Protocol):
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """What fates from 1 on are."""
+        """The outcomes with the fates 1, 2, …"""
 
 
 type Measurable = Classified | xr.Dataset
-"""What measures take: a map, its dataset, such as one of the maps of a sweep, or the outcomes of orbits."""
+"""The input of measures: a map, its dataset, such as a map of a sweep, or the outcomes of orbits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,11 +62,11 @@ class Starts:
     Attributes
     ----------
     fate, escape_time, crossings
-        As in `Outcomes`; (rows, columns) of a map, otherwise (n,).
+        As in `Outcomes`; (rows, columns) for a map, otherwise (n,).
     t_max
         Integration time, dimensionless; infinite if it is not known.
     outcomes
-        What fates from 1 on are; empty if it is not known.
+        The outcomes with the fates 1, 2, …; empty if they are not known.
     axes
         (columns,) and (rows,) coordinates of the pixels of a map; None for other orbits.
     pixel_area
@@ -85,7 +85,7 @@ class Starts:
     made_by: Mapping[str, Any] = field(default_factory=dict)
 
     def place(self, window: Window) -> tuple[slice, slice]:
-        """Rows and columns of the pixels whose centres lie in a window, edges included; ValueError if they are no map."""
+        """Return the rows and columns of pixels whose centres lie in a window, edges included; ValueError if there is no map."""
         if self.axes is None:
             raise ValueError(f"window={window}: must be None for orbits that are no map")
         x, ordinate = self.axes
@@ -93,7 +93,7 @@ class Starts:
         return rows, slice(*_find_range(x, window.x_low, window.x_high))
 
     def inside(self, window: Window) -> Starts:
-        """Those in a window, see `place`."""
+        """Return the starts in a window, see `place`."""
         rows, columns = place = self.place(window)
         assert self.axes is not None
         x, ordinate = self.axes
@@ -106,12 +106,12 @@ def _find_range(centres: np.ndarray, low: float, high: float) -> tuple[int, int]
 
 
 def read_starts(name: str, value: Any) -> Starts:
-    """The starts of a map, of its dataset or of any orbits.
+    """Return the starts of a map, of its dataset or of any orbits.
 
     Raises
     ------
     ValueError
-        If it is none of these, or a dataset of several maps; `name` is the parameter.
+        If it is none of these, or a dataset of several maps; the message contains `name` as the parameter.
     """
     if isinstance(value, Starts):
         return value
@@ -127,7 +127,7 @@ def read_starts(name: str, value: Any) -> Starts:
 
 
 def _read_dataset(name: str, dataset: xr.Dataset) -> Starts:
-    """The starts of a dataset; its attributes tell the outcomes, except in files of earlier versions."""
+    """Return the starts of a dataset; its attributes contain the outcomes, except in files of earlier versions."""
     if not {"fate", "escape_time", "crossings"} <= set(dataset.data_vars):
         raise ValueError(f"{name}={short_repr(dataset)}: must be an EscapeMap, or a dataset of one, or Outcomes")
     fate, escape_time, crossings = (np.asarray(dataset[each].values) for each in ("fate", "escape_time", "crossings"))
@@ -157,13 +157,13 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
     fate
         (rows, columns) integer `Fate` codes and outcomes of a map, finished or not.
     bounded
-        Whether bounded orbits are a label of their own, 0, or do not count; each measure has its `COUNTS_BOUNDED`.
+        Whether bounded orbits are a separate label, 0, or do not count; each measure has a constant `COUNTS_BOUNDED`.
 
     Returns
     -------
     labels
-        (rows, columns) int, a read-only view of `fate`: the outcome of escaping orbits, `Fate.BOUNDED` = 0 of bounded ones, and
-        arbitrary codes where `valid` is False.
+        (rows, columns) int, a read-only view of `fate`: the outcome of escaping orbits, `Fate.BOUNDED` = 0 for bounded orbits,
+        and arbitrary codes where `valid` is False.
     valid
         (rows, columns) bool, the pixels that count; read-only.
     """
@@ -172,17 +172,17 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
 
 
 def describe_labels(labels: Any) -> dict[str, Any]:
-    """How the map was made of which labels are given; empty for an array."""
+    """Return how the labelled map was made; empty for an array."""
     return dict(read_starts("labels", labels).made_by) if hasattr(labels, "fate") else {}
 
 
 def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
-    """`labels` as integers and `valid` as bool, both (rows, columns), of a map those of `exit_labels`.
+    """Return `labels` as integers and `valid` as bool, both (rows, columns); for a map they are those of `exit_labels`.
 
     Raises
     ------
     ValueError
-        For any other shape or type, and for negative labels without `valid`: they are codes of starts without an outcome.
+        For any other shape or type, and for negative labels without `valid`, because they are codes of starts without an outcome.
     """
     if hasattr(labels, "fate"):
         labels, valid = exit_labels(read_starts("labels", labels).fate, bounded=bounded)
@@ -205,9 +205,9 @@ def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarra
 
 
 def wilson_interval(counts: Any, totals: Any) -> tuple[np.ndarray, np.ndarray]:
-    """95 % score interval of a share (Wilson 1927, Journal of the American Statistical Association 22, 209).
+    """Compute the 95 % score interval of a share (Wilson 1927, Journal of the American Statistical Association 22, 209).
 
-    The interval holds for independent random draws. Starts on a grid scatter less.
+    The interval holds for independent random draws. The shares of starts on a grid scatter less.
 
     Parameters
     ----------

@@ -18,9 +18,9 @@ MIN_BASINS = 3
 """Fewest basins for the Wada property; two basins always share their boundary."""
 
 COUNTS_BOUNDED = False
-"""Whether bounded orbits are a basin: no, Wada is a property of the exits (Aguirre, Vallejo & Sanjuán 2001).
+"""Whether bounded orbits are a basin. They are not: Wada is a property of the exits (Aguirre, Vallejo & Sanjuán 2001).
 
-The edge of an island of bounded orbits is far from other boundaries between exits, so maps with islands would always fail.
+The edge of an island of bounded orbits is far from other boundaries between exits, so that maps with islands would always fail.
 """
 
 # Percentage of the boundary pixels within `radius_99`.
@@ -40,7 +40,7 @@ class WadaTest(RecordedResult):
         Smallest r for which every pixel of every slim boundary is within r pixels of each slim boundary: an integer, infinite
         if a basin touches no other, NaN for fewer than three basins or without a boundary. A single pixel can decide it.
     radius_99
-        The same for 99 % of the boundary pixels.
+        Smallest r for which this holds for 99 % of the boundary pixels.
     boundary_pixels
         Number of pixels on any boundary.
     shares
@@ -57,7 +57,7 @@ class WadaTest(RecordedResult):
     chart: ClassVar = Chart("distance", "share", "r (pixels)", "share of the boundary within r")
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """The share of the boundary pixels within each distance."""
+        """Return the share of the boundary pixels within each distance."""
         return {"distance": np.arange(self.shares.size), "share": self.shares}
 
     @property
@@ -66,7 +66,7 @@ class WadaTest(RecordedResult):
         return not math.isnan(self.radius)
 
     def describe(self) -> str:
-        """The result in one sentence."""
+        """Return the result in one sentence."""
         count = len(self.basins)
         if count < MIN_BASINS:
             return f"The Wada test needs three basins; this view has {_NUMBER_WORDS[count]}."
@@ -83,15 +83,15 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
 
     For each basin all others are merged into one. The slim boundary of this two-colour image consists of the pixels of either
     colour with a pixel of the other colour above, below, left or right. Basins are Wada, up to the resolution, if each slim
-    boundary, dilated by a few pixels, contains all others (Daza, Wagemakers & Sanjuán 2018, Sci. Rep. 8, 9954). Instead of a yes
-    or no for a given radius this function returns the smallest radius, and shares of the boundary pixels instead of the image.
-    Dilation uses the chessboard distance: radius r turns a pixel into a square with sides of 2r + 1.
+    boundary, dilated by a few pixels, contains all others (Daza, Wagemakers & Sanjuán 2018, Sci. Rep. 8, 9954). Instead of
+    deciding for a given radius, this function returns the smallest radius, and shares of the boundary pixels instead of the
+    image. Dilation uses the chessboard distance: radius r turns a pixel into a square with sides of 2r + 1.
 
     Parameters
     ----------
     labels
-        A map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits do not count, or (rows, columns)
-        integers; equal ones are one basin.
+        A map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits do not count; or (rows, columns)
+        integers, where equal integers are one basin.
     valid
         (rows, columns) bool, the pixels that count; None for all, if no label is negative. Other pixels and the edge of the image
         form no boundary; distances are measured straight across them.
@@ -127,7 +127,7 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
 
 
 def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
-    """(rows, columns) bool, the pixels that count and have a neighbour that counts and has another colour."""
+    """Return (rows, columns) bool, the pixels that count and have a neighbour that counts and has another colour."""
     slim = np.zeros(colours.shape, np.bool_)
     for before, after in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
         differs = (colours[before] != colours[after]) & valid[before] & valid[after]

@@ -24,9 +24,9 @@ LARGEST_TILE = 2048
 """Largest number of orbits per tile."""
 
 STEP_BUDGET = 2_000_000
-"""Largest number of steps of lanes per kernel call, 20 to 50 ms: the interval at which cancellation and progress are handled."""
+"""Largest number of steps of lanes per kernel call of 20 to 50 ms; cancellation and progress are handled between calls."""
 
-# With fewer orbits the lanes are not full enough: a worker gives them back, and they are joined with others.
+# With fewer orbits the lanes are not full enough: a worker returns these orbits, and they are combined with others.
 _FULL_LANES = LANES - 2 * VECTOR
 
 
@@ -49,15 +49,15 @@ class OrbitBatch:
     curve_row
         (n,) the row of the exit curves array for the energy of this orbit.
     outside
-        (n,) int8: the channel beyond whose Lyapunov orbit the start lies; 0 if it lies inside.
+        (n,) int8: number of the exit beyond which the start lies; 0 if it lies inside.
     evidence
         (n,) int8 codes, see `Evidence`: why an orbit is bounded although it was not integrated to t_max; 0 for all others.
     remainder
-        (n, 2) what rounding has dropped from x and y of `state`, see `engine.integrator.kernels.propagate.Orbits`.
+        (n, 2) rounding errors of x and y of `state`, see `engine.integrator.kernels.propagate.Orbits`.
     tested
-        (n,) time of the last test for evidence, 0 before the first.
+        (n,) time of the last test for evidence; 0 before the first test.
     digits
-        (n,) digits to which averages agreed in that test, infinite before the first; see `BoundedOrbitSearch`.
+        (n,) digits to which averages agreed in that test; infinite before the first test; see `BoundedOrbitSearch`.
     """
 
     state: np.ndarray
@@ -74,7 +74,7 @@ class OrbitBatch:
 
     @classmethod
     def empty(cls, curve_row: np.ndarray) -> OrbitBatch:
-        """Orbits (n,) whose starts are set later."""
+        """Return orbits (n,) whose starts are set later."""
         n = curve_row.size
         counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
         fate = np.full(n, Fate.NOT_COMPUTED, np.int8)
@@ -85,13 +85,13 @@ class OrbitBatch:
 
     @classmethod
     def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
-        """Orbits at t = 0. `mark_outside` finds the outside starts."""
+        """Return orbits at t = 0. `mark_outside` finds the outside starts."""
         batch = cls.empty(curve_row)
         batch.set_starts(np.arange(curve_row.size), states)
         return batch
 
     def set_starts(self, which: np.ndarray, states: np.ndarray) -> None:
-        """Set the states (m, 4) of the orbits `which` (m,) at t = 0; those with a non-finite state are forbidden."""
+        """Set the states (m, 4) of the orbits `which` (m,) at t = 0; orbits with a non-finite state are forbidden."""
         self.state[which] = states
         self.fate[which[~np.isfinite(states).all(axis=1)]] = Fate.FORBIDDEN
 
@@ -125,7 +125,7 @@ class OrbitBatch:
         return np.concatenate(tested)
 
     def mark_bounded(self, which: np.ndarray, evidence: np.ndarray | int) -> None:
-        """Store the evidence of the orbits `which` (indices); orbits that have any become bounded."""
+        """Store the evidence of the orbits `which` (indices); orbits with evidence become bounded."""
         self.evidence[which] = evidence
         self.fate[which[self.evidence[which] != Evidence.NONE]] = Fate.BOUNDED
 
@@ -150,17 +150,17 @@ class OrbitBatch:
         self.evidence[images] = np.where(on_evidence, Evidence.MIRRORED, Evidence.NONE)
 
     def reopen(self, which: np.ndarray) -> None:
-        """Make the orbits `which` (indices), which are bounded or undecided, undecided again, to be continued."""
+        """Make the orbits `which` (indices), which are bounded or undecided, undecided again, so that they can be continued."""
         self.fate[which], self.evidence[which] = Fate.NOT_COMPUTED, Evidence.NONE
         self.last_crossings[which] = 0
 
     def final_evidence(self) -> np.ndarray:
-        """(n,) int8: the `Evidence` of each orbit, including `Evidence.INTEGRATED`."""
+        """Return (n,) int8: the `Evidence` of each orbit, including `Evidence.INTEGRATED`."""
         integrated = (self.fate == Fate.BOUNDED) & (self.evidence == Evidence.NONE)
         return np.where(integrated, np.int8(Evidence.INTEGRATED), self.evidence)
 
     def for_kernels(self, pending: np.ndarray) -> Orbits:
-        """The arrays that `propagate` changes in place; pending (n,) uint8: 1 for the orbits to propagate."""
+        """Return the arrays that `propagate` changes in place; pending (n,) uint8: 1 for the orbits to propagate."""
         return Orbits(self.state, self.t, self.crossings, self.last_crossings, self.fate, pending, self.remainder)
 
     @property
@@ -169,7 +169,7 @@ class OrbitBatch:
         return sum(getattr(self, field.name).nbytes for field in fields(self))
 
     def take(self, which: np.ndarray) -> OrbitBatch:
-        """A copy of the orbits `which` (indices)."""
+        """Return a copy of the orbits `which` (indices)."""
         return replace(self, **{field.name: getattr(self, field.name)[which] for field in fields(self)})
 
     def put(self, which: np.ndarray, orbits: OrbitBatch) -> None:
@@ -179,10 +179,10 @@ class OrbitBatch:
 
 
 def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
-    """(n,) int8: the channel beyond which each start (n, 4) lies, 0 for none; runs in a worker."""
+    """Return (n,) int8: the number of the exit beyond which each start (n, 4) lies, 0 for none; runs in a worker."""
     x, y = np.ascontiguousarray(states[:, :2].T)
     with np.errstate(invalid="ignore"):
-        # At the centre of a body V = −∞: a start of any energy has an infinite momentum.
+        # At the centre of a body V = −∞, so that a start of any energy has an infinite momentum.
         energy = np.where(np.isinf(states[:, 2:]).any(axis=1), np.inf, potential.energy(states))
     return find_outside_starts(potential, x, y, energy, curves, curve_row)
 
@@ -207,7 +207,7 @@ class Tile:
 
     @classmethod
     def copy_from(cls, batch: OrbitBatch, orbits: np.ndarray) -> Tile:
-        """A tile of the orbits (indices), all active."""
+        """Return a tile of the orbits (indices), all active."""
         return cls(orbits, batch.take(orbits), np.ones(orbits.size, np.uint8))
 
 
@@ -231,7 +231,7 @@ def _advance_tile(
 
 
 class OrbitPool:
-    """Orbits that wait for a worker, in the order in which they are propagated.
+    """Orbits that wait for a worker, in the order of their propagation.
 
     Parameters
     ----------
@@ -251,7 +251,7 @@ class OrbitPool:
         return self._waiting.size
 
     def take(self) -> np.ndarray:
-        """The share of a worker in the orbits left, in whole SIMD vectors and at most `LARGEST_TILE`."""
+        """Return a worker's share of the remaining orbits, in whole SIMD vectors and at most `LARGEST_TILE`."""
         share = math.ceil((self._waiting.size + self._taken) / self._workers)
         size = min(fill_vectors(share), LARGEST_TILE)
         orbits, self._waiting = np.split(self._waiting, [size])

@@ -1,4 +1,4 @@
-"""Outcomes of a list of orbits of one energy."""
+"""Outcomes of many orbits of one energy."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Outcomes(OrbitResult):
     t_max
         Integration time of the orbits that have not escaped; infinite if it is not known.
     outcomes
-        Those of the potential, see `Potential.outcomes`; empty if they are not known.
+        The outcomes of the potential, see `Potential.outcomes`; empty if they are not known.
     """
 
     fate: np.ndarray
@@ -55,7 +55,7 @@ class Outcomes(OrbitResult):
 
 
 def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
-    """The outcomes of a batch in its current state and its units; `energy` (n,) is the reference for the energy errors."""
+    """Return the outcomes of a batch in its current state and units; energy errors are relative to `energy` (n,)."""
     orbit = (batch.fate >= Fate.BOUNDED) | (batch.fate == Fate.NOT_COMPUTED)
     crossings = np.where(orbit, batch.crossings + batch.last_crossings, 0).astype(np.int32)
     decided, error = batch.fate >= Fate.BOUNDED, np.full(batch.fate.size, np.nan)
@@ -76,7 +76,7 @@ def classify_orbits(
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Outcomes:
-    """Fate, escape time and number of crossings of orbits of one energy.
+    """Compute fate, escape time and number of crossings of orbits of one energy.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def classify_orbits(
 def classify_in_well_units(
     potential: Potential, energy: float, states: np.ndarray, t_max: float, execution: Execution
 ) -> Outcomes:
-    """As `classify_orbits`, of a potential in units of its well; states are not checked, `t_max` and `outcomes` not set."""
+    """Apply `classify_orbits` in units of the well; states are not checked, and `t_max` and `outcomes` are not set."""
     curves = exit_curves(potential, energy)[None]
     batch = OrbitBatch.from_starts(states, np.zeros(len(states), np.int64))
     every_orbit = np.arange(len(states))
@@ -133,7 +133,7 @@ def classify_in_well_units(
 
 
 def _share_done(batch: OrbitBatch, t_max: float) -> float:
-    """Share of the integration time that is done; an orbit that has ended is done."""
+    """Return the share of the integration time that is done; an orbit that has ended counts as done."""
     return float(np.where(batch.fate == Fate.NOT_COMPUTED, np.minimum(batch.t / t_max, 1.0), 1.0).mean())
 
 

@@ -10,12 +10,13 @@ from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import fixed_step_size, kernels_of
 from engine.systems.potential import Potential
 
-# Fixed, so that an orbit always has the same SALI; orthonormal, and generic, so that no symmetry keeps a vector in a subspace.
+# They are fixed, so that an orbit always has the same SALI, orthonormal, and generic, so that symmetry confines none to a
+# subspace.
 DEVIATION_VECTORS = read_only(np.array([[1.0, 2.0, 3.0, 4.0], [4.0, -3.0, 2.0, -1.0]]) / np.sqrt(30.0))
 
 
 def attach_deviations(states: np.ndarray) -> np.ndarray:
-    """Append the initial deviation vectors and the smallest SALI so far, infinity, to states (n, 4); returns (n, 13)."""
+    """Append the initial deviation vectors, and infinity as the smallest SALI so far, to states (n, 4); return (n, 13)."""
     vectors = np.broadcast_to(DEVIATION_VECTORS.ravel(), (len(states), DEVIATION_VECTORS.size))
     return np.column_stack([states, vectors, np.full(len(states), np.inf)])
 
@@ -34,7 +35,7 @@ def propagate_deviations(
     potential
         The `Potential`.
     orbits
-        (n, 13) as from `attach_deviations`.
+        (n, 13) as returned by `attach_deviations`.
     duration
         Integration time, dimensionless, rounded to at least one step.
     execution
@@ -42,14 +43,14 @@ def propagate_deviations(
 
     Returns
     -------
-    (n, 13); the smallest SALI of an orbit stays as it is once the orbit has run off to infinity.
+    (n, 13); the smallest SALI of an orbit no longer changes once its coordinates have become infinite.
     """
     steps = max(1, round(duration / fixed_step_size(potential)))
     return map_tiles(_propagate_tile, potential, orbits, steps, shape=orbits.shape[1:], execution=execution)
 
 
 def _propagate_tile(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
-    """(lanes, 13) rows of a tile (13, lanes) after some steps."""
+    """Return (lanes, 13) rows of a tile (13, lanes) after some steps."""
     with np.errstate(invalid="ignore"):
         kernels_of(potential).fixed_step_sali(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
     return tile.T

@@ -1,4 +1,4 @@
-"""Why an orbit is classified as bounded: integrated to t_max, or on evidence that ends its integration early."""
+"""Reasons why an orbit is classified as bounded: it was integrated to t_max, or evidence ended its integration early."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ class Evidence(IntEnum):
     """The reason why an orbit is classified as bounded.
 
     ``NONE``: not classified as bounded. ``INTEGRATED``: integrated to t_max. ``CLOSED``: its energy is below every saddle, which
-    proves it. The others are numerical evidence that the orbit never escapes, and no proof.
-    ``QUASI_PERIODIC``: its weighted Birkhoff averages converge as on an invariant torus, which is very rare for other orbits.
-    ``ENCLOSED``: invariant curves of quasi-periodic orbits separate it from every exit; it may itself be chaotic.
-    ``MIRRORED``: the mirror image of an orbit that is bounded on evidence.
+    proves it. The others are numerical evidence, not proof, that the orbit never escapes. ``QUASI_PERIODIC``: its weighted
+    Birkhoff averages converge as on an invariant torus, which is very rare for other orbits. ``ENCLOSED``: invariant curves of
+    quasi-periodic orbits separate it from every exit; it may itself be chaotic. ``MIRRORED``: the mirror image of an orbit that
+    is bounded on evidence.
     """
 
     NONE = 0

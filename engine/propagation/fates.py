@@ -20,7 +20,7 @@ CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
 MIN_REGULAR_TIME = 1000.0
-"""Shortest orbit that can be called regular without evidence of a torus, in units of the well: weak chaos takes this long."""
+"""Shortest orbit, in units of the well, that can be called regular without evidence of a torus; weak chaos takes this long."""
 
 
 class Fate(IntEnum):
@@ -37,7 +37,7 @@ class Regularity(IntEnum):
     """Character of a bounded orbit.
 
     ``NOT_APPLICABLE``: it escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to the
-    threshold. ``NO_SIGN_OF_CHAOS``: neither until t_max; it may be a sticky orbit. ``NOT_JUDGED``: not computed yet.
+    threshold. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be sticky. ``NOT_JUDGED``: not computed yet.
     """
 
     NOT_APPLICABLE = 0
@@ -60,36 +60,36 @@ _SENTENCES = {
 
 
 UNRESOLVED = "unresolved"
-"""The name of `Fate.FAILED` for readers."""
+"""Name of `Fate.FAILED` in texts."""
 
 
 def outcome_of(fate: int, outcomes: Sequence[Outcome] = ()) -> Outcome:
-    """The outcome of a fate of 1 or more; a channel where the outcomes are not known, as in files of older versions."""
+    """Return the outcome of a fate of 1 or more; without known outcomes, as in files of older versions, a channel."""
     return outcomes[fate - 1] if fate <= len(outcomes) else Exit.outcome(fate)
 
 
 def name_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
-    """A fate code in a word or two: "exit 1", "bounded"."""
+    """Name a fate in a word or two: "channel 1", "bounded"."""
     if fate >= 1:
         return outcome_of(fate, outcomes).label
     return UNRESOLVED if fate == Fate.FAILED else name_code(Fate, fate)
 
 
 def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
-    """A sentence for a fate code.
+    """Describe a fate in a sentence.
 
     Parameters
     ----------
     fate
         A `Fate`, or the number of an outcome.
     outcomes
-        Those of the potential, `Potential.outcomes`; where they are not known, they are channels.
+        The outcomes of the potential, `Potential.outcomes`; if they are not known, the fates from 1 on are channels.
     """
     return outcome_of(fate, outcomes).sentence if fate >= 1 else _SENTENCES[Fate(fate)]
 
 
 def renumber(fates: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """Fates (any shape) with the outcome k ≥ 1 replaced by ``numbers[k]``, numbers (outcomes + 1,); other codes stay."""
+    """Replace the outcome k ≥ 1 by ``numbers[k]`` in fates of any shape, numbers (outcomes + 1,); other codes stay."""
     renumbered: np.ndarray = np.where(fates > 0, numbers[np.maximum(fates, 0)], fates)
     return renumbered
 
@@ -106,10 +106,10 @@ class OrbitResult(RecordedResult):
         return [outcome.label for outcome in self.outcomes]
 
     def to_xarray(self) -> xr.Dataset:
-        """The dataset of a result, with the outcomes as an attribute."""
+        """Return the dataset of a result, with the outcomes as an attribute."""
         return super().to_xarray().assign_attrs(outcomes=write_outcomes(self.outcomes))
 
 
 def is_chaotic(sali: np.ndarray | float) -> np.ndarray:
-    """Whether bounded orbits with these final SALI values (any shape) are chaotic; bool, and True for NaN."""
+    """Return whether bounded orbits with these final SALI values (any shape) are chaotic; NaN counts as chaotic."""
     return np.logical_not(sali > CHAOS_THRESHOLD)

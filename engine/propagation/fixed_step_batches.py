@@ -43,7 +43,7 @@ def map_tiles(
     execution
         How the computation runs. When it is cancelled, no further tiles are submitted.
     tiles_per_task
-        Largest number of tiles that a worker computes in one call; above 1 where a tile takes less than a millisecond.
+        Largest number of tiles that a worker computes in one call; above 1 if a tile takes less than a millisecond.
 
     Returns
     -------
@@ -64,13 +64,13 @@ def run_tiles(
     execution: Execution = DEFAULT_EXECUTION,
     tiles_per_task: int = 1,
 ) -> Iterator[tuple[int, Any]]:
-    """Run a function on tiles of states in parallel; the first state of each tile and its result, without repeated lanes.
+    """Run a function on tiles of states in parallel; yield the first state of each tile and its result, without repeated lanes.
 
     The parameters are those of `map_tiles`; `work` may return any sequence with one entry per lane.
     """
     workers = execution.workers
     lanes = _lanes_per_tile(len(states), workers)
-    # Two tasks for each worker if there are enough tiles.
+    # There are two tasks for each worker if there are enough tiles.
     per_task = lanes * min(tiles_per_task, max(len(states) // (2 * workers * lanes), 1))
     running: deque[tuple[int, Future[list[Any]]]] = deque()
 
@@ -92,12 +92,12 @@ def run_tiles(
 
 
 def _run_on_each(work: Callable[..., Any], potential: Potential, tiles: list[np.ndarray], *arguments: Any) -> list[Any]:
-    """The results of several tiles; runs in a worker."""
+    """Return the results of several tiles; runs in a worker."""
     return [work(potential, tile, *arguments) for tile in tiles]
 
 
 def _lanes_per_tile(count: int, workers: int) -> int:
-    """A multiple of `VECTOR`, at most `LANES`, so that each worker gets the same number of tiles, which take equal times."""
+    """Return a multiple of `VECTOR`, at most `LANES`, with which each worker gets equally many tiles of equal duration."""
     tiles_per_worker = max(1, math.ceil(count / (workers * LANES)))
     share = max(1, math.ceil(count / (tiles_per_worker * workers)))
     return fill_vectors(share)
@@ -109,6 +109,6 @@ def fill_vectors(count: int) -> int:
 
 
 def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:
-    """(columns, lanes) up to `lanes` states from row `begin`; the last state is repeated to fill whole SIMD vectors."""
+    """Return (columns, lanes) up to `lanes` states from row `begin`; the last one is repeated to fill whole SIMD vectors."""
     lanes = min(lanes, fill_vectors(len(states) - begin))
     return states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

@@ -24,7 +24,7 @@ class OrbitSteps:
     Attributes
     ----------
     outcomes
-        The `Outcomes` of this one orbit, the same to the bit as in a map.
+        The `Outcomes` of this orbit, equal to the bit to those in a map.
     steps
         (m, 5) x, y, px, py, t at the start of each step; none for a start outside.
     t_end
@@ -50,7 +50,7 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
     t_max
         Largest integration time, above 0, dimensionless.
     execution
-        Tells whether the computation is cancelled. It runs in this thread.
+        The cancellation of the computation. The orbit is integrated in this thread.
 
     Raises
     ------

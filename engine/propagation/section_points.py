@@ -18,7 +18,7 @@ def find_section_points(
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
-    """The first `count` upward crossings of y = 0 of each orbit, not counting the start.
+    """Find the first `count` upward crossings of y = 0 of each orbit, not counting the start.
 
     Exits are not detected: after an orbit has escaped, its points are missing or meaningless.
 
@@ -43,7 +43,7 @@ def find_section_points(
 
 
 def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
-    """As `find_section_points` for a tile of states (4, lanes), a multiple of `VECTOR`, which it changes; runs in a worker."""
+    """Apply `find_section_points` to a tile of states (4, lanes), a multiple of `VECTOR`, which it changes; runs in a worker."""
     points = np.full((tile.shape[1], count, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
     steps = int(np.ceil(duration / fixed_step_size(potential)))

@@ -11,7 +11,7 @@ from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# A tile takes some milliseconds, and a task less than 0.1 s, so that a computation is cancelled soon.
+# A tile takes some milliseconds and a task less than 0.1 s, so that cancelling a computation takes effect soon.
 _TILES_PER_TASK, _STEPS_PER_TILE = 8, 100
 
 
@@ -40,7 +40,7 @@ def integrate_speed(
     curve_row
         (n,) the row of `curves` of each orbit.
     duration
-        Above 0, dimensionless.
+        Duration, above 0, dimensionless.
     power
         Exponent of the speed, above 0.
     execution
@@ -51,7 +51,7 @@ def integrate_speed(
     (n,) the integrals; NaN for orbits whose steps become too short.
     """
     gates, rows = exit_gates(curves), np.asarray(curve_row)[:, None]
-    # Of each orbit: its rows for the kernel, and its integral so far.
+    # For each orbit: its rows for the kernel, and its integral so far.
     orbits = np.column_stack([states, np.zeros((len(states), ROWS + 1 - states.shape[1]))])
     pending = np.arange(len(orbits))
     while pending.size:
@@ -70,9 +70,9 @@ def integrate_speed(
 def _integrate_tile(
     potential: Potential, tile: np.ndarray, curves: np.ndarray, gates: np.ndarray, duration: float, power: float
 ) -> np.ndarray:
-    """(lanes, ROWS + 1) orbits and their integrals after some steps; runs in a worker.
+    """Return (lanes, ROWS + 1) orbits and their integrals after some steps; runs in a worker.
 
-    tile (ROWS + 2, lanes): orbits as of `ROWS`, their integrals so far, and their rows of curves.
+    tile (ROWS + 2, lanes): orbits with the rows of `ROWS`, their integrals so far, and their rows of curves.
     """
     orbits, integral, curve_row = tile[:ROWS].copy(), tile[ROWS].copy(), tile[ROWS + 1].astype(np.int64)
     with np.errstate(invalid="ignore"):

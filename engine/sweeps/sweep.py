@@ -70,7 +70,7 @@ class Sweep(Result):
         return int(self.dataset.nbytes)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """A measure as an array, by the name of its variable."""
+        """Return a measure as an array, by the name of its variable."""
         return np.asarray(self.dataset[name].values)
 
     def interval(self, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -92,7 +92,7 @@ class Sweep(Result):
         return found
 
     def to_xarray(self) -> xr.Dataset:
-        """The dataset, which can be written as NetCDF and Zarr."""
+        """Return the dataset, which can be written as NetCDF and Zarr."""
         return self.dataset
 
     def describe(self) -> str:
@@ -105,7 +105,7 @@ class Kept(Protocol):
     """Where the measured values are: in memory, or in a store."""
 
     def read(self) -> xr.Dataset:
-        """All of them, in ascending order."""
+        """Return all of them, in ascending order."""
 
     def append(self, point: xr.Dataset) -> None:
         """Add one."""
@@ -233,7 +233,7 @@ class _InMemory:
 
 
 def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, object]) -> list[xr.Dataset]:
-    """The points of an earlier sweep: those of the values of the request, and then some to refine them."""
+    """Return the points of an earlier sweep: those of the values of the request, and then some to refine them."""
     check_same_sweep("earlier", earlier.dataset.attrs, attributes, but=EXTENT)
     values = earlier.values.tolist()
     inside = [value for value in values if value not in spec.values]
@@ -242,7 +242,7 @@ def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, obje
 
 
 def _next_value(spec: SweepSpec, found: xr.Dataset, order: Sequence[float]) -> float | None:
-    """The value to measure next: those of the request, then where the shares change most; None at the end."""
+    """Return the value to measure next: those of the request, then where the shares change most; None at the end."""
     values = found[spec.name].values
     missing = (value for value in order if value not in values)
     if (first := next(missing, None)) is not None:
@@ -255,7 +255,7 @@ def _next_value(spec: SweepSpec, found: xr.Dataset, order: Sequence[float]) -> f
 
 
 def _coarse_to_fine(values: Sequence[float]) -> list[float]:
-    """The ends first and then repeatedly the midpoints, so that the curves take shape early."""
+    """Return the ends first and then repeatedly the midpoints, so that the curves take shape early."""
     count = len(values)
     order, step = [0, count - 1], 1 << (count - 1).bit_length()
     while step > 1:

@@ -1,4 +1,4 @@
-"""The layer of Lagrangian descriptors, whose picture shows where orbits part."""
+"""The layer of Lagrangian descriptors; its picture shows where neighbouring orbits separate."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _job(spec: MapSpec, settings: Settings) -> Job[DescriptorMap]:
 
 
 def _limits(found: DescriptorMap) -> tuple[float, float]:
-    """The ends of the scale, which few pixels are beyond."""
+    """The ends of the scale; few pixels have values beyond them."""
     known = found.descriptor[np.isfinite(found.descriptor)]
     if not known.size:
         return 0.0, 1.0
@@ -118,8 +118,8 @@ DESCRIPTORS = Layer(
         short_title="Descriptor",
         help=(
             "The integral of a power of the speed, |v|^p, along each orbit over a time τ. It changes rapidly where neighbours "
-            "part: forward in time on the stable manifolds of unstable periodic orbits, backward on the unstable ones, and in "
-            "both directions the picture shows both. An integral ends at the exit, so it is small where orbits leave at once."
+            "separate: forward in time on the stable manifolds of unstable periodic orbits, backward on the unstable ones, in "
+            "both directions on both. The integral ends at the exit, so it is small where orbits leave at once."
         ),
         column="descriptor",
         colours=_colours,

@@ -1,4 +1,4 @@
-"""The pictures of a map alone, and those that compare it with another view."""
+"""The pictures that show a map alone, and those that compare it with another view."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _other_legend(shown: ShownMap) -> Legend:
 
 
 def _difference_legend(shown: ShownMap) -> Legend:
-    """The classes of pixels, or why they are not compared."""
+    """The classes of pixels, or the reason why the views cannot be compared."""
     if shown.other is not None and shown.other.axes != shown.spec.plane.axis_symbols:
         return Legend(sentence="Other axes: pixels cannot be compared.")
     return Legend(shown.palette.difference_entries)
@@ -73,7 +73,7 @@ TIMES = Picture(
     short_title="Times",
     help=(
         "The escape time is the time at which an orbit crosses a Lyapunov orbit outward. It is short and smooth inside "
-        "the basins and diverges at their fractal boundaries. It is long near islands of bounded orbits, too, because "
+        "the basins and diverges at their fractal boundaries. It is also long near islands of bounded orbits, because "
         "orbits stick to the edge of an island before they escape. The colour scale is logarithmic; the colours at its ends "
         "stand for all shorter and all longer times."
     ),
@@ -88,8 +88,8 @@ CROSSINGS = Picture(
     title="Crossings of y = 0",
     short_title="Crossings",
     help=(
-        "The number of times an orbit passes the axis y = 0 upward before it escapes; the start does not count. No "
-        "crossing at all is a direct escape. There is about one crossing per period of the well, so the bands follow the "
+        "The number of times an orbit crosses the axis y = 0 upward before it escapes; the start does not count. An escape "
+        "without a crossing is direct. There is about one crossing per period of the well, so the bands follow the "
         "escape time, and they become thinner towards a basin boundary."
     ),
     column="crossing_class",
@@ -103,8 +103,8 @@ COMPARED = Picture(
     short_title="Other",
     help=(
         "The basins of the view with which this one is compared: another energy, system or plane, with the same window, "
-        "resolution and t_max. Zoom and cursor are those of all pictures; a click marks the same place in both, and its "
-        "orbit is that of the view in the controls."
+        "resolution and t_max. All pictures share zoom and cursor. A click marks the same place in both views and chooses "
+        "the orbit of the view in the controls."
     ),
     column="fate",
     colours=_fate_colours,
@@ -117,7 +117,7 @@ DIFFERENCES = Picture(
     title="Where they differ",
     short_title="Differ",
     help=(
-        "Starts whose orbits have different outcomes in the two views: another exit, or inside in one of them only. Exits "
+        "Starts whose orbits have different outcomes in the two views: different exits, or bounded in one view only. Exits "
         "are compared by their numbers. Close to a basin boundary any change moves starts across it, so small changes of "
         "the energy show where the boundaries are."
     ),

@@ -1,4 +1,4 @@
-"""What a layer over the pictures of a map is: an analysis, and how its result is shown.
+"""A layer over the pictures of a map: an analysis, and how its result is shown.
 
 A layer is one entry, a module of this package that `plots.layers.table` lists. Switches, legends, texts of pixels, progress,
 figures, files, links and the options of the command line follow from it.
@@ -19,23 +19,23 @@ from plots.layers.picture import Picture
 from plots.pictures.palette import PALETTES, Entry, Palette
 
 Settings = Mapping[str, Any]
-"""Values of the settings of layers by their names; a setting that is left out has its default."""
+"""Values of the settings of layers, by name; a setting that is missing has its default."""
 
 
 @dataclass(frozen=True)
 class Code:
-    """A code of a result in words and colours.
+    """The label and the colours of a pixel code.
 
     Attributes
     ----------
     code
         The code.
     label
-        In legends.
+        Label in legends.
     sentence
-        At the mouse; empty for none.
+        Description in the hover text; empty if there is none.
     colours
-        One for each of `PALETTES`, or one for all.
+        One colour for each of `PALETTES`, or one for all.
     """
 
     code: IntEnum
@@ -61,17 +61,17 @@ class Setting:
     Attributes
     ----------
     name
-        In links and on the command line.
+        Name in links and on the command line.
     title
         Label of the choice on the page, for screen readers.
     word
-        Before the first choice.
+        Text before the first choice.
     choices
-        Values by their names in links.
+        Values, by their names in links.
     default
-        One of the values.
+        Default value, one of `choices`.
     help
-        Of the option of the command line; empty for a setting of the page only.
+        Help of the option on the command line; empty for a setting of the page only.
     """
 
     name: str
@@ -82,7 +82,7 @@ class Setting:
     help: str = ""
 
     def value_in(self, settings: Settings) -> Any:
-        """Its value among those of all settings."""
+        """The value of this setting among those of all settings."""
         return settings.get(self.name, self.default)
 
 
@@ -93,7 +93,7 @@ class Count:
     Attributes
     ----------
     metavar
-        What is counted.
+        Word for what is counted, shown in the help.
     most
         Largest number.
     """
@@ -104,7 +104,7 @@ class Count:
 
 @dataclass(frozen=True)
 class Pixels:
-    """How a result becomes pixel codes.
+    """How pixel codes are made from a result.
 
     Attributes
     ----------
@@ -113,19 +113,19 @@ class Pixels:
     codes
         (rows, columns) uint8 codes of a result on its map, or without one.
     colours
-        Of the codes of a result that is drawn alone.
+        Colours of the codes when the result is drawn alone.
     entries
-        Legend of a result that is drawn alone.
+        Legend when the result is drawn alone.
     sentences
-        Of the codes at the mouse, empty for none.
+        Descriptions of the codes in the hover text; empty for codes without one.
     own_sentences
-        Those of a result, if they depend on it.
+        Descriptions of the codes that depend on the result; None if they do not.
     values
-        (rows, columns) float32 numbers of a result, which its codes stand for; None without any.
+        (rows, columns) float32 values behind the codes of a result; None if there are none.
     value_name
-        What the numbers are, at the mouse.
+        Name of the values in the hover text.
     first_codes
-        (rows, columns) codes of an image of `EscapeMap.thinned` before there is a result; None without any.
+        (rows, columns) codes of an image of `EscapeMap.thinned` while there is no result; None if there are none.
     """
 
     column: str
@@ -145,7 +145,7 @@ class Pixels:
 
     @property
     def word_column(self) -> str:
-        """Name of the column of sentences that depend on the result."""
+        """Name of the column of descriptions that depend on the result."""
         return f"{self.column}_words"
 
     @property
@@ -164,16 +164,16 @@ class Pixels:
 
 @dataclass(frozen=True, eq=False)
 class Stroke:
-    """Lines of one colour, and how they are drawn.
+    """Lines of one colour, with their widths and opacity.
 
     Attributes
     ----------
     channel
-        Exit channel, from 1, whose colour they have.
+        Exit channel, from 1; the lines have its colour.
     lines
         (n, 2) points of each line in the plane.
     width, halo_width
-        Of the line, and of the light line below it, in pixels; 0 for none below it.
+        Widths of the line and of the light line below it, in pixels; 0 for no line below.
     alpha
         Opacity of the line, 0 to 1.
     """
@@ -194,9 +194,9 @@ class Over:
     pictures
         Names of the pictures.
     legend
-        Entries of a result.
+        Legend entries of a result.
     pixel_colours
-        Of the codes of its pixels; None if no pixels are drawn. The first code stands for pixels that are not known.
+        Colours of the pixel codes; None if no pixels are drawn. The first code stands for pixels that are not known.
     strokes
         Curves of a result, from back to front; None if no curves are drawn.
     """
@@ -208,23 +208,23 @@ class Over:
 
 
 def own_spec(result: Any) -> MapSpec:
-    """The map of a result that has a value for each of its pixels."""
+    """Return the map of a result that has a value for each of its pixels."""
     spec: MapSpec = result.spec
     return spec
 
 
 def always_allowed(spec: MapSpec) -> str:
-    """Refuse no map."""
+    """Accept every map."""
     return ""
 
 
 def unchanged(result: Any, settings: Settings) -> Any:
-    """Show the whole result."""
+    """Select the whole result."""
     return result
 
 
 def never(frame: EscapeMap) -> bool:
-    """Say no of every map."""
+    """Return False for every map."""
     return False
 
 
@@ -235,42 +235,42 @@ class Layer:
     Attributes
     ----------
     name
-        In links, and of its option on the command line.
+        Name in links, and of the option on the command line.
     title
-        Label of its switch.
+        Label of the switch.
     help
-        Of its option.
+        Help of the option.
     stage
-        What the progress bar of the command line says.
+        Text of the progress bar of the command line.
     result
-        Class of its result, which describes itself in a sentence, ``describe()``, and may be incomplete.
+        Class of the result. Its method ``describe()`` returns a sentence; the result may be incomplete.
     job
-        What computes the result of a map; the settings also have the number of the option under the name of the layer.
-        ValueError for a setting that is out of range.
+        Computes the result of a map. The settings contain the number of a `count` under the layer's name.
+        Raises ValueError if a setting is out of range.
     refusal
-        Why a map cannot have the layer; empty if it can.
+        Reason why the layer cannot be computed for a map; empty if it can.
     count
-        If its option is a number.
+        The number that switches the layer on; None if the option is a flag.
     settings
-        Its choices.
+        Choices of how the layer is computed or drawn.
     select
-        The part of a result that is drawn.
+        Selects the part of a result that is drawn.
     spec_of
-        The map over which a result is drawn alone.
+        The map over which the result is drawn alone.
     pixels
-        Its pixel codes; None without any.
+        Pixel codes of the layer; None if it has none.
     picture
-        Its own picture, which shows its pixel codes; None without one.
+        The layer's own picture, which shows its pixel codes; None if it has none.
     over
-        What it draws over other pictures; None for nothing.
+        What the layer draws over other pictures; None if it draws nothing.
     variables
-        Variables of its dataset that the file of a map contains.
+        Variables of the result's dataset that are written to the file of a map.
     has_table
-        Whether its columns are a file of their own.
+        Whether the variables are also written to a file of their own.
     is_empty
-        Whether its picture shows nothing of a map.
+        Whether the picture would show nothing for a map.
     is_offered
-        Whether the page offers it for a map.
+        Whether the page offers the layer for a map.
     """
 
     name: str
@@ -293,5 +293,5 @@ class Layer:
     is_offered: Callable[[EscapeMap], bool] = never
 
     def over_picture(self, picture: str) -> Over | None:
-        """What it draws over a picture; None for nothing."""
+        """What the layer draws over a picture; None if it draws nothing."""
         return self.over if self.over is not None and picture in self.over.pictures else None

@@ -1,4 +1,4 @@
-"""The layer of the stable manifolds of the Lyapunov orbits, which are curves over other pictures."""
+"""The layer of the stable manifolds of the Lyapunov orbits, drawn as curves over other pictures."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from engine.trajectories.stable_manifolds import MOST_IMAGES, ManifoldArc
 from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
 from plots.pictures.palette import Entry, Mark, Palette
 
-# Images that the page computes: later ones are less than a pixel apart.
+# Number of images that the page computes: later images are less than a pixel apart.
 _IMAGES = 3
 
-# Strokes of the first, the second and all later images, which lie ever closer together.
+# Strokes of the first, the second and all later images: later images lie closer together.
 _WIDTHS, _ALPHAS = (1.6, 1.0, 0.6), (1.0, 0.9, 0.6)
 _RIM = 0.8
 
@@ -45,7 +45,7 @@ def manifold_strokes(manifolds: StableManifolds) -> list[Stroke]:
 
 
 def select_image(manifolds: StableManifolds, image: int) -> StableManifolds:
-    """The arcs of one image; of all images for 0."""
+    """The arcs of one image, or of all images for 0."""
     if image == 0:
         return manifolds
     return replace(manifolds, arcs=tuple(arc for arc in manifolds.arcs if arc.image == image))
@@ -93,4 +93,4 @@ MANIFOLDS = Layer(
     over=Over(pictures=("curves", "basins", "crossings"), legend=_entries, strokes=manifold_strokes),
     has_table=True,
 )
-"""Curves that separate orbits that leave from those that turn back."""
+"""Curves between orbits that escape and orbits that turn back."""

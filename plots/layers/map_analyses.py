@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MapAnalyses(Mapping[str, Any]):
-    """Complete results by the names of their layers; without those that were not requested or are not finished."""
+    """Complete results of layers, by name; layers that were not requested or are not finished are missing."""
 
     results: Mapping[str, Any] = field(default_factory=dict)
 
@@ -28,7 +28,7 @@ class MapAnalyses(Mapping[str, Any]):
         return len(self.results)
 
     def with_result(self, name: str, result: Any) -> MapAnalyses:
-        """The same with another result of a layer; None removes it."""
+        """Return a copy in which a layer has another result; None removes the result."""
         others = {other: found for other, found in self.results.items() if other != name}
         return MapAnalyses(others if result is None else {**others, name: result})
 

@@ -19,7 +19,7 @@ LAYER_COLUMNS = tuple(name for layer in LAYERS.values() if layer.pixels is not N
 
 
 def layer_columns(frame: EscapeMap, names: Collection[str]) -> dict[str, list[Any]]:
-    """The columns of all layers as far as a map tells, for those of some names; the others are a single pixel."""
+    """Columns of all layers: those of the named layers as far as a map determines them, the others with a single pixel."""
     images, _ = frame.thinned()
     pixels = (layer.pixels for layer in LAYERS.values() if layer.name in names)
     known = {one.column: [one.first_codes(images)] for one in pixels if one is not None and one.first_codes is not None}

@@ -1,4 +1,4 @@
-"""What a picture of a map is: its pixel codes, their colours, its legend and its help text."""
+"""A picture of a map: its pixel codes, their colours, its legend and its help text."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class ColourScale:
     low, high
         Ends of the scale.
     colours
-        From low to high.
+        Colours from low to high.
     is_logarithmic
-        Whether the colours are at even distances of the logarithm.
+        Whether equal steps of colour are equal ratios of the numbers.
     is_locked
         Whether the scale is kept for other maps.
     """
@@ -38,14 +38,14 @@ class ColourScale:
 
 @dataclass(frozen=True)
 class ColourTable:
-    """Colours of orbits by their end, which has a hue, and their origin, which has a tone.
+    """Colours of orbits: their end sets the hue, their origin the tone.
 
     Attributes
     ----------
     names
-        Of the ends, and of the origins.
+        Names of the ends, and of the origins.
     tones
-        For each end the colours by origin.
+        For each end, the colours by origin.
     """
 
     names: Sequence[str]
@@ -59,19 +59,19 @@ class Legend:
     Attributes
     ----------
     entries
-        Of the classes of pixels.
+        Entries of the classes of pixels.
     others
-        Of pixels that have none of these classes; left out where there is little room, unless the labels are short.
+        Entries of pixels without a class; they are omitted where there is little room, unless the labels are short.
     is_short
         Whether the labels have short forms.
     scale
-        Of numbers that are drawn over the classes.
+        Scale of the numbers that are drawn over the classes.
     table
-        The entries by hue and tone, which take their place where there is little room.
+        Table by hue and tone, which replaces the entries where there is little room.
     sentence
-        What else there is to say.
+        Further text.
     over
-        Of what layers draw over the picture.
+        Entries of what layers draw over the picture.
     """
 
     entries: Sequence[Entry] = ()
@@ -90,9 +90,9 @@ class OtherView:
     Attributes
     ----------
     title
-        The view in words.
+        Description of the view.
     outcomes
-        What its orbits can end at.
+        What orbits can end at in the view.
     axes
         Symbols of its axes.
     """
@@ -109,19 +109,19 @@ class ShownMap:
     Attributes
     ----------
     spec
-        The map.
+        Request of the map.
     palette
-        Its colours.
+        Colours of the map.
     times
         Scale of the escape times.
     fates
-        Outcomes that the map has.
+        Fates that occur on the map.
     is_locked
-        Whether the escape times keep their scale.
+        Whether the scale of the escape times is kept from map to map.
     results
-        Results of the layers by their names, which may be incomplete.
+        Results of the layers, by name; they may be incomplete.
     other
-        The view with which it is compared; None for none.
+        The view with which the map is compared; None if there is none.
     """
 
     spec: MapSpec
@@ -139,7 +139,7 @@ class ShownMap:
         return cls(frame.spec, palette, times or fitted_scale(frame), fates, results=results)
 
     def outcome_entries(self) -> dict[Fate, Entry]:
-        """Entries of the fates that the map has and that are no ends."""
+        """Entries of the fates that occur on the map and are not ends."""
         return {fate: entry for fate, entry in reversed(self.palette.outcomes.items()) if fate in self.fates}
 
     def time_scale(self) -> ColourScale:
@@ -154,21 +154,21 @@ class Picture:
     Attributes
     ----------
     name
-        In links and on the command line.
+        Name in links and on the command line.
     title, short_title
-        Shown above it, and where there is little room.
+        Title above the picture, and a shorter one where there is little room.
     help
-        What it shows, and how to read it.
+        What the picture shows, and how to read it.
     column
-        Of its pixel codes.
+        Name of the column of its pixel codes.
     colours
-        Of the codes, in their order.
+        Colours of the codes, in order.
     legend
-        Its legend.
+        Legend of the picture.
     has_times
         Whether the escape times are drawn over the codes.
     compares
-        Whether it compares the map with another view, and is on the page only.
+        Whether the picture compares the map with another view; such pictures are on the page only.
     """
 
     name: str

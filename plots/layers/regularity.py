@@ -1,4 +1,4 @@
-"""The layer of regular and chaotic bounded orbits, which has a picture of its own."""
+"""The layer of regular and chaotic bounded orbits, which has its own picture."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _codes(regularity: RegularityMap, frame: EscapeMap | None) -> np.ndarray:
 
 
 def _codes_by_evidence(images: Mapping[str, np.ndarray]) -> np.ndarray:
-    """What the evidence tells: orbits on an invariant torus are regular."""
+    """Codes from the evidence of the map: orbits on an invariant torus are regular."""
     character = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
     character[images["evidence"] == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
     return pixel_codes(images["fate"], character, bounded_too=True)
@@ -107,4 +107,4 @@ REGULARITY = Layer(
     variables=("character",),
     is_empty=lambda frame: not np.any(frame.fate == Fate.BOUNDED),
 )
-"""Which bounded orbits are regular and which chaotic."""
+"""The character of bounded orbits: regular or chaotic."""

@@ -22,13 +22,13 @@ def _by_name[Named: (Layer, Picture, Setting)](*entries: Named) -> Mapping[str, 
 
 
 LAYERS = _by_name(REGULARITY, TRUST, MANIFOLDS, ORIGINS, DESCRIPTORS)
-"""The layers by their names, in the order of their switches."""
+"""The layers by name, in the order of their switches."""
 
 SETTINGS = _by_name(*(setting for layer in LAYERS.values() for setting in layer.settings))
 """The settings of all layers."""
 
 LAYER_OF = MappingProxyType({layer.picture.name: layer for layer in LAYERS.values() if layer.picture is not None})
-"""The layer that a picture shows, by the name of the picture."""
+"""Layers that have a picture, by the name of the picture."""
 
 PICTURES = _by_name(
     CURVES,
@@ -39,10 +39,10 @@ PICTURES = _by_name(
     COMPARED,
     DIFFERENCES,
 )
-"""The pictures by their names."""
+"""The pictures by name."""
 
 TITLES = MappingProxyType({name: picture.title for name, picture in PICTURES.items() if not picture.compares})
-"""Titles of the pictures of a map alone, which figures can show."""
+"""Titles of the pictures that figures can show: those of a map alone."""
 
 
 def map_legend(picture: str, shown: ShownMap) -> Legend:

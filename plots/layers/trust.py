@@ -1,4 +1,4 @@
-"""The layer of pixels whose outcome depends on rounding, which marks them over other pictures."""
+"""The layer that marks, over other pictures, pixels whose outcome depends on rounding."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from plots.layers.layer import Code, Layer, Over, Pixels, Settings, occurring_en
 from plots.pictures.palette import CLEAR, Entry, Mark, Palette
 
 TONES = ("#000000", "#ffffff")
-"""Colours of doubtful pixels, which alternate as on a chessboard: one of the two is visible on any colour."""
+"""Two colours of doubtful pixels, which alternate as on a chessboard: at least one is visible on any colour."""
 
 CODES = (
     Code(Trust.NOT_APPLICABLE, str(Trust.NOT_APPLICABLE), "", ("#ffffff",)),
@@ -21,9 +21,9 @@ CODES = (
     Code(Trust.DOUBTFUL, str(Trust.DOUBTFUL), "doubtful: depends on rounding", TONES),
     Code(Trust.NOT_TESTED, str(Trust.NOT_TESTED), "trust: not tested yet", ("#b0b0b0",)),
 )
-"""All codes in order, in the colours of a result that is drawn alone."""
+"""All codes in order, with the colours of a result that is drawn alone."""
 
-# The code of every other doubtful pixel.
+# Code of every second doubtful pixel.
 _LIGHT = len(CODES)
 
 
@@ -32,7 +32,7 @@ def _job(spec: MapSpec, settings: Settings) -> Job[TrustMap]:
 
 
 def _codes(trust: TrustMap, frame: EscapeMap | None) -> np.ndarray:
-    """The codes of `Trust`; every other doubtful pixel has a code of its own."""
+    """The codes of `Trust`; every second doubtful pixel has a code of its own."""
     rows, columns = np.indices(trust.trust.shape)
     is_light = (trust.trust == Trust.DOUBTFUL) & ((rows + columns) % 2 == 1)
     codes: np.ndarray = np.where(is_light, _LIGHT, trust.trust).astype(np.uint8)
@@ -45,7 +45,7 @@ def _colours(palette: Palette) -> list[str]:
 
 
 def _marks() -> list[str]:
-    """Colours over other pictures: the two tones of doubtful pixels."""
+    """Colours over other pictures: only doubtful pixels have colours."""
     colours = [CLEAR] * (_LIGHT + 1)
     colours[Trust.DOUBTFUL], colours[_LIGHT] = TONES
     return colours
@@ -78,4 +78,4 @@ TRUST = Layer(
     variables=("trust",),
     is_offered=lambda frame: frame.is_rounded,
 )
-"""Which pixels depend on rounding."""
+"""Pixels whose outcome depends on rounding."""

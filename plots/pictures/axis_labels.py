@@ -1,4 +1,4 @@
-"""Ticks of axes, as distances from one of them where plain numbers would be too long."""
+"""Ticks of axes. Where plain numbers would be too long, they are labelled as distances from one tick."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ class Axis(NamedTuple):
 
 
 class Offset(NamedTuple):
-    """A number near the middle of an axis and a power of ten: labels are distances from the number in units of the power."""
+    """A number near the middle of an axis and a power of ten. Labels are distances from the number, in units of the power."""
 
     base: Decimal
     exponent: int
 
     def describe(self, name: str) -> str:
-        """The labels as an expression in the variable of the axis."""
+        """The text of the labels: an expression in the variable of the axis."""
         distance = f"({name} {'−' if self.base > 0 else '+'} {abs(self.base):f})" if self.base else name
         return f"{distance} / 1e{self.exponent}"
 
 
 def find_offset(low: float, high: float, finest: int = FINEST_PLAIN_STEP) -> Offset | None:
-    """The offset of the labels of an axis between two numbers; None if its ticks are at least 10 to the power `finest` apart."""
+    """Return the offset of an axis between two numbers; None if its ticks are at least 10 to the power `finest` apart."""
     step = _step(low, high)
     exponent = step.adjusted()
     if exponent >= finest:
@@ -41,9 +41,9 @@ def find_offset(low: float, high: float, finest: int = FINEST_PLAIN_STEP) -> Off
 
 
 def label_axis(name: str, low: float, high: float) -> Axis:
-    """Ticks at multiples of 1, 2 or 5 · 10^k between two numbers, three to eight of them, with exact labels.
+    """Return three to eight ticks between two numbers, at multiples of 1, 2 or 5 · 10^k, with exact labels.
 
-    If there is an offset of `find_offset`, the labels are distances from it, and the axis name says so.
+    If `find_offset` returns an offset, the labels are distances from it, and the axis name contains it.
     """
     values, offset = _multiples(low, high, _step(low, high)), find_offset(low, high)
     if offset is None:
@@ -56,7 +56,7 @@ def label_axis(name: str, low: float, high: float) -> Axis:
 
 
 def _step(low: float, high: float) -> Decimal:
-    """Distance of the ticks."""
+    """Distance between neighbouring ticks."""
     most = (high - low) / _FEWEST_TICKS
     exponent = math.floor(math.log10(most))
     return Decimal(next((m for m in (5, 2) if m * 10.0**exponent <= most), 1)).scaleb(exponent)

@@ -13,12 +13,12 @@ from plots.pictures.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
 """Column of a layer that is off."""
 
-# Images of a map without layers.
+# Columns of a map without layers.
 _DRAWN = ("fate", "crossing_class", "crossings", "escape_time")
 
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 FIRST_CLASS = len(OUTCOMES)
-"""The first pixel code of a class; before it come the fates that are no ends."""
+"""The first pixel code of a class; the fates that are not ends have the codes before it."""
 
 _UNDECIDED = _OUTCOME_CODES[Fate.NOT_COMPUTED]
 _WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
@@ -28,7 +28,7 @@ _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
     """One image per column, in the smallest integer types, and the position of the images in the plane.
 
-    Coarse frames have coarse images. The column of differences is a single pixel: it needs another map (`difference_column`).
+    Coarse frames have coarse images. The column of differences is one pixel: it needs another map, see `difference_column`.
     """
     images, window = frame.thinned()
     fate, crossings = images["fate"], images["crossings"]
@@ -57,13 +57,13 @@ def fate_codes(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
 
 
 def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], sides: tuple[int, int]) -> dict[str, list[Any]]:
-    """Columns of an unfinished frame over those of an earlier map of the same starts, whose pixels stay until finer ones come.
+    """Columns of an unfinished frame over those of an earlier map: pixels of the earlier map stay until finer ones are computed.
 
     Parameters
     ----------
     columns, earlier
         Columns of `map_columns`; their windows may differ.
-    sides
+    (columns, rows) of the finished map, the largest size of the images; smaller images have the finer pixels of both maps.
         (columns, rows) of the finished map, which the images do not exceed; else they have the finer pixels of both.
     """
     if columns["complete"][0]:
@@ -88,7 +88,7 @@ def _pixel_sides(columns: dict[str, list[Any]]) -> tuple[float, float]:
 
 
 def _pixels_at(columns: dict[str, list[Any]], x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Index arrays (rows, columns) of the pixels at x (columns,) and y (rows,), and whether these points lie in the images."""
+    """Indices (rows, columns) of the pixels at x (columns,) and y (rows,), and whether these points lie in the images."""
     rows, across = columns["fate"][0].shape
     column = np.floor((x - columns["x"][0]) / columns["dw"][0] * across).astype(int)
     row = np.floor((y - columns["y"][0]) / columns["dh"][0] * rows).astype(int)
@@ -102,9 +102,9 @@ def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]
     Parameters
     ----------
     columns
-        Columns of `map_columns`; the result is a further column.
+        Columns of `map_columns`; the result is an additional column.
     other
-        Those of the other view; its window and the number of its pixels may differ.
+        Columns of the other view; its window and its number of pixels may differ.
     """
     (rows, across), (width, height) = columns["fate"][0].shape, _pixel_sides(columns)
     x, y = columns["x"][0] + width * (np.arange(across) + 0.5), columns["y"][0] + height * (np.arange(rows) + 0.5)
@@ -113,7 +113,7 @@ def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]
 
 
 def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Codes of `DIFFERENCES` for two arrays of pixel codes of the fates; pixels without an orbit in both keep their code."""
+    """Codes of `DIFFERENCES` for two arrays of pixel codes of fates. A pixel without an orbit in both keeps its code."""
     lack_one, lack_other = np.isin(one, _WITHOUT_ORBIT), np.isin(other, _WITHOUT_ORBIT)
     classes = np.where(lack_one != lack_other, 2, np.where(one != other, 1, 0))
     codes = np.where(lack_one & lack_other, one, FIRST_CLASS + classes)
@@ -126,7 +126,7 @@ def end_words(outcomes: Sequence[Outcome]) -> list[str]:
 
 
 def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
-    """Words for each outcome at its place among `Palette.ends`."""
+    """Words for each outcome, at its place among `Palette.ends`."""
     placed = [""] * len(PAPER.ends)
     for place, word in zip(end_places(outcomes), words, strict=True):
         placed[place] = word
@@ -134,10 +134,10 @@ def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
 
 
 def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """How pixels of a potential with these outcomes become codes, for programs that make the columns elsewhere.
+    """Return how pixels of a potential with these outcomes become codes, for programs that make the columns elsewhere.
 
-    That is the fates that are no ends, the first class, the places and words of the ends, the classes of crossings, and the codes
-    of pixels without a decision or an orbit.
+    The result contains the fates that are not ends, the first class, the places and words of the ends, the classes of crossings,
+    and the codes of pixels without a decision or an orbit.
     """
     return {
         "outcomes": [[int(fate), code] for fate, code in _OUTCOME_CODES.items()],

@@ -15,15 +15,15 @@ from plots.pictures.histories import History
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 
 MOST_LINE_POINTS = 20_000
-"""Paths with more points are drawn as density images."""
+"""Paths with more points than this are drawn as density images."""
 
 TRAIL = 25.0
 """Length of the trail behind the moving point in time, about four periods of the well."""
 
-# Twice the pixels of the plot, for high-density screens.
+# Twice the number of pixels of the plot, for high-density screens.
 _SHADED_PIXELS = 600
 _FAINTEST = 50
-# Half the side of the window of a path: in units of its reach, and at most in units of the distance of the farthest saddle.
+# Half the side of the window of a path: in units of the path's reach, and at most this many distances of the farthest saddle.
 _AROUND_PATH, _FARTHEST_SHOWN = 1.1, 10.0
 
 
@@ -41,9 +41,9 @@ class OrbitCurves:
         The history of each of `ORBIT_QUANTITIES` by name.
     section
         (n, 2) x and px of its upward crossings of y = 0.
-    visits
+    (n, n) uint8 opacity of the density of a long path over the window, row 0 lowest; None for a shorter path.
         (n, n) uint8 opacity of the density of a long path over the window, row 0 lowest; None for shorter paths.
-    part
+    Samples of the orbit that path and histories show; by default all.
         Samples of the orbit that path and histories show; all by default.
     """
 
@@ -68,9 +68,9 @@ class OrbitCurves:
 
 
 def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: bool = True) -> OrbitCurves:
-    """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock.
+    """Compute the curves of an orbit. This is slow: call it once per orbit and outside the session's lock.
 
-    with_visits: whether a long path gets its density image, which needs the extra ``page``.
+    with_visits: whether a long path has a density image, which needs the extra ``page``.
     """
     window = _path_window(potential, orbit) if orbit.exits_unknown else find_well_window(potential, orbit.energy)
     everything = slice(None)
@@ -80,7 +80,7 @@ def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: boo
 
 
 def find_well_window(potential: Potential, energy: float) -> Window:
-    """The window of the interior; below the minimum of the well, where an orbit can only be outside, that of the whole well."""
+    """Window of the interior, or of the whole well below the minimum of the well, where an orbit can only be outside."""
     try:
         return default_window(potential, SPACE, energy)
     except ValueError:
@@ -90,21 +90,21 @@ def find_well_window(potential: Potential, energy: float) -> Window:
 
 
 def _path_window(potential: Potential, orbit: Orbit) -> Window:
-    """A square around the origin and the path near it, for an orbit without known exits, which need not stay in a well."""
+    """A square around the origin and the nearby path, for an orbit without known exits, which may leave any well."""
     reach = float(max(np.abs(orbit.x).max(), np.abs(orbit.y).max()))
     half = min(_AROUND_PATH * reach, _FARTHEST_SHOWN * float(np.hypot(*potential.saddles.T).max()))
     return Window(-half, half, -half, half)
 
 
 def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurves:
-    """Restrict path and histories to an interval of time, at full resolution; slow like `compute_orbit_curves`.
+    """Restrict path and histories to an interval of time, at full resolution. This is as slow as `compute_orbit_curves`.
 
     Parameters
     ----------
     curves
         Curves of an orbit, restricted or not.
     begin, end
-        The interval, ``begin < end``; without samples in it, path and histories are empty.
+        The interval, ``begin < end``; if it contains no samples, path and histories are empty.
     """
     t = curves.orbit.t
     part = slice(int(np.searchsorted(t, begin)), int(np.searchsorted(t, end, side="right")))
@@ -143,14 +143,14 @@ def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
 
 @dataclass(frozen=True)
 class Moment:
-    """(n,) x and y of the trail of an orbit, which ends at its current position."""
+    """(n,) x and y of the trail of an orbit, which ends at the current position."""
 
     x: np.ndarray
     y: np.ndarray
 
 
 def moment(orbit: Orbit, t: float) -> Moment:
-    """Trail of an orbit at a time; at its start for earlier times, at its end for later ones."""
+    """Trail of an orbit at a time: at times before the orbit its first sample, after it the trail at its end."""
     last = max(int(np.searchsorted(orbit.t, t, side="right")) - 1, 0)
     first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
     trail = slice(first, last + 1)

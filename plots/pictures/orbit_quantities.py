@@ -1,4 +1,4 @@
-"""The quantities of an orbit that are drawn against time, as entries: SALI, the Lyapunov exponent and R²."""
+"""The quantities of an orbit that are drawn against time: SALI, the Lyapunov exponent and R²."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ class OrbitQuantity:
     Attributes
     ----------
     name
-        The name in files and of the field of `Orbit.plot`.
+        Name in files, and name of the field of `Orbit.plot`.
     title
-        The title of its plot.
+        Title of the plot.
     label
-        The name at the axis.
+        Label of the axis.
     values
         (n,) values at all times of an orbit.
     limits
-        The ends of the axis for histories of at least one sample.
+        Returns the ends of the axis for a history of at least one sample.
     least
-        The lower end of a logarithmic axis, at which smaller values are drawn; None for a linear axis.
+        Lower end of a logarithmic axis, where smaller values are drawn; None for a linear axis.
     threshold
-        A value to be marked; None without one.
+        Value to be marked; None if there is none.
     ticks
-        The labels of the axis; empty for those that the plot chooses.
+        Labels of the axis; empty if the plot chooses them.
     """
 
     name: str
@@ -56,7 +56,7 @@ class OrbitQuantity:
         return self.least is not None
 
     def history(self, orbit: Orbit, part: slice) -> History:
-        """The quantity over some samples of an orbit, from the first one after t = 0 on."""
+        """The quantity over some samples of an orbit, without the one at t = 0."""
         later = slice(max(part.start or 0, int(orbit.t[0] == 0.0)), part.stop)
         values = self.values(orbit)[later]
         if self.least is not None:
@@ -71,7 +71,7 @@ def _sali_limits(histories: Sequence[History]) -> tuple[float, float]:
 
 
 def _exponent_limits(histories: Sequence[History]) -> tuple[float, float]:
-    """From the power of ten below the last values."""
+    """Limits that begin at the power of ten below the last values."""
     lowest = min(float(history.line[1][-1]) for history in histories)
     return find_decades(lowest, _LARGEST_EXPONENT)
 

@@ -1,7 +1,7 @@
 """Colours of the page and their meaning: the palette of the paper and a colour-blind safe one.
 
-A colour has one meaning: outcomes, crossing classes, escape times, orbits and curves have no colour in
-common, nor have they one with the layers, whose entries in `plots.layers` have their colours.
+A colour has one meaning: outcomes, crossing classes, escape times, orbits and curves share no colour with each other or with the
+layers, whose colours are in their entries in `plots.layers`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from engine.systems.outcomes import KINDS, Exit
 
 
 class Mark(Enum):
-    """What an entry of a legend shows of its colour."""
+    """How an entry of a legend shows its colour."""
 
     PATCH = "patch"
     LINE = "line"
@@ -44,31 +44,31 @@ OUTCOMES: dict[Fate, str] = {
     Fate.FORBIDDEN: "forbidden: no such orbit",
     Fate.BOUNDED: "bounded",
 }
-"""Fates that are no ends, in the order of the pixel codes of all images; ends or classes follow."""
+"""Fates that are not ends, in the order of the pixel codes of all images; ends or classes follow."""
 
 CROSSING_CLASSES: tuple[tuple[int, str], ...] = ((0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (11, "> 10"))
 """(fewest crossings, label) of each class."""
 
 DIFFERENCES: tuple[tuple[str, str], ...] = (
-    ("same end", "#7f7f7f30"),
-    ("other end", "#6a00f4"),
+    ("same outcome", "#7f7f7f30"),
+    ("other outcome", "#6a00f4"),
     ("start in one view only", "#b0904aa0"),
 )
-"""(label, colour) of each class of pixels of two views."""
+"""(label, colour) of each class of pixels in the comparison of two views."""
 
 
 def end_places(outcomes: Sequence[Outcome]) -> list[int]:
-    """The place of each outcome in `Palette.ends`, the same in all systems; those beyond share the last of a kind."""
+    """The place of each outcome in `Palette.ends`, the same in all systems; outcomes beyond the last place of a kind share it."""
     counts = {key: len(PAPER.of_kinds[key]) for key in KINDS}
     firsts = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
     return [firsts[each.kind.key] + min(each.number, counts[each.kind.key]) - 1 for each in outcomes]
 
 
 MOST_ORBITS = 5
-"""Orbits that have a colour."""
+"""Largest number of orbits, each with its own colour."""
 
 CLEAR = "#00000000"
-"""Nothing."""
+"""Transparent."""
 
 # Translucent, for light and dark pages.
 _FORBIDDEN = "#ffffff00"
@@ -80,22 +80,22 @@ _FAILED = "#000000"
 
 @dataclass(frozen=True)
 class Palette:
-    """Set of colours.
+    """A set of colours.
 
     Attributes
     ----------
     name
         Displayed name.
     of_kinds
-        Of the outcomes of each of `engine.systems.outcomes.KINDS`, such as those of the exit channels 1 to 8.
+        Colours of the outcomes of each of `engine.systems.outcomes.KINDS`, such as exit channels 1 to 8.
     bounded
-        Of bounded orbits.
+        Colour of bounded orbits.
     classes
-        Of each of `CROSSING_CLASSES`, from light to dark.
+        Colours of `CROSSING_CLASSES`, from light to dark.
     times
-        Of escape times, from fast to slow: colours at even distances of a scale, or empty for the scale cividis.
+        Colours of escape times, from fast to slow, at even distances of a scale; empty for the scale cividis.
     orbits
-        Of the chosen orbits, in order.
+        Colours of the chosen orbits, in order.
     """
 
     name: str
@@ -122,12 +122,12 @@ class Palette:
 
     @property
     def ends(self) -> tuple[str, ...]:
-        """Colours of all that orbits can end at."""
+        """Colours of all ends of orbits."""
         return tuple(colour for key in KINDS for colour in self.of_kinds[key])
 
     @cached_property
     def outcomes(self) -> dict[Fate, Entry]:
-        """Legend of fates that are no ends, in the order of the pixel codes."""
+        """Legend of fates that are not ends, in the order of the pixel codes."""
         colours = (_NOT_COMPUTED, _FAILED, _OUTSIDE, _FORBIDDEN, self.bounded)
         return {fate: Entry(label, colour) for (fate, label), colour in zip(OUTCOMES.items(), colours, strict=True)}
 
@@ -142,7 +142,7 @@ class Palette:
         return [Entry(label, colour) for (_, label), colour in zip(CROSSING_CLASSES, self.classes, strict=True)]
 
     def entry(self, fate: int, outcomes: Sequence[Outcome]) -> Entry:
-        """Label and colour of a fate; `outcomes` are those of the potential, channels where they are not known."""
+        """Label and colour of a fate. `outcomes` are those of the potential; without them all ends are channels."""
         if fate < 1:
             return self.outcomes[Fate(fate)]
         outcome = outcome_of(fate, outcomes)
@@ -153,7 +153,7 @@ class Palette:
         return [self.entry(fate, outcomes) for fate in range(1, len(outcomes) + 1)]
 
     def legend_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
-        """Those of the outcomes that occur."""
+        """Labels and colours of the outcomes that occur."""
         return [entry for entry, outcome in zip(self.end_entries(outcomes), outcomes, strict=True) if outcome.occurs]
 
     @cached_property
@@ -184,17 +184,17 @@ class Palette:
 
     @property
     def outcome_colours(self) -> list[str]:
-        """Colours of the pixel codes of fates that are no ends, which come first in all pictures."""
+        """Colours of the pixel codes of fates that are not ends; these codes come first in all pictures."""
         return [entry.colour for entry in self.outcomes.values()]
 
 
 def short_label(label: str) -> str:
-    """A label where there is little room: of a channel its number, and what stands before a colon."""
+    """The short form of a label: the number of an exit, or the part before a colon."""
     return label.removeprefix("exit ").partition(":")[0]
 
 
 def rgba(colours: Sequence[str]) -> np.ndarray:
-    """(n, 4) uint8 of colours ``#rrggbb`` or ``#rrggbbaa``."""
+    """Return (n, 4) uint8 of colours ``#rrggbb`` or ``#rrggbbaa``."""
     return np.array([list(bytes.fromhex(colour[1:].ljust(8, "f"))) for colour in colours], np.uint8)
 
 
@@ -230,13 +230,13 @@ COLOUR_BLIND_SAFE = Palette(
     times=(),
     orbits=("#af2593", "#00c700", "#8e5700", "#99a7f0", "#2b6e60"),
 )
-"""Channels after Okabe and Ito, crossings light to dark violet, times from cividis."""
+"""Colours of Okabe and Ito for channels; crossings light to dark violet; times from cividis."""
 
 PALETTES = {"paper": PAPER, "safe": COLOUR_BLIND_SAFE}
 """Palettes by their names in links."""
 
 MOST_CHANNELS = len(PAPER.channels)
-"""Exit channels that have a colour."""
+"""Number of exit channels with a colour of their own."""
 
 
 @dataclass(frozen=True)
@@ -261,7 +261,7 @@ DARK = LineColours(
 )  # fmt: skip
 
 MEASURED, SET_ASIDE = "#4c8dc4", "#b9c3cf"
-"""Colours of measured points, and of those that a fit leaves out."""
+"""Colours of measured points, and of points that a fit leaves out."""
 
 LAW_COLOURS = {"exponential": "#d1495b", "power law": "#b58900"}
 """Colours of fitted decay laws."""

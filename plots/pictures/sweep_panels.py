@@ -1,4 +1,4 @@
-"""Panels of the curves of a sweep: one of the shares, and one of each other measure that is a curve."""
+"""Panels of the curves of a sweep: one for the shares, and one for each other measure that is a curve."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from engine import MEASURES, Measure
 from engine.results import Sweep
 
 SHARES = MEASURES["shares"]
-"""The measure of the first panel, which has a curve for each outcome."""
+"""The measure of the first panel, with a curve for each outcome."""
 
 CURVE_PANELS = tuple(measure for measure in MEASURES.values() if measure.labels)
-"""The measures of the other panels in their order."""
+"""The measures of the other panels, in order."""
 
 
 def is_measured(measure: Measure, curves: Sweep) -> bool:
-    """Whether a sweep has the numbers of a measure."""
+    """Whether a sweep contains a measure."""
     return set(measure.labels) <= set(curves.dataset)
 
 
 def find_numbers(measure: Measure, curves: Sweep) -> np.ndarray:
-    """All numbers of a panel, ends of error bars included, without NaN."""
+    """All numbers of a panel without NaN, including the ends of error bars."""
     values = np.concatenate([np.concatenate([curves[name], *curves.interval(name)]) for name in measure.labels])
     return values[np.isfinite(values)]

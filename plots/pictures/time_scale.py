@@ -12,9 +12,9 @@ from engine import EscapeMap, Fate
 
 # Shares of the escape times below and above the scale.
 _LEFT_OUT = 0.01
-# The lowest end of a fitted scale: an orbit that starts at an exit escapes at once.
+# Lower limit of a fitted scale: an orbit that starts at an exit escapes at once.
 _LEAST = 0.1
-# Scales that are as long as this, in powers of ten, end at round numbers, so that they seldom change from map to map.
+# Scales at least this long, in powers of ten, end at round numbers, so that they seldom change from map to map.
 _LONG = 1.0
 _ROUND, _FINE = (1.0, 2.0, 5.0, 10.0), tuple(tenth / 10.0 for tenth in range(10, 101))
 
@@ -42,7 +42,7 @@ class TimeScale:
             raise ValueError(f"low={self.low}, high={self.high}: must be positive and finite, low below high")
 
     def classes(self, times: np.ndarray, count: int) -> np.ndarray:
-        """Indices (n,) of the colours, of `count`, that stand for times (n,)."""
+        """Return indices (n,) of the colours, out of `count`, for times (n,)."""
         share = np.log(np.clip(times, self.low, self.high) / self.low) / math.log(self.high / self.low)
         index: np.ndarray = np.minimum((share * count).astype(int), count - 1)
         return index
@@ -73,8 +73,8 @@ def common_scale(frames: Iterable[EscapeMap]) -> TimeScale:
 
 
 def _round(number: float, steps: tuple[float, ...], *, up: bool) -> float:
-    """The next of steps · 10^k at or above a positive number, or at or below it."""
-    # The logarithm may round up to the next whole number, the notation with all digits does not.
+    """Round a positive number up or down to one of steps · 10^k."""
+    # The logarithm may be rounded up to the next whole number; the notation with all digits is exact.
     power = 10.0 ** int(f"{number:.16e}".partition("e")[2])
     candidates = [float(f"{step * power:.6g}") for step in steps]
     return min(one for one in candidates if one >= number) if up else max(one for one in candidates if one <= number)

@@ -20,7 +20,7 @@ from plots.pictures.sweep_panels import CURVE_PANELS, SHARES, is_measured
 from plots.printed.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 
-# Equal curves, such as those of channels that are mirror images, coincide: the second is dashed.
+# Equal curves, such as the shares of mirror-image channels, coincide: the second one is dashed.
 _DASHED = (0, (4.0, 3.0))
 _SAMPLES = 300
 # Height of the figure of curves, in units of its width: with two columns and with one.
@@ -28,7 +28,7 @@ _HEIGHT, _HEIGHT_OF_COLUMN = 1.2, 4.5
 # If more than this share remains, the curve is in the upper half of its panel.
 _MOST_STAY = 0.4
 _SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}
-# Longer curves have no markers.
+# Curves with more points have no markers.
 _MOST_MARKERS = 60
 _DASHES = {"exponential": "--", "power law": "-."}
 
@@ -124,7 +124,7 @@ def draw_shares(
 
 
 def draw_decay_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
-    """Draw the share of starts that have not escaped against time until t_max, and its fits."""
+    """Draw the share of starts that have not escaped against time until t_max, with its fits."""
     times = np.concatenate([[1.0], laws.times[laws.times > 1.0], [t_max]])
     steps = np.concatenate([[1.0], laws.survival[laws.times > 1.0], laws.survival[-1:] if laws.times.size else [1.0]])
     positive = steps > 0.0
@@ -135,7 +135,7 @@ def draw_decay_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(1.0, t_max)
-    # At least a decade, so that the axis has labels.
+    # The axis spans at least a decade, so that it has labels.
     axes.set_ylim(10.0 ** np.floor(np.log10(0.99 * steps[positive].min())), 1.4)
     style_axes(axes, grid=True)
     add_panel_legend(axes, "lower left" if steps[-1] > _MOST_STAY else "upper right")
@@ -158,7 +158,7 @@ def _mathtext(number: float) -> str:
 
 
 def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, across: str, up: str, *, logarithmic: str = "") -> None:
-    """Draw one measured curve; `logarithmic` has the letters of the axes with a logarithmic scale."""
+    """Draw one measured curve; `logarithmic` contains the letters of the axes with a logarithmic scale."""
     axes.plot(x, y, color=MEASURED, linewidth=1.4, marker="o" if x.size <= _MOST_MARKERS else "", markersize=3.0)
     if "x" in logarithmic:
         axes.set_xscale("log")

@@ -1,4 +1,4 @@
-"""Movies of many orbits that leave the well, beside the share of them that is still inside."""
+"""Movies of many orbits that leave the well, beside the share of orbits that are still inside."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class _Stage:
 def ensemble_movie_bytes(
     potential: Potential, orbits: SampledOrbits, palette: Palette, format: MovieFormat, style: FigureStyle
 ) -> bytes:
-    """File of a movie with one frame for each of the common times of the orbits.
+    """Return the file of a movie, with one frame for each of the common times of the orbits.
 
     Parameters
     ----------
@@ -68,11 +68,11 @@ def ensemble_movie_bytes(
     orbits
         Orbits of one energy, at common times.
     palette
-        Colours: a particle has the colour of the exit through which it leaves, or that of bounded orbits.
+        Colours: each orbit has the colour of the exit through which it leaves, or the colour of bounded orbits.
     format
-        MP4 needs the extra ``movies``.
+        File format; MP4 needs the extra ``movies``.
     style
-        Width, resolution and letters.
+        Width, resolution and font size.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def ensemble_movie_bytes(
 
 
 def _options(format: MovieFormat) -> Any:
-    """Matplotlib's settings for the encoder."""
+    """Matplotlib settings for the encoder."""
     if format is not MovieFormat.MP4:
         return rc_context()
     require_package("imageio_ffmpeg", "movies")
@@ -116,14 +116,14 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
     particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE, c=colours, linewidths=0, zorder=3)
     survival = _draw_chart(chart, potential, orbits, style)
     set_font(figure)
-    # One layout is enough, because no axis moves between frames.
+    # One layout is enough, because the axes do not move between frames.
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     return _Stage(figure, window, particles, survival, count)
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
-    """Draw the axes of the share inside and the law of mixed motion; returns the line that `_show` extends."""
+    """Draw the axes of the share inside and the law of mixed motion; return the line that `_show` extends."""
     last, least = float(orbits.t[0, -1]), _LEAST_SHARE / len(orbits.fate)
     times = np.linspace(0.0, last, 200)
     rate = compute_flux(potential, float(orbits.energy[0])).decay_rate
@@ -142,7 +142,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
 
 
 def _show(stage: _Stage, orbits: SampledOrbits, place: int) -> None:
-    """Show the orbits at one of their times, by its index."""
+    """Show the orbits at the time with this index."""
     window, t = stage.window, float(orbits.t[0, place])
     across = (orbits.x[:, place] - window.x_low) / (window.x_high - window.x_low)
     up = (orbits.y[:, place] - window.ordinate_low) / (window.ordinate_high - window.ordinate_low)

@@ -32,24 +32,24 @@ RENDER_LOCK = threading.Lock()
 """Held by a thread while it draws and saves a figure."""
 
 MOST_PIXELS = 20_000_000
-"""Most pixels of a PNG file: those of four maps 16 cm wide at 600 pixels per inch. Drawing takes up to 50 bytes for each."""
+"""Largest number of pixels of a PNG file: four maps 16 cm wide at 600 pixels per inch. Drawing takes up to 50 bytes per pixel."""
 
-# Parts of Matplotlib: STIX has Greek letters, fractions and mathematical symbols; the second font has the superscripts
-# that it lacks.
+# Fonts that Matplotlib contains: STIX has Greek letters, fractions and mathematical symbols; the second font has the superscripts
+# that STIX lacks.
 _FAMILY, _MATHS = ["STIXGeneral", "DejaVu Serif", "serif"], "stix"
 _FILE_OPTIONS: Any = {
-    # Text stays text. Programs without the STIX fonts show that of SVG files in another font of about the same width.
+    # Text in SVG files stays text. Programs without the STIX fonts show it in another font of about the same width.
     "svg.fonttype": "none",
     "font.serif": ["STIXGeneral", "Times New Roman", "Times", "Liberation Serif", "DejaVu Serif"],
     "pdf.fonttype": 42,
-    # The names of elements are the same each time.
+    # Elements have the same names in every file.
     "svg.hashsalt": "escape-explorer",
 }
 _FRAME = 0.7
 _MOST_TICKS = 5
-# Approximate number of letters of a line of text per font size of its width.
+# Approximate number of letters in a line of text, times its font size, per width.
 _LETTERS_PER_EM = 2.0
-# Most columns of a legend below a panel.
+# Largest number of columns of a legend below a panel.
 _MOST_COLUMNS = 6
 # Padding around panels, in inches.
 _GAP = 0.07
@@ -59,7 +59,7 @@ Corner = Literal["upper left", "upper right", "lower left", "lower right", "cent
 
 
 def new_figure(style: FigureStyle, height: float, title: str = "", *, equal: bool = False) -> Figure:
-    """Empty figure, `height` cm high; `equal` packs panels that have equal scales on both axes."""
+    """Return an empty figure, `height` cm high; `equal` packs panels that have equal scales on both axes."""
     layout = ConstrainedLayoutEngine(h_pad=_GAP, w_pad=_GAP, compress=equal)
     figure = Figure(figsize=(style.inches, height / CM_PER_INCH), dpi=style.dpi, layout=layout)
     if style.titles and title:
@@ -68,7 +68,7 @@ def new_figure(style: FigureStyle, height: float, title: str = "", *, equal: boo
 
 
 def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: float | None = None) -> None:
-    """Write lines below all panels, broken so that they fit in the width of the figure; `size` of the letters in points."""
+    """Write lines below all panels, wrapped to the width of the figure; `size` is the font size in points."""
     size = size or style.small_size
     letters = int(_LETTERS_PER_EM * style.inches * POINTS_PER_INCH / size)
     text = "\n".join(fill(line, letters, break_on_hyphens=False) for line in lines)
@@ -76,7 +76,7 @@ def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: 
 
 
 def fit_height(figure: Figure) -> None:
-    """Make a figure as high as its panels and the lines below them, whose sizes follow from the width of the figure."""
+    """Fit the height of a figure to its panels and the lines below them, whose sizes follow from the width of the figure."""
     figure.draw_without_rendering()
     panels = Bbox.union([box for axes in figure.axes if (box := axes.get_tightbbox()) is not None])
     lines = sum(text.get_window_extent().height for text in figure.texts)
@@ -91,7 +91,7 @@ def label_axes(axes: Axes, across: str, up: str, style: FigureStyle = SCREEN) ->
 
 
 def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -> None:
-    """Thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid."""
+    """Style axes: a thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid."""
     axes.tick_params(direction="out", labelsize=style.small_size, width=_FRAME, length=3.0, which="major")
     axes.tick_params(direction="out", width=0.6 * _FRAME, length=1.8, which="minor")
     for spine in axes.spines.values():
@@ -106,7 +106,7 @@ def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -
 
 
 def name_panel(axes: Axes, words: str, style: FigureStyle = SCREEN) -> None:
-    """Write the title of a panel above its left end, if the figure has titles."""
+    """Write the title of a panel above its left end, if the style has titles."""
     if style.titles:
         axes.set_title(words, loc="left", fontsize=style.font_size, color=LIGHT.text, pad=4.0)
 
@@ -144,7 +144,7 @@ def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureSt
 
 
 def below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
-    """Shares of a panel, moved down and to the left by so many points."""
+    """Coordinates in shares of a panel, moved down by `depth` and to the left by `left` points."""
     move = ScaledTranslation(-left / POINTS_PER_INCH, -depth / POINTS_PER_INCH, figure_of(axes).dpi_scale_trans)
     return axes.transAxes + move
 
@@ -157,13 +157,13 @@ def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, 
     axes
         The panel.
     handles
-        Of the entries.
+        Handles of the legend entries.
     place
-        Of its upper left corner, from the lower left corner of the panel to the left and down, in points.
+        Position of the upper left corner: distances to the left of and below the lower left corner of the panel, in points.
     width
-        Available, in points; longer entries are broken into lines.
+        Available width in points; longer entries are wrapped.
     style
-        Of the figure.
+        Style of the figure.
     """
     left, depth = place
     options = {
@@ -189,7 +189,7 @@ def size_in_points(axes: Axes) -> tuple[float, float]:
 
 
 def figure_of(artist: Artist) -> Figure:
-    """Figure of a panel or a text."""
+    """Return the figure that contains a panel or a text."""
     figure = artist.get_figure(root=True)
     assert figure is not None
     return figure
@@ -234,9 +234,9 @@ def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) 
     Parameters
     ----------
     figure
-        What to save.
+        Figure to save.
     format
-        Of the file.
+        File format.
     facts
         Description of the figure in the metadata of the file.
 
@@ -251,7 +251,7 @@ def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) 
     file = BytesIO()
     with rc_context(_FILE_OPTIONS):
         figure.savefig(file, format=format, dpi=figure.dpi, metadata=_metadata(format, facts))
-    # Freeze the layout for the next file.
+    # Keep the layout for the next file.
     figure.set_layout_engine("none")
     return file.getvalue()
 
@@ -265,7 +265,7 @@ def _check_pixels(figure: Figure) -> None:
 
 
 def _metadata(format: FigureFormat, facts: Mapping[str, str]) -> dict[str, str | None]:
-    """The facts in the fields that a format has; without the date."""
+    """Return the facts in the metadata fields that a format has, without the date."""
     sentence = ", ".join(f"{name}: {value}" for name, value in facts.items())
     match format:
         case FigureFormat.PNG:

@@ -1,4 +1,4 @@
-"""Figures as files: PNG, SVG or PDF. Matplotlib, slow to import, is loaded with the first one."""
+"""Files of figures as PNG, SVG or PDF. Matplotlib is slow to import and is loaded with the first file."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def map_figure_bytes(
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> bytes:
-    """File of some pictures of a map, with the map's provenance in its metadata.
+    """Return the file of some pictures of a map, with the map's provenance in its metadata.
 
-    Parameters and errors are those of `plots.printed.map_figure.draw_map_figure` and `plots.printed.figure_axes.save_figure`.
+    For parameters and exceptions see `plots.printed.map_figure.draw_map_figure` and `plots.printed.figure_axes.save_figure`.
     """
     from plots.printed.map_figure import draw_map_figure
 
@@ -49,7 +49,7 @@ def orbits_figure_bytes(
     format: FigureFormat,
     style: FigureStyle,
 ) -> bytes:
-    """File of `plots.printed.orbit_figure.draw_orbits_figure`, with the starts and the verdicts in its metadata."""
+    """Return the file of `plots.printed.orbit_figure.draw_orbits_figure`, with the starts and the verdicts in its metadata."""
     from plots.printed.orbit_figure import draw_orbits_figure
 
     facts = {"potential": potential.name}
@@ -67,7 +67,7 @@ def well_figure_bytes(
     format: FigureFormat,
     style: FigureStyle,
 ) -> bytes:
-    """File of `plots.printed.orbit_figure.draw_well_figure`."""
+    """Return the file of `plots.printed.orbit_figure.draw_well_figure`."""
     from plots.printed.orbit_figure import draw_well_figure
 
     facts = {"potential": potential.name, "energy": repr(energy)}
@@ -75,7 +75,7 @@ def well_figure_bytes(
 
 
 def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: FigureFormat, style: FigureStyle) -> bytes:
-    """File of `plots.printed.curve_figures.draw_statistics_figure`; `box` as for `engine.compute_statistics`."""
+    """Return the file of `plots.printed.curve_figures.draw_statistics_figure`; `box` is as in `engine.compute_statistics`."""
     from plots.printed.curve_figures import draw_statistics_figure
 
     facts = {name: str(value) for name, value in frame.provenance().items()} | ({} if box is None else {"box": str(box)})
@@ -83,7 +83,7 @@ def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: Figure
 
 
 def curves_figure_bytes(curves: Sweep, format: FigureFormat, style: FigureStyle) -> bytes:
-    """File of `plots.printed.curve_figures.draw_curves_figure`."""
+    """Return the file of `plots.printed.curve_figures.draw_curves_figure`."""
     from plots.printed.curve_figures import draw_curves_figure
 
     facts = {str(name): str(value) for name, value in curves.dataset.attrs.items()}

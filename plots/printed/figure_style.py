@@ -1,4 +1,4 @@
-"""Size, letters and formats of figures."""
+"""Size, fonts and formats of figures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class FigureFormat(StrEnum):
 
 @dataclass(frozen=True)
 class FigureStyle:
-    """How a figure is drawn; by default for the full width of a page of a paper.
+    """Style of a figure; the default suits the full width of a page of a paper.
 
     Attributes
     ----------
@@ -32,9 +32,9 @@ class FigureStyle:
     dpi
         Pixels per inch of PNG files, 50 to 1200.
     font_size
-        Font size of the names of axes in points, 4 to 30; all other letters are in proportion.
+        Font size of axis labels in points, 4 to 30; all other font sizes are in proportion.
     titles
-        Whether panels have titles, and the figure its title and provenance.
+        Whether panels have titles, and the figure has its title and provenance.
 
     Raises
     ------
@@ -78,7 +78,7 @@ class FigureStyle:
         return self.font_size * 3.0 / 4.0
 
     def columns(self, panels: int) -> int:
-        """Columns into which square panels wrap, so that each is wide enough for its legend."""
+        """Number of columns in which square panels are arranged, so that each is wide enough for its legend."""
         most = max(1, int(self.inches * POINTS_PER_INCH // (_LEAST_PANEL * self.font_size)))
         rows = math.ceil(panels / most)
         return math.ceil(panels / rows)
@@ -88,4 +88,4 @@ class FigureStyle:
 _LEAST_PANEL = 16.0
 
 SCREEN = FigureStyle(width=29.0, dpi=180.0, font_size=12.0)
-"""Style of figures to be looked at on a screen: those of the reproduction and of notebooks."""
+"""Style of figures on a screen, such as those of the reproduction and of notebooks."""

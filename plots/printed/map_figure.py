@@ -1,7 +1,7 @@
 """Maps drawn with Matplotlib: pixels, limiting curve, exits, curves of layers, marks of starts, legend and provenance.
 
-Maps are drawn in shares of the window that their axes show, 0 to 1 from its lower left corner: in plane coordinates the transform
-to pixels would lose all digits in a deep zoom.
+Maps are drawn in shares of the window that their axes show, from 0 to 1: in plane coordinates, the transform to pixels would lose
+all digits in a deep zoom.
 """
 
 from __future__ import annotations
@@ -55,28 +55,28 @@ from plots.printed.figure_axes import (
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
 
-# In units of the font size: from the lower edge of a map to what is below the name of its axis, from a colour bar to what is
-# below its labels, and from the left edge of a map to that of its legend.
+# In units of the font size: distances from a map down to the text below its axis label, from a colour bar down to the text below
+# its labels, and from a map left to its legend.
 _BELOW_AXIS, _BELOW_BAR, _LEFT_OF_AXIS = 3.7, 3.4, 3.0
-# Height of a colour bar, in units of the side of its map.
+# Height of a colour bar, as a share of the side of its map.
 _BAR_HEIGHT = 0.04
-# Height of a row of maps with its legends before it is fitted, in units of the width of a map with its labels.
+# Initial height of a row of maps with its legends, before it is fitted, in units of the width of a map with its labels.
 _ROW_HEIGHT = 2.0
 # Width of a legend, as a share of the width of a map with its labels.
 _LEGEND_WIDTH = 0.9
-# Approximate number of letters of a title per font size of its width.
+# Approximate number of letters of a title per width of one font size.
 _LETTERS_PER_EM = 2.6
 # Width of a letter of a tick label, and the space between labels, in units of the font size.
 _LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
-# Least distance of the ticks of a colour bar, as a share of it.
+# Least distance between ticks of a colour bar, as a share of its length.
 _BETWEEN_TICKS = 0.15
 _EXIT_DASHES = (0, (2.0, 1.5))
-# Width of the curves of layers in a file, relative to that on the page.
+# Width of the curves of layers in a file, relative to the width on the page.
 _LINE_SCALE = 0.6
 _HALO_ORDER = 1.5
-# Curves are cut this far outside the window, in shares of it.
+# Curves are cut at this distance outside the window, as a share of the window.
 _RIM = 0.02
-# Numbers of starts are moved to the inside of the picture this close to its right and upper edge, in shares of it.
+# Numbers of starts within this distance of the right and upper edge of the picture, as a share of it, are written inward.
 _EDGE = 0.06
 
 
@@ -90,7 +90,7 @@ def draw_map_figure(
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> Figure:
-    """Draw pictures of a map in rows, each with title, axes, curves and legend; the provenance is below them.
+    """Draw pictures of a map in rows, each with title, axes, curves and legend, and the provenance below them.
 
     Parameters
     ----------
@@ -101,11 +101,11 @@ def draw_map_figure(
     palette
         Colours.
     style
-        Width of the figure, resolution, letters and titles.
+        Width of the figure, resolution, font size and titles.
     analyses
         Results of the layers.
     starts
-        (x, ordinate) of each chosen orbit, numbered from 1; those outside the window keep their number.
+        (x, ordinate) of each chosen orbit. Starts are numbered from 1; starts outside the window are counted but not drawn.
     times
         Scale of the escape times; None for `fitted_scale`.
 
@@ -120,7 +120,7 @@ def draw_map_figure(
     columns = style.columns(len(pictures))
     rows = math.ceil(len(pictures) / columns)
     figure = new_figure(style, rows * _ROW_HEIGHT * style.width / columns, equal=True)
-    # Texts are measured in few pixels: Matplotlib allocates all pixels of the figure to measure one.
+    # Texts are measured at low resolution, because Matplotlib allocates all pixels of the figure to measure one text.
     figure.set_dpi(POINTS_PER_INCH)
     grid = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
     for axes in grid[len(pictures) :]:
@@ -148,7 +148,7 @@ def draw_picture(
     times: TimeScale | None = None,
     style: FigureStyle = SCREEN,
 ) -> None:
-    """Title, pixels, curves and axes of one of `TITLES`; `times` as for `picture_pixels`."""
+    """Draw title, pixels, curves and axes of one of `TITLES`; `times` is as in `draw_map_figure`."""
     spec, window = frame.spec, frame.spec.find_window()
     draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
@@ -171,7 +171,7 @@ def _explain_picture(
     width: float,
     style: FigureStyle,
 ) -> None:
-    """Colour bar and legend below a map, whose column is `width` inches wide."""
+    """Draw colour bar and legend below a map, whose column is `width` inches wide."""
     depth = _BELOW_AXIS * style.font_size
     legend = map_legend(picture, ShownMap.of(frame, palette, analyses, times))
     if legend.scale is not None:
@@ -180,7 +180,7 @@ def _explain_picture(
         bar.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size
     handles = legend_handles([*legend.entries, *legend.others])
-    # Matplotlib names curves without a label "_child…".
+    # Matplotlib gives curves without a label names such as "_child0".
     handles += [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
     handles += legend_handles(legend.over)
     add_legend_below(axes, handles, (_LEFT_OF_AXIS * style.font_size, depth), _LEGEND_WIDTH * width * POINTS_PER_INCH, style)
@@ -231,24 +231,24 @@ def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown: Window, palette: 
 def draw_curve(
     axes: Axes, pieces: Iterable[np.ndarray], shown: Window, label: str = "", *, halo: bool = False, **style: Any
 ) -> None:
-    """Draw a curve, (n, 2) points of the plane for each piece; nothing if none of it is in view.
+    """Draw a curve that consists of pieces; nothing is drawn if no piece is in view.
 
     Parameters
     ----------
     axes
         Axes that show `shown`.
     pieces
-        (n, 2) points of the plane each; pieces of a single point are skipped.
+        Pieces, each (n, 2) points of the plane; pieces of a single point are skipped.
     shown
         Window of the axes.
     label
-        For the legend.
+        Label in the legend.
     halo
         Whether the curve has a light rim, so that it is visible on any colour.
     style
         Properties of `matplotlib.collections.LineCollection`.
     """
-    # Matplotlib clips lines only after a transform to pixels, which has too few digits for what a deep zoom leaves outside.
+    # Matplotlib clips lines after the transform to pixels, which has too few digits for lines far outside a deep zoom.
     lines = [shapely.LineString(_shares(shown, piece)) for piece in pieces if len(piece) > 1]
     visible = shapely.get_parts(shapely.clip_by_rect(lines, -_RIM, -_RIM, 1.0 + _RIM, 1.0 + _RIM))
     if not len(visible):
@@ -263,13 +263,13 @@ def draw_curve(
 def mark_starts(
     axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown: Window, style: FigureStyle = SCREEN
 ) -> None:
-    """Mark (x, ordinate) of starts by numbered crosses in the colours of their orbits; starts outside keep their number."""
+    """Mark starts (x, ordinate) with numbered crosses in the colours of their orbits; starts outside are counted, not drawn."""
     scale = style.font_size / SCREEN.font_size
     for number, start in enumerate(starts, 1):
         x, y = _shares(shown, np.array(start))
         if not (0.0 <= x <= 1.0 and 0.0 <= y <= 1.0):
             continue
-        # From back to front: light on a dark picture, dark on a light one, and the colour of the orbit.
+        # From back to front: a light line for dark pictures, a dark one for light pictures, and the colour of the orbit.
         for colour, width in ((LIGHT.halo, 7.0), (MARK_EDGE, 4.8), (palette.orbits[(number - 1) % len(palette.orbits)], 2.4)):
             size: dict[str, Any] = {"markersize": scale * (9.6 + width), "markeredgewidth": scale * width}
             axes.plot(x, y, "+", color=colour, zorder=3, **size)
@@ -283,7 +283,7 @@ def mark_starts(
 
 
 def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
-    """Limit, tick and name axes that show a window; `equal` gives both axes the same scale."""
+    """Set limits, ticks and names of axes that show a window; `equal` gives both axes the same scale."""
     style_axes(axes, style)
     x, y = label_axis(across, shown.x_low, shown.x_high), label_axis(up, shown.ordinate_low, shown.ordinate_high)
     axes.set_xticks(*zip(*_spaced(x.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
@@ -296,13 +296,13 @@ def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureSt
 
 
 def _spaced(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
-    """Every tick, or one in several, so that the labels do not touch in a width, in units of their font size."""
+    """Select every k-th tick so that the labels do not touch in a width, which is in units of their font size."""
     needed = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
     return ticks[:: max(1, math.ceil(needed / width))]
 
 
 def add_colour_bar(figure: Figure, scale: ColourScale, style: FigureStyle = SCREEN, **place: Any) -> Colorbar:
-    """Add the colour bar of a scale; `place` as for `matplotlib.figure.Figure.colorbar`."""
+    """Add the colour bar of a scale; `place` is passed to `matplotlib.figure.Figure.colorbar`."""
     norm = LogNorm(scale.low, scale.high) if scale.is_logarithmic else Normalize(scale.low, scale.high)
     bar = figure.colorbar(ScalarMappable(norm, ListedColormap(list(scale.colours))), **place)
     ticks = [scale.low, *_inner_ticks(scale), scale.high]
@@ -315,7 +315,7 @@ def add_colour_bar(figure: Figure, scale: ColourScale, style: FigureStyle = SCRE
 
 
 def _inner_ticks(scale: ColourScale) -> list[float]:
-    """Powers of ten between the ends of a logarithmic scale, not too close to them; the middle of another one."""
+    """Powers of ten between the ends of a logarithmic scale, not too close to them; for a linear scale its middle."""
     if not scale.is_logarithmic:
         return [float(f"{0.5 * (scale.low + scale.high):.3g}")]
     powers = [10.0**k for k in range(math.ceil(math.log10(scale.low)), math.floor(math.log10(scale.high)) + 1)]
@@ -324,12 +324,12 @@ def _inner_ticks(scale: ColourScale) -> list[float]:
 
 
 def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
-    """(n, 2) points of the plane in shares of a window's width and height."""
+    """Convert (n, 2) points of the plane to shares of a window's width and height."""
     low, high = _corners(shown)
     shares: np.ndarray = (points - low) / (high - low)
     return shares
 
 
 def _corners(window: Window) -> np.ndarray:
-    """(2, 2) lower left and upper right corner."""
+    """Return the lower left and the upper right corner, (2, 2)."""
     return np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])

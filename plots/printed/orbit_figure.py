@@ -33,14 +33,14 @@ from plots.printed.potential_figure import draw_well
 _HEIGHT, _HEIGHT_OF_COLUMN = 0.58, 1.9
 _EARLIEST_TIME = 0.01
 _PATH = "path"
-# The exponent says the same as SALI.
+# The Lyapunov exponent repeats what SALI shows.
 _PRINTED = {quantity.name: quantity for quantity in ORBIT_QUANTITIES if quantity.name != "exponent"}
 
 
 def draw_orbits_figure(
     potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, verdicts: Sequence[str], style: FigureStyle
 ) -> Figure:
-    """Draw paths, SALI and R² of orbits in the colours of their places, and their verdicts below.
+    """Draw paths, SALI and R² of orbits in the colours of their numbers, with their verdicts below.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def _energies(orbits: Sequence[OrbitCurves]) -> list[str]:
 def draw_path(
     axes: Axes, potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
-    """Paths as lines, or shaded by their density if they are long, with the exits at the highest of their energies."""
+    """Draw paths as lines, or long ones shaded by their density, with the exits at the highest energy of the orbits."""
     widest = max(orbits, key=lambda curves: curves.orbit.energy)
     window = widest.window
     _draw_paths(axes, orbits, window, palette)
@@ -111,7 +111,7 @@ def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palet
 def draw_quantity(
     axes: Axes, quantity: OrbitQuantity, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
-    """A quantity of orbits against the logarithm of time."""
+    """Draw a quantity of orbits against the logarithm of time."""
     histories = [curves.histories[quantity.name] for curves in orbits]
     for history, colour, number in zip(histories, cycle(palette.orbits), count(1), strict=False):
         _draw_history(axes, history, colour, f"orbit {number}")
@@ -130,7 +130,7 @@ def draw_quantity(
 
 
 def _draw_history(axes: Axes, history: History, colour: str, label: str) -> None:
-    """A history, with its envelope where it is a mean."""
+    """Draw a history, with its envelope where the curve is a mean."""
     t, low, high = history.band
     axes.fill_between(t, low, high, color=colour, alpha=ENVELOPE_ALPHA, linewidth=0.0)
     axes.plot(*history.line, color=colour, linewidth=1.0, label=label)

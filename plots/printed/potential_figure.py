@@ -1,4 +1,4 @@
-"""A potential drawn with Matplotlib: its equipotentials, the one at the escape energy in red."""
+"""A potential drawn with Matplotlib: its equipotentials, with the one at the escape energy in red."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ def draw_well(axes: Axes, potential: Potential, energy: float, window: Window, p
 
 
 def draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float) -> None:
-    """Draw a curve in pieces, (n, 2) points each."""
+    """Draw a curve that consists of pieces, each (n, 2) points."""
     for piece in pieces:
         axes.plot(*piece.T, color=colour, linewidth=width)
 
 
 def enlarge(window: Window) -> Window:
-    """A square window around a window, larger than it."""
+    """Return a square window around a window, larger by a margin."""
     across, up = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
     half = 0.5 * _ENLARGED * (window.x_high - window.x_low)
     return Window(across - half, across + half, up - half, up + half)

@@ -1,4 +1,4 @@
-"""The pictures of results of the engine on Matplotlib axes, as HTML for notebooks, and as HoloViews elements."""
+"""Pictures of results of the engine: on Matplotlib axes, as HTML for notebooks, and as HoloViews elements."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
 
 _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
-# In shares of the axes: the middle of the legend of a map, below the name of its abscissa.
+# Position of the legend of a map in shares of the axes: the middle, below the label of the horizontal axis.
 _BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
 _MOST_DECADES = 16
 
 
 def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:
-    """Draw a result, as `engine.foundations.result.Result.plot` describes."""
+    """Draw a result, as described in `engine.foundations.result.Result.plot`."""
     if palette not in PALETTES:
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
     legal = list(inspect.signature(_draw.dispatch(type(result))).parameters)[3:]
@@ -58,7 +58,7 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper
 
 
 def to_html(result: Result) -> str:
-    """What a notebook shows: the picture if there is one, the sentence that describes the result, and a table of its numbers."""
+    """Return the HTML that notebooks show: a picture if there is one, a sentence that describes the result, and its numbers."""
     describe = getattr(result, "describe", None)
     shown = result.shown_numbers().items()
     rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in shown)
@@ -70,7 +70,7 @@ def to_html(result: Result) -> str:
 
 
 def to_holoviews(result: Result) -> Any:
-    """The HoloViews element of `engine.foundations.result.Result.to_holoviews`."""
+    """Return the HoloViews element, as described in `engine.foundations.result.Result.to_holoviews`."""
     require_package("holoviews", "page")
     import holoviews as hv
 
@@ -121,7 +121,7 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
 
 
 def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> None:
-    """Draw the result of a layer without the map over which it lies."""
+    """Draw the result of a layer without the map below it."""
     spec = layer.spec_of(result)
     window = spec.find_window()
     panel = _panel(axes, window)
@@ -138,7 +138,7 @@ def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> N
 
 
 def _panel(axes: Axes, window: Window) -> Axes:
-    """Axes behind `axes` for drawings in shares of a window; `axes` itself gets the coordinates of the window."""
+    """Add axes behind `axes` for drawings in shares of a window; `axes` has the coordinates of the window."""
     panel = axes.inset_axes((0.0, 0.0, 1.0, 1.0), zorder=-1.0)
     axes.set_xlim(window.x_low, window.x_high)
     axes.set_ylim(window.ordinate_low, window.ordinate_high)

@@ -1,4 +1,4 @@
-"""Which potentials can be shown."""
+"""Limits of the potentials that the page can show."""
 
 from __future__ import annotations
 

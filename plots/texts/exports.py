@@ -18,36 +18,36 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_ROWS = 100_000
-"""Default number of rows that a table of orbits has at most."""
+"""Default limit of the number of rows in a table of orbits."""
 
 _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 
 
 def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
-    """NetCDF file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
+    """Return the NetCDF file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
     dataset = analyses.add_to(frame.to_xarray())
-    # Shuffled and compressed, a map has a quarter of the size and is written faster.
+    # Shuffling and compression reduce a map to a quarter of its size, and it is written faster.
     return dataset_bytes(dataset, {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars})
 
 
 def dataset_bytes(dataset: xr.Dataset, encoding: Mapping[Any, Any] | None = None) -> bytes:
-    """NetCDF-4 file of a dataset, with `encoding` as in xarray; without the extra ``files`` one of NetCDF 3, uncompressed."""
+    """Return the NetCDF-4 file of a dataset, with `encoding` as in xarray; without the extra ``files``, a plain NetCDF 3 file."""
     if find_spec("h5netcdf") is None:
         return bytes(dataset.to_netcdf(engine="scipy"))
     return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
 
 
 def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Sequence[OrbitVerdict] = ()) -> str:
-    """CSV table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent, r2, at full precision.
+    """Return a CSV table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent, r2, at full precision.
 
-    Comment lines (#) at the top hold the start, energy and verdict of each orbit, and which of its samples follow.
+    Comment lines (#) at the top contain the start, energy and verdict of each orbit, and which of its samples are listed.
 
     Parameters
     ----------
     orbits
-        The orbits; none for an empty table.
+        The orbits; an empty sequence gives an empty table.
     most_rows
-        Rows at most, at least 1 per orbit; longer orbits are thinned to every k-th sample.
+        Largest number of rows, at least 1 per orbit; of longer orbits every k-th sample is listed.
     verdicts
         One per orbit; by default those of `engine.judge_orbit` without Birkhoff digits.
 
@@ -68,7 +68,7 @@ def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Se
 
 
 def write_csv(names: Iterable[str], rows: Iterable[Sequence[object]], comments: Iterable[str] = ()) -> str:
-    """CSV table with the names of its columns, numbers at full precision, below comment lines (#)."""
+    """Return a CSV table with the names of its columns, numbers at full precision, below comment lines (#)."""
     lines = [*(f"# {comment}" for comment in comments), ",".join(names), *(",".join(map(repr, row)) for row in rows)]
     return "\n".join(lines) + "\n"
 
@@ -89,7 +89,7 @@ def _header(number: int, orbit: Orbit, stride: int, verdict: OrbitVerdict) -> li
 
 
 def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:
-    """Python script that reproduces a map and orbits with the engine, bit for bit, and draws them.
+    """Return a Python script that reproduces a map and orbits with the engine, bit for bit, and draws them.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     """
     source, expression = _potential_expression(system)
     if spec.plane.parameter is not None:
-        # Each of its orbits belongs to another potential.
+        # Each orbit of such a map belongs to another potential.
         starts = ()
     names = [source, "MapSpec", *_slice_names(spec.plane), "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
     window = spec.find_window()
@@ -174,9 +174,9 @@ def _numbers(numbers: Sequence[float]) -> str:
 
 
 def file_stem(spec: MapSpec, case: str) -> str:
-    """File name for a map, without an ending: letters, digits and ``_ . + -`` only.
+    """Return a file name for a map, without an ending: letters, digits and ``_ . + -`` only.
 
-    It has the case, the rotation if there is one, plane, energy, t_max and, unless the map shows the whole plane, the window.
+    It contains the case, the rotation if any, plane, energy, t_max and, unless the map shows the whole plane, the window.
     """
     energy = repr(spec.energy).strip("()").replace(", ", "-")
     rotation = f"-rotation{spec.potential.rotation:g}" if spec.potential.rotation else ""
@@ -189,7 +189,7 @@ def file_stem(spec: MapSpec, case: str) -> str:
 
 
 def curves_csv(curves: Sweep) -> str:
-    """CSV table of a sweep, one row per energy or value of the parameter: it, a share per outcome, and all other measures."""
+    """Return a CSV table of a sweep: a row per energy or parameter value, a column per share of an outcome and other measure."""
     columns = curves.columns()
     comments = (_version(), *(f"{name}: {value}" for name, value in curves.dataset.attrs.items()))
     return write_csv(columns, zip(*(column.tolist() for column in columns.values()), strict=True), comments)

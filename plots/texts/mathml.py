@@ -19,7 +19,7 @@ _INTEGRAL = {False: "Energy integral", True: "Jacobi integral"}
 
 
 def equations(potential: Potential) -> str:
-    """HTML list of Hamiltonian, potential, equations of motion, energy integral, escape energy and saddles."""
+    """Return an HTML list of Hamiltonian, potential, equations of motion, energy integral, escape energy and saddles."""
     rows = {
         **_hamiltonian(potential),
         "Effective potential" if potential.rotation else "Potential": [_potential(potential)],
@@ -35,9 +35,9 @@ def equations(potential: Potential) -> str:
 
 
 def potential_formula(potential: Potential) -> str:
-    """V(x, y) = … as text with one MathML element for each term, because browsers do not wrap long ones."""
+    """V(x, y) = … as text with one MathML element for each term: browsers do not break long MathML elements."""
     first, *others = _signed_terms(potential.form)
-    # A sign at the start of an element has the space of a unary one by default.
+    # By default a sign at the start of an element is spaced as a unary sign.
     terms = [first, *(term.replace("<mo>", "<mo form='infix'>", 1) for term in others)]
     shown = " ".join(f"<math aria-hidden='true'>{part}</math>" for part in (_at_point(potential) + op("="), *terms))
     return f"<span role='math' aria-label='{_spoken(_potential(potential))}'>{shown}</span>"
@@ -82,7 +82,7 @@ def _motion(axis: str, potential: Potential) -> str:
 
 
 def _coriolis(axis: str, potential: Potential) -> str:
-    """2Ωẏ or −2Ωẋ; nothing in a frame that does not rotate."""
+    """2Ωẏ or −2Ωẋ; empty in a frame that does not rotate."""
     if not potential.rotation:
         return ""
     rate = number(2.0 * abs(potential.rotation))
@@ -97,12 +97,12 @@ def _energy(potential: Potential, first: str, second: str) -> str:
 
 
 def _sum(form: Form) -> str:
-    """A formula, in the order of its terms."""
+    """A formula with its terms in order."""
     return row("".join(_signed_terms(form)))
 
 
 def _signed_terms(form: Form) -> list[str]:
-    """The terms with their signs, the first without a plus."""
+    """The terms with their signs; the first has no plus sign."""
     definition = form.definition
     expression = definition if isinstance(definition, Expression) else from_terms({(i, j): c for i, j, c in definition})
     first, *others = signed_parts(expression)

@@ -6,14 +6,14 @@ from math import isqrt
 
 from engine.expressions.short_fractions import short_fraction
 
-# Numbers this close to a short fraction, or to the square root of one, are shown as such.
+# Numbers this close to a short fraction or to its square root are shown as such.
 _ROUNDING = 1e-10
 COORDINATE_DIGITS, COEFFICIENT_DIGITS = 4, 12
 """Significant digits of decimal numbers."""
 
 
 def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
-    """Fraction, square root of a fraction, or decimal number."""
+    """A number as a fraction, the square root of a fraction, or a decimal number."""
     if value < 0.0:
         return row(op("−") + number(-value, shown))
     for power in (1, 2):
@@ -45,7 +45,7 @@ def op(sign: str) -> str:
 
 
 def digits(written: int | str) -> str:
-    """A number as it is to be read."""
+    """A number as text for screen readers."""
     return f"<mn>{written}</mn>"
 
 
@@ -55,5 +55,5 @@ def row(formula: str) -> str:
 
 
 def raised(base: str, power: int) -> str:
-    """A base to a power of at least 0; empty for the power 0."""
+    """A base raised to a power of at least 0; empty for the power 0."""
     return "" if power == 0 else base if power == 1 else f"<msup>{base}{digits(power)}</msup>"

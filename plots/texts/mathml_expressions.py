@@ -8,7 +8,7 @@ from plots.texts.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, 
 
 
 def signed_parts(expression: Expression) -> list[str]:
-    """The terms of a sum, each with its sign in front."""
+    """The terms of a sum, each preceded by its sign."""
     whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
     parts = [_signed(c, part) for part, c in whole.terms]
     if whole.constant or not parts:

@@ -1,4 +1,4 @@
-"""How much compiled code a process holds: Numba cannot unload it, so that a server has to limit it."""
+"""The amount of compiled code in a process. Numba cannot unload code, so that a server has to limit it."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 LARGEST_CODE = 40_000
-"""Most operations of one code where there is a limit; the largest of the catalogue has about as many."""
+"""Largest number of operations of one code if there is a limit; the largest code of the catalogue has about as many."""
 
 SHARES = 4
-"""An account may have this part of the limit, one quarter."""
+"""Share of the limit that one account may use."""
 
 _account: ContextVar[Hashable] = ContextVar("account", default=None)
 
@@ -21,19 +21,19 @@ class CompiledCodeLimitError(ValueError):
 
 
 class CompiledOperations:
-    """The operations of all generated functions, each of which takes about 0.4 kB of memory, 1 kB if it is compiled here.
+    """Number of operations of all generated functions, each about 0.4 kB of memory, or 1 kB if compiled in this process.
 
-    Code that is reserved is always compiled, and does not count.
+    Reserved code is always compiled and does not count.
 
     Attributes
     ----------
     most
-        Limit of the number of operations that count; None for no limit.
+        Limit on the number of operations that count; None for no limit.
     """
 
     def __init__(self) -> None:
         self.most: int | None = None
-        # By code: its operations and the account.
+        # The operations and the account of each code.
         self._compiled: dict[str, tuple[int, Hashable]] = {}
         self._reserved: set[str] = set()
         self._lock = threading.Lock()
@@ -51,16 +51,16 @@ class CompiledOperations:
             return frozenset(self._compiled)
 
     def is_nearly_full(self) -> bool:
-        """Whether less is left than one account may have."""
+        """Return whether less is left than the share of one account."""
         return self.most is not None and self.most - self.used < self.most // SHARES
 
     def reserve(self, codes: Iterable[str]) -> None:
-        """Let these codes, named by their digests, always be compiled."""
+        """Exempt these codes, named by their digests, from the limit."""
         with self._lock:
             self._reserved.update(codes)
 
     def add(self, code: str, count: int) -> None:
-        """Count the operations of a code before it is compiled. Raises `CompiledCodeLimitError` beyond a limit."""
+        """Count the operations of a code before it is compiled; raise `CompiledCodeLimitError` beyond a limit."""
         account = _account.get()
         with self._lock:
             if self.most is not None and code not in self._reserved:
@@ -90,12 +90,12 @@ class CompiledOperations:
 _SAME_POWERS = "choose a potential with the same powers of x and y as an earlier one, or one of the catalogue"
 
 compiled_operations = CompiledOperations()
-"""Those of this process."""
+"""The operations of this process."""
 
 
 @contextmanager
 def charged_to(account: Hashable) -> Iterator[None]:
-    """Count what is compiled within this context for an account; for none if it is None."""
+    """Charge what is compiled within this context to an account; None charges no account."""
     token = _account.set(account)
     try:
         yield

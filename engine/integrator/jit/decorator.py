@@ -1,4 +1,4 @@
-"""The decorators for kernels: serial, without the GIL, cached on disk, IEEE arithmetic with fused multiply-adds."""
+"""Decorators for kernels, which run serially, without the GIL, cached on disk, in IEEE arithmetic with fused multiply-adds."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from numba.extending import register_jitable
 
 from engine.integrator.jit.disk_cache import KernelCache
 
-# "contract" permits a fused multiply-add for a·b + c; nothing else is reordered or assumed, so NaN is handled as usual.
+# "contract" permits a fused multiply-add for a·b + c. Nothing else is reordered or assumed, so that NaN is handled as usual.
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
 """Options of Numba for all kernels."""
 
 
-# Instructions for another machine are inlined where they are optimised, see `engine.integrator.jit.kernel_module`.
+# Code for another machine is inlined when it is optimised there, see `engine.integrator.jit.kernel_module`.
 _INLINES = bool(config.OPT)  # type: ignore[attr-defined]
 
 
 def kernel(function: Callable[..., Any]) -> Any:
-    """The function, compiled or loaded from the cache at its first call with arguments of some types."""
+    """Return the function as a kernel, which is compiled or loaded from the cache at its first call for each argument type."""
     compiled: Any = njit(**OPTIONS)(function)
-    # Numba's own option `cache=True` sets this attribute to a cache of its own, see `KernelCache`.
+    # Numba's option `cache=True` sets this attribute to Numba's own cache, see `KernelCache`.
     compiled._cache = KernelCache(function)
     return compiled
 
 
 def subroutine(function: Callable[..., Any]) -> Any:
-    """The function, compiled as a part of the kernels that call it; from Python it runs uncompiled.
+    """Return the function as a part of the kernels that call it; when Python calls it, it runs uncompiled.
 
     It compiles in less time than a kernel, because it has no interface to Python, no file in the cache, and no second version for
-    arguments that are literals. It is always inlined: functions of the same name in several kernels would share the code of the
-    kernel that is loaded first, and the compiler can round differently there.
+    literal arguments. It is always inlined: otherwise functions of the same name in several kernels would share the code of the
+    kernel that is loaded first, where the compiler may have rounded differently.
     """
     return register_jitable(**OPTIONS, forceinline=_INLINES)(function)

@@ -1,8 +1,8 @@
-"""Compiled kernels on disk, each in a file (`engine.foundations.cache_files`).
+"""A cache of compiled kernels on disk, with one file for each (`engine.foundations.cache_files`).
 
-Numba's own cache loads whatever it finds: a truncated file ends the program, an altered one may compute anything, and two
-processes that compile at once can load each other's code. Here the name of a file contains a hash of everything its code depends
-on.
+Numba's own cache loads any file without a check: a truncated file ends the program, a modified one may compute anything, and two
+processes that compile at the same time can load each other's code. Here the name of a file contains a hash of everything on which
+its code depends.
 
 Numba has no public interface for caches, so this module uses internal names of numba 0.68, which may change with any version:
 
@@ -36,10 +36,10 @@ from numba.core.serialize import dumps
 from engine.foundations.cache_files import SUFFIX, cache_folder, delete_cached, read_cached, write_cached
 
 PACKAGE = Path(__file__).parents[1]
-"""Where all source is that compiled kernels contain copies of."""
+"""The package that contains all source compiled into kernels."""
 
 DEFINE = "define"
-"""Name in a generated module of a function that defines it, for another process."""
+"""Name of a function in a generated module that defines the module again, for use in another process."""
 
 log = logging.getLogger(__name__)
 
@@ -47,13 +47,13 @@ _other_process: Callable[[Callable[[], None]], None] | None = None
 
 
 def compile_in(process: Callable[[Callable[[], None]], None] | None) -> None:
-    """Let another process compile, which shares the cache: what Numba needs for it, and keeps of it, is never in this one.
+    """Compile in another process that shares the cache, so that the memory used by Numba's compiler is not held by this process.
 
     Parameters
     ----------
     process
-        Makes a call in the other process, to which cloudpickle can send it, and raises ValueError if it cannot; None for this
-        process.
+        Calls a function in the other process, to which cloudpickle can send it, and raises ValueError if it cannot; None to
+        compile in this process.
     """
     global _other_process
     _other_process = process
@@ -76,8 +76,8 @@ class KernelCache(_Cache):
         return str(cache_folder())
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The code for arguments of some types; None if there is no valid file."""
-        # Running machine code needs Numba's memory management only; loading all that it can compile takes a second.
+        """Return the code for arguments of some types; None if there is no valid file."""
+        # Compiled code needs only Numba's memory management; loading the rest of Numba's targets takes a second.
         rtsys.initialize(target_context)
         path = self._path(sig, target_context.codegen())
         try:
@@ -90,7 +90,7 @@ class KernelCache(_Cache):
             return None
 
     def _compile_elsewhere(self, sig: Any, path: Path) -> bytes | None:
-        """Let another process compile, if there is one; None if it cannot, so that this one does."""
+        """Compile in another process, if there is one; return None if that fails, so that this process compiles."""
         if _other_process is None:
             return None
         module = sys.modules[self._module]
@@ -101,30 +101,30 @@ class KernelCache(_Cache):
         return read_cached(path)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Store the code if possible."""
+        """Store the code, if possible."""
         if data.library.has_dynamic_globals:
             return
         payload: bytes = dumps(data._reduce())  # type: ignore[no-untyped-call]
         write_cached(self._path(sig, data.codegen), payload)
 
     def enable(self) -> None:
-        """Does nothing: the cache is always enabled."""
+        """Do nothing: the cache is always enabled."""
 
     def disable(self) -> None:
-        """Does nothing: the cache is always enabled."""
+        """Do nothing: the cache is always enabled."""
 
     def flush(self) -> None:
         """Delete the function's files."""
         delete_cached(self._name)
 
     def _path(self, signature: Any, codegen: Any) -> Path:
-        """Named after argument types, processor, source and versions, so that the content of a file never changes."""
+        """Return a path that depends on argument types, processor, source and versions, so that its content never changes."""
         key = repr((signature, codegen.magic_tuple(), self._source, _versions()))
         return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
 
 
 def _compile(define: Callable[[], object] | None, module: str, function: str, signature: Any) -> None:
-    """Compile a function and store the code; in the other process."""
+    """Compile a function and store its code; runs in the other process."""
     if define is not None:
         define()
     getattr(import_module(module), function).compile(signature)
@@ -132,20 +132,20 @@ def _compile(define: Callable[[], object] | None, module: str, function: str, si
 
 @functools.cache
 def _hash_source(file: str) -> str:
-    """Hash of a source file; empty for generated source, whose module name contains its hash."""
+    """Return the hash of a source file; empty for generated source, whose module name contains its hash."""
     path = Path(file)
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
 
 
 @functools.cache
 def _hash_package(folder: Path) -> str:
-    """Hashes of all source files in a package and its subpackages: a kernel contains copies of kernels and constants it names."""
+    """Return the hashes of all source files of a package and its subpackages: kernels contain code and constants of others."""
     return "".join(_hash_source(str(path)) for path in sorted(folder.rglob("*.py")))
 
 
 @functools.cache
 def program_digest() -> str:
-    """A hash of the sources of the kernels and of the versions of what compiles them."""
+    """Return a hash of the sources of the kernels and of the versions of the compilers."""
     return hashlib.sha256(repr((_hash_package(PACKAGE), _versions())).encode()).hexdigest()[:24]
 
 

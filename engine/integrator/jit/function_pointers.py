@@ -1,8 +1,8 @@
 """Calls of generated functions by address, from kernels that are compiled once for all potentials.
 
 A kernel that calls a function by name contains a copy of it, and would have to be compiled again for every structure of a
-potential. Therefore kernels take the addresses of `step`, `fixed_step`, `jets`, `tangent`,
-`potential_value` and `potential_slopes` as arguments, and only the types of these functions are compiled in.
+potential. Kernels therefore take the addresses of `step`, `fixed_step`, `jets`, `tangent`, `potential_value` and
+`potential_slopes` as arguments, and contain only the types of these functions.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ SIGNATURES: dict[str, Signature] = {
     "potential_value": types.float64(_table, types.float64, types.float64),
     "potential_slopes": _slopes(_table, types.float64, types.float64),
 }
-"""Types that each generated function is compiled for."""
+"""The types for which each generated function is compiled."""
 
 
 def _caller(name: str) -> Any:
-    """A function for use in kernels that takes the address of a generated function and then its arguments."""
+    """Return a function for use in kernels that takes the address of a generated function and then its arguments."""
     callee = SIGNATURES[name]
 
     @intrinsic
     def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
-        """None, which is a compilation error, for arguments that cannot be converted to the types of the generated function."""
+        """Return the typed call; None, a compilation error, if the arguments cannot be converted to the function's types."""
         given = tuple(map(types.unliteral, arguments))
         if len(given) != len(callee.args) or any(
             typing_context.can_convert(one, other) is None for one, other in zip(given, callee.args, strict=True)

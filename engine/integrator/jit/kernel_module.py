@@ -1,11 +1,12 @@
-"""Kernels as a WebAssembly module, for the machine of a visitor: the same functions that Numba compiles for this machine.
+"""The kernels as a WebAssembly module that runs in the browser of a visitor; Numba compiles the same functions for Python.
 
-Numba lowers a kernel to LLVM instructions that are almost free of the machine: sizes of addresses are in the data layout, which
-is replaced. It must not optimise for this machine, which only variables of the environment tell it; so `lower_kernels` is called
-in a process of its own.
+Numba lowers a kernel to LLVM instructions that hardly depend on the machine: only the data layout contains the size of an
+address, and it is replaced. Numba must not optimise the code for this machine. Only environment variables can tell it so, and
+`lower_kernels` is therefore called in a separate process.
 
-What is not public in Numba is used here only, in version 0.68: the context of the target, for its calling convention and the
-layout of arrays (`populate_array`); and the functions of its memory management that code refers to (`_RUNTIME`).
+This is the only module that uses parts of Numba, version 0.68, that are not public: the context of the target, for its calling
+convention and the layout of arrays (`populate_array`), and the functions of its memory management to which code refers
+(`_RUNTIME`).
 """
 
 from __future__ import annotations
@@ -32,15 +33,15 @@ SETTINGS = {
     "NUMBA_CPU_FEATURES": "",
     "NUMBA_DISABLE_INTEL_SVML": "1",
 }
-"""Environment of the process in which `lower_kernels` is called: Numba reads it when it is imported."""
+"""Environment of the process that calls `lower_kernels`; Numba reads it when it is imported."""
 
 _SIZE, _DOUBLE, _LONG = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
 
 HEAP_CELL = 16
-"""Address of the address from which on memory is free. The caller of a kernel restores it."""
+"""Address of the cell that contains the start of the free memory. The caller of a kernel restores its value."""
 
-# Arrays are made where memory is free, and not counted. An array of Numba begins with the address of its information, from which
-# it gets that of its numbers: here they are the same.
+# Arrays are allocated at the start of the free memory, without reference counts. An array of Numba begins with the address of its
+# metadata, which contains the address of its numbers; here the two are equal.
 _RUNTIME = f"""
 define void @NRT_incref(ptr %info) alwaysinline {{ ret void }}
 define void @NRT_decref(ptr %info) alwaysinline {{ ret void }}
@@ -62,11 +63,11 @@ _RUNTIME_NAMES = "|".join(re.findall(r"@(NRT_\w+)", _RUNTIME))
 
 
 def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
-    """A module with kernels for arguments of some types; its functions have their names.
+    """Return a module with kernels for arguments of some types; its functions have the names of the kernels.
 
-    Each array is passed as its address and its shape, a tuple as its elements, an integer or a boolean as 32 bits. The module
-    imports ``env.__linear_memory``, ``env.__stack_pointer``, ``env.__indirect_function_table`` for the functions whose addresses
-    kernels take, there their places in the table, and functions such as ``env.cos``.
+    Each array is passed as its address and its shape, a tuple as its elements, and an integer or a boolean as 32 bits. The module
+    imports ``env.__linear_memory``, ``env.__stack_pointer`` and ``env.__indirect_function_table``, and functions such as
+    ``env.cos``. The addresses of functions that kernels take are indices into this table.
     """
     machine = target_machine()
     module = _parse(_RUNTIME, machine)
@@ -82,20 +83,20 @@ def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
 
 
 def _parse(text: str, machine: Any) -> Any:
-    """Instructions for another machine."""
+    """Parse instructions for another machine."""
     text = re.sub(r"^target (triple|datalayout) = .*$", "", text, flags=re.MULTILINE)
     text = re.sub(r'"target-(cpu|features)"="[^"]*"', "", text)
     return llvm.parse_assembly(f'target triple = "{TARGET}"\ntarget datalayout = "{machine.target_data}"\n{text}')
 
 
 def _without_runtime(text: str) -> str:
-    """The instructions of a kernel with declarations for those of `_RUNTIME`."""
+    """Return the instructions of a kernel, with declarations in place of the functions of `_RUNTIME`."""
     definition = rf"^define (?:linkonce_odr )?([^\n]*@({_RUNTIME_NAMES})\([^\n]*\)).*?^}}$"
     return re.sub(definition, r"declare \1", text, flags=re.MULTILINE | re.DOTALL)
 
 
 def _hide(module: Any, exported: set[str]) -> None:
-    """Make everything internal but the exported functions, so that what none of them needs vanishes."""
+    """Make all functions internal except the exported ones, so that unused functions are removed."""
     for function in module.functions:
         if not function.is_declaration:
             function.linkage = "external" if function.name in exported else "internal"
@@ -105,7 +106,7 @@ def _hide(module: Any, exported: set[str]) -> None:
 
 
 def _wrapper(name: str, symbol: str, signature: Signature) -> ir.Module:
-    """A function of numbers that calls a kernel."""
+    """Return a function with numbers as arguments that calls a kernel."""
     context = cpu_target.target_context
     module = ir.Module(name)
     passed = [kind for argument in signature.args for kind in _passed_types(argument)]
@@ -124,7 +125,7 @@ def _wrapper(name: str, symbol: str, signature: Signature) -> ir.Module:
 
 
 def _as_size(builder: ir.IRBuilder, value: ir.Value) -> ir.Value:
-    """An integer or a boolean in 32 bits."""
+    """Return an integer or a boolean in 32 bits."""
     return builder.trunc(value, _SIZE) if value.type.width > _SIZE.width else builder.zext(value, _SIZE)
 
 
@@ -139,7 +140,7 @@ def _passed_types(kind: Any) -> list[ir.Type]:
 
 
 def _read_argument(context: Any, builder: ir.IRBuilder, kind: Any, values: Any) -> ir.Value:
-    """The next argument of a kernel as Numba passes it."""
+    """Return the next argument of a kernel in Numba's representation."""
     if isinstance(kind, types.NamedTuple):
         return context.make_tuple(builder, kind, [_read_argument(context, builder, each, values) for each in kind.types])
     if isinstance(kind, types.Array):
@@ -152,7 +153,7 @@ def _read_argument(context: Any, builder: ir.IRBuilder, kind: Any, values: Any) 
 
 
 def _make_array(context: Any, builder: ir.IRBuilder, kind: Any, address: ir.Value, shape: list[ir.Value]) -> ir.Value:
-    """A contiguous array that nobody owns."""
+    """Return a contiguous array without an owner."""
     lengths = [builder.zext(length, _LONG) for length in shape]
     size = kind.dtype.bitwidth // 8
     strides = [_LONG(size)]

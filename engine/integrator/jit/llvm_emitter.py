@@ -1,8 +1,8 @@
-"""Straight-line programs written directly as LLVM instructions: a tenth of a second where Numba's front end takes seconds.
+"""Translation of straight-line programs to LLVM instructions, in a tenth of a second; Numba's front end would take seconds.
 
 Numba infers a type for every variable of a function and lowers each operation with all of Python's semantics. A generated program
-is a few thousand operations on doubles and integers without branches, of which each is one or two instructions. The same
-instructions on vectors make the functions of `engine.integrator.jit.webassembly`.
+consists of a few thousand operations on doubles and integers without branches, each of which is one or two instructions. The
+functions of `engine.integrator.jit.webassembly` consist of the same instructions on vectors.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from engine.integrator.source.straight_line import TABLE, StraightLine
 
 _FLOAT, _INT = ir.DoubleType(), ir.IntType(64)
 _NUMBA_TYPES = {_FLOAT: types.float64, _INT: types.int64}
-# As in `engine.integrator.jit.decorator`: a·b + c may become one multiply-add, nothing else.
+# As in `engine.integrator.jit.decorator`, a·b + c may become one multiply-add; nothing else is permitted.
 _FLAGS = ("contract",)
-# For processors of Intel with AVX-512 LLVM takes half of the width, with which programs take 1.2 to 1.4 times as long. As any
-# vectors they give the same results. llvmlite knows no attributes of functions with values, but writes them as they are.
+# On Intel processors with AVX-512, LLVM uses half of the vector width, with which programs take 1.2 to 1.4 times as long. The
+# width does not change the results. llvmlite does not support attributes of functions with values, but writes them unchanged.
 _WIDE_VECTORS = '"prefer-vector-width"="512"'
 _FLOAT_OPERATIONS = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 _INTRINSICS = {"abs": "llvm.fabs", "sqrt": "llvm.sqrt"}
@@ -30,15 +30,15 @@ _INT_OPERATIONS = {"+": "add", "-": "sub", "*": "mul", ">>": "ashr"}
 
 
 def straight_line(program: StraightLine) -> Any:
-    """The program as a function for use in kernels.
+    """Return the program as a function for use in kernels.
 
-    It takes the program's parameters in order: doubles, 64-bit integers, and the table as returned by `table_reader`. It returns
-    a tuple of doubles and integers.
+    It takes the parameters of the program in order: doubles, 64-bit integers, and the table as returned by `table_reader`. It
+    returns a tuple of doubles and integers.
     """
 
     @functools.cache
     def result_type(given: tuple[Any, ...]) -> Any:
-        """Found by writing the program once into a module that is thrown away."""
+        """Find the type by writing the program into a temporary module."""
         block = ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "trial").append_basic_block()
         results = write_program(program, ir.IRBuilder(block), [ir.Constant(_llvm_type(each), None) for each in given])
         return types.Tuple([_NUMBA_TYPES[result.type] for result in results])  # type: ignore[no-untyped-call]
@@ -58,7 +58,7 @@ def straight_line(program: StraightLine) -> Any:
 
 
 def table_reader(size: int) -> Any:
-    """A function for use in kernels that turns an array of `size` doubles into the table of a straight-line program."""
+    """Return a function for use in kernels that turns an array of `size` doubles into the table of a straight-line program."""
 
     @intrinsic
     def read(_: Any, array: Any) -> Any:
@@ -79,7 +79,7 @@ def _llvm_type(given: Any) -> Any:
 
 
 def write_program(program: StraightLine, builder: ir.IRBuilder, passed: list[Any], lanes: int = 1) -> list[Any]:
-    """Append the instructions of a program; returns its results.
+    """Append the instructions of a program, and return its results.
 
     passed: the program's parameters; the table may be any sequence of values. With two or more `lanes` all values are vectors.
     """
@@ -105,7 +105,7 @@ def _constant(kind: Any, number: float) -> Any:
 
 
 def _find_intrinsic(name: str, module: ir.Module, floats: Any) -> Any:
-    """An intrinsic function of doubles or of vectors, which `declare_intrinsic` does not know; one instruction, never a call."""
+    """Return an intrinsic on doubles or vectors that `declare_intrinsic` does not support; it is one instruction, not a call."""
     if not isinstance(floats, ir.VectorType):
         return module.declare_intrinsic(name, [floats])
     name = f"{name}.v{floats.count}f64"

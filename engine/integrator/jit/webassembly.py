@@ -1,8 +1,8 @@
-"""Straight-line programs as a WebAssembly module with SIMD, for the machine of a visitor.
+"""Straight-line programs as a WebAssembly module with SIMD that runs in the browser of a visitor.
 
 The functions of a potential are those that kernels call by their addresses, with the same arguments in the same order
-(`engine.integrator.jit.function_pointers`): kernels are compiled for WebAssembly as they are, see
-`engine.integrator.jit.kernel_module`. A function with lanes runs its program for two of them at a time, as
+(`engine.integrator.jit.function_pointers`), so that kernels are compiled for WebAssembly without changes, see
+`engine.integrator.jit.kernel_module`. A function with lanes runs its program for two lanes at a time;
 `engine.integrator.jit.llvm_emitter` writes it for vectors of two doubles.
 """
 
@@ -24,22 +24,23 @@ from engine.integrator.source.recurrence import GeneratedCode
 from engine.integrator.source.straight_line import TABLE
 
 FUNCTIONS = ("step", "jets", "potential_value", "potential_slopes")
-"""Functions of a module, if the structure has them."""
+"""Functions of a module, as far as the structure defines them."""
 
 PAIR = 2
-"""Numbers of a vector."""
+"""Number of elements of a vector."""
 
 _BYTES = 8
 _INT = ir.IntType(64)
-# Cached modules, some kB each.
+# Number of cached modules, of some kB each.
 _MODULES = 32
 
 
 @functools.lru_cache(maxsize=_MODULES)
 def webassembly_module(code: GeneratedCode) -> bytes:
-    """The functions of the potentials of one structure (`FUNCTIONS`) as a WebAssembly module, which imports its memory.
+    """Return the functions of the potentials of one structure (`FUNCTIONS`) as a WebAssembly module, which imports its memory.
 
-    They take what Numba passes. The number of lanes is rounded up to an even one, which rows must have room for.
+    Their arguments are those of Numba's calling convention. The number of lanes is rounded up to an even one; rows must be long
+    enough.
     """
     machine = target_machine()
     module = ir.Module("engine")
@@ -51,7 +52,7 @@ def webassembly_module(code: GeneratedCode) -> bytes:
 
 
 class _Writer:
-    """Writes a generated function into a module.
+    """Writer of a generated function into a module.
 
     entries: number of entries of the table.
     """
@@ -59,7 +60,7 @@ class _Writer:
     def __init__(self, module: ir.Module, generated: GeneratedFunction, entries: int) -> None:
         self._generated, self._entries = generated, entries
         self._signature = SIGNATURES[generated.name]
-        # Numba's own layout of arguments.
+        # Numba's layout of arguments.
         self._context = context = cpu_target.target_context
         kinds = self._signature.args
         self._function = ir.Function(
@@ -70,7 +71,7 @@ class _Writer:
         self._arguments = dict(zip(generated.arguments, map(self._unpack, kinds, passed), strict=True))
 
     def _unpack(self, kind: Any, value: Any) -> Any:
-        """A number, or the address of an array and the length of its rows."""
+        """Return a number, or the address of an array and the length of its rows."""
         if not isinstance(kind, types.Array):
             return value
         array = self._context.make_array(kind)(self._context, self._builder, value)
@@ -113,7 +114,7 @@ class _Writer:
         builder.position_at_end(end)
 
     def _run(self, table: list[Any], inputs: dict[str, Any], width: int) -> list[Any]:
-        """The results of the program for some lanes."""
+        """Return the results of the program for some lanes."""
         program = self._generated.program
         known = {TABLE: table, **inputs}
         passed = [
@@ -122,7 +123,7 @@ class _Writer:
         return write_program(program, self._builder, passed, width)
 
     def _load(self, place: Place, width: int) -> Any:
-        """A number that is the same for all lanes."""
+        """Load a number that is the same for all lanes."""
         return self._in_all_lanes(self._builder.load(self._address(place, _INT(place.column), ir.DoubleType())), width)
 
     def _in_all_lanes(self, value: Any, width: int) -> Any:
@@ -133,7 +134,7 @@ class _Writer:
         return self._builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width))
 
     def _address(self, place: Place, column: Any, kind: ir.Type) -> Any:
-        """The address of a number or of a vector."""
+        """Return the address of a number or of a vector."""
         data, length = self._arguments[place.array]
         if place.row is not None:
             column = self._builder.add(column, self._builder.mul(length, _INT(place.row)))

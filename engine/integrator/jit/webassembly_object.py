@@ -1,4 +1,4 @@
-"""From LLVM instructions to a WebAssembly module, without a linker: an object file is a module but for its exports."""
+"""Compilation of LLVM instructions to a WebAssembly module without a linker, by adding exports to an object file."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ TARGET = "wasm32-unknown-unknown"
 
 _FEATURES = "+simd128,+bulk-memory"
 _HEADER_BYTES = 8
-# Numbers of sections, and the kind of an import or an export, see the specification of WebAssembly.
+# Numbers of sections and kinds of imports and exports, from the specification of WebAssembly.
 _CUSTOM, _IMPORT, _EXPORT, _CODE = 0, 2, 7, 10
 _FUNCTION, _TABLE, _MEMORY, _GLOBAL = range(4)
 
 
 def target_machine() -> Any:
-    """The machine of LLVM for `TARGET`."""
+    """Return the machine of LLVM for `TARGET`."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     return llvm.Target.from_triple(TARGET).create_target_machine(opt=3, features=_FEATURES, reloc="static")
 
 
 def compile_module(source: Any, machine: Any, level: int) -> bytes:
-    """A module of LLVM as one of WebAssembly, which exports its external functions by their names.
+    """Compile an LLVM module to a WebAssembly module that exports its external functions by their names.
 
-    source: a parsed module of llvmlite; level: of optimisation, 2 or 3.
+    source: a parsed module of llvmlite; level: the level of optimisation, 2 or 3.
     """
     options = llvm.create_pipeline_tuning_options(speed_level=level)
-    # Unrolled loops take a third of the bytes, and no less time.
+    # Without unrolling, the module has a third fewer bytes and is as fast.
     options.loop_unrolling = False
     passes = llvm.create_pass_builder(machine, options)
-    # Of two runs the second finds what the first has made constant.
+    # The second run optimises what the first has made constant.
     for _ in range(2):
         passes.getModulePassManager().run(source, passes)
     defined = [function for function in source.functions if not function.is_declaration]
@@ -41,7 +41,7 @@ def compile_module(source: Any, machine: Any, level: int) -> bytes:
 
 
 def _with_exports(compiled: bytes, places: dict[str, int]) -> bytes:
-    """An object file with exports of some of its functions, and without the sections for a linker."""
+    """Add exports of some functions to an object file, and remove the sections for a linker."""
     sections = list(_sections(compiled))
     imported = sum(_count_imported_functions(compiled, begin) for number, begin, _ in sections if number == _IMPORT)
     exports = b"".join(_name(name) + bytes([_FUNCTION]) + _number(imported + place) for name, place in places.items())
@@ -51,7 +51,7 @@ def _with_exports(compiled: bytes, places: dict[str, int]) -> bytes:
 
 
 def _sections(module: bytes) -> Iterator[tuple[int, int, int]]:
-    """(number, begin, end) of each section of a module, with its header."""
+    """Yield (number, begin, end) of each section of a module, with its header."""
     begin = _HEADER_BYTES
     while begin < len(module):
         size, content = _read_number(module, begin + 1)
@@ -60,7 +60,7 @@ def _sections(module: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 def _count_imported_functions(module: bytes, begin: int) -> int:
-    """Number of functions in the section of imports, which come before those of the module."""
+    """Return the number of functions in the import section; they are numbered before the functions of the module."""
     _, place = _read_number(module, begin + 1)
     imports, place = _read_number(module, place)
     functions = 0
@@ -75,7 +75,7 @@ def _count_imported_functions(module: bytes, begin: int) -> int:
 
 
 def _skip_type(module: bytes, kind: int, place: int) -> int:
-    """Where the type of an import ends."""
+    """Return the position at which the type of an import ends."""
     if kind == _FUNCTION:
         return _read_number(module, place)[1]
     if kind == _GLOBAL:
@@ -97,7 +97,7 @@ def _name(name: str) -> bytes:
 
 
 def _number(value: int) -> bytes:
-    """A number in the format LEB128: seven bits a byte, the lowest first."""
+    """Encode a number in the format LEB128: seven bits per byte, the lowest first."""
     digits = bytearray()
     while value > 0x7F:
         digits.append(value & 0x7F | 0x80)
@@ -106,7 +106,7 @@ def _number(value: int) -> bytes:
 
 
 def _read_number(data: bytes, begin: int) -> tuple[int, int]:
-    """A number in the format LEB128, and where it ends."""
+    """Decode a number in the format LEB128; return it and the position at which it ends."""
     value = length = 0
     while True:
         byte = data[begin + length]

@@ -1,4 +1,4 @@
-"""Single orbits: the path from dense output, and deviation vectors from the linearised recurrence."""
+"""Single orbits: their path from dense output, and deviation vectors from the linearised recurrence."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def trace_orbit(
     """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of limited length.
 
     orbits: arrays of length 1, changed in place. Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time
-    at which the piece ends: before `t_max` also for a bounded orbit that rounding carries over the saddle of a closed channel, on
-    which it rests. Raises CancelledError when cancelled.
+    at which the piece ends. This time can be before `t_max` also for a bounded orbit, at rest on the saddle of a closed channel,
+    that rounding carries over the saddle. Raises CancelledError when cancelled.
     """
     while orbits.pending[0]:
         execution.raise_if_cancelled()
@@ -47,8 +47,8 @@ def trace_pieces(
     execution: Execution = DEFAULT_EXECUTION,
     tolerance: float = TOLERANCE,
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """`trace_orbit` from t = 0 to `t_end`, without exits."""
-    # No step is past these gates.
+    """Apply `trace_orbit` from t = 0 to `t_end`, without exits."""
+    # No step passes these gates.
     gates = np.full((channels, 3), np.inf)
     gates[:, :2] = 0.0
     exits = Exits(gates, np.zeros((1, channels, CURVE_COLUMNS)), np.zeros(1, np.int64))
@@ -66,14 +66,14 @@ def trace_steps(
     execution: Execution = DEFAULT_EXECUTION,
     tolerance: float = TOLERANCE,
 ) -> np.ndarray:
-    """(m, 5) x, y, px, py, t at the start of every step up to `t_end`, exits ignored."""
+    """Return (m, 5) x, y, px, py, t at the start of every step up to `t_end`, exits ignored."""
     return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, execution, tolerance)])
 
 
 def sample_path(
     kernels: ModuleType, steps: np.ndarray, times: np.ndarray, execution: Execution = DEFAULT_EXECUTION
 ) -> np.ndarray:
-    """(4, n) x, y, px, py at increasing `times`, from the series of the steps (m, 5) that contain them."""
+    """Return (4, n) x, y, px, py at increasing `times`, from the series of the steps (m, 5) that contain them."""
     row = np.searchsorted(steps[:, 4], times, side="right") - 1
     path = np.empty((4, times.size))
     for begin in range(0, len(steps), _CHUNK):
@@ -88,7 +88,7 @@ def sample_path(
 
 
 def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarray) -> np.ndarray:
-    """(n, 4) states at `durations` (n,) after `states` (n, 4), from one series each; at most one step of the integrator later."""
+    """Return (n, 4) states at `durations` (n,) of at most one integrator step after `states` (n, 4), from one series each."""
     jets = np.empty((2, ORDER + 1, len(states)))
     kernels.jets(len(states), *(np.ascontiguousarray(column) for column in states.T), *jets)
     later: np.ndarray = _evaluate(jets, np.arange(len(states)), durations).T
@@ -96,7 +96,7 @@ def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarra
 
 
 def _evaluate(jets: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
-    """(4, n) `evaluate_series`."""
+    """Return (4, n) the result of `evaluate_series`."""
     states = np.empty((4, row.size))
     evaluate_series(jets, row, tau, states)
     return states
@@ -118,7 +118,7 @@ def evaluate_series(jets, row, tau, states):
 
 
 def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """(m, 2) x and px of the upward crossings of y = 0 between the samples of a path (4, n), at most one step apart."""
+    """Return (m, 2) x and px of the upward crossings of y = 0 between the samples of a path (4, n), at most one step apart."""
     y, py = path[1], path[3]
     rises = (y[:-1] < 0.0) & (y[1:] >= 0.0)
     turns = (y[:-1] * y[1:] > 0.0) & (y[:-1] * py[:-1] < 0.0) & (y[1:] * py[1:] > 0.0)
@@ -131,9 +131,9 @@ def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> 
 
 @kernel
 def _crossings(jets, durations):
-    """(m, 2) x and px of the upward crossings within `durations` (n,) of the starts of n series."""
+    """Return (m, 2) x and px of the upward crossings within `durations` (n,) of the starts of n series."""
     x_jet, y_jet = jets[0], jets[1]
-    # Two in one interval are rare, three do not occur.
+    # Two crossings in one interval are rare, and three do not occur.
     points = np.empty((1, 2 * durations.size, 3))
     found = np.zeros(1, np.int64)
     for i in range(durations.size):
@@ -144,10 +144,11 @@ def _crossings(jets, durations):
 def sample_deviations(
     kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, execution: Execution = DEFAULT_EXECUTION
 ) -> tuple[np.ndarray, np.ndarray]:
-    """SALI (n,) and the growth ln(|w1(t)|/|w1(0)|) (n,) of the first of two deviation vectors, at `times` along a path (4, n).
+    """Return SALI (n,) and the growth ln(|w1(t)|/|w1(0)|) (n,) of deviation vectors at `times` along a path (4, n).
 
-    vectors (2, 4): δx, δy, δpx, δpy at the start of the path. The transition matrices of all intervals are computed together,
-    then applied in turn, with the vectors normalised after each. `times` must be at most one step of the integrator apart.
+    vectors (2, 4): δx, δy, δpx, δpy of both vectors at the start of the path. The transition matrices of all intervals are
+    computed together, then applied in turn; the vectors are normalised after each. `times` must be at most one step of the
+    integrator apart.
     """
     sali = np.empty(times.size)
     stretch = np.ones(times.size)
@@ -162,7 +163,7 @@ def sample_deviations(
 
 
 def transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
-    """(4, 4, n): row, column and interval of the linearised flow over each interval."""
+    """Return (4, 4, n): row, column and interval of the linearised flow over each interval."""
     n = durations.size
     state = [np.ascontiguousarray(row) for row in path]
     matrices = np.zeros((4, 4, n))

@@ -1,6 +1,6 @@
-"""Many orbits at the same time, each with the series of the step that contains it, for an animation.
+"""Propagation of many orbits at the same time, with the series of the current step of each, for an animation.
 
-The place of an orbit at any time within its step costs two polynomials; steps are taken in full vectors of lanes.
+The position of an orbit within its step is given by two polynomials. Steps are computed for full vectors of lanes.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ class Ensemble(NamedTuple):
     Attributes
     ----------
     ends
-        (ROWS, n) x, y, px, py, t, size and remainders at the end of the present step; before the first step those of the start.
+        (ROWS, n) x, y, px, py, t, size and remainders at the end of the current step; before the first step, those of the start.
     begin
-        (n,) time at which the present step begins.
+        (n,) time at which the current step begins.
     jets
-        (2, ORDER + 1, n) series of x and y in the present step.
+        (2, ORDER + 1, n) series of x and y in the current step.
     leaving
-        (n,) int8: number of the exit through which this step leads out, or an earlier one has; 0 for none.
+        (n,) int8: number of the exit through which this step, or an earlier one, leaves the interior; 0 for none.
     escape_time
         (n,) time of the escape, or infinite.
     last
@@ -59,10 +59,10 @@ class Ensemble(NamedTuple):
 
 @kernel
 def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, curves, ensemble):
-    """Take steps until that of each orbit contains `time`, unless it has left.
+    """Advance each orbit until its step contains `time`, unless it has left.
 
-    beyond: how long orbits are followed beyond an exit that is no disc; gates (exits, 3), curves (exits, columns): see
-    `engine.integrator.kernels.propagate.Exits`.
+    beyond: time for which orbits are followed beyond an exit that is not a disc; gates (exits, 3) and curves (exits, columns):
+    see `engine.integrator.kernels.propagate.Exits`.
     """
     count = ensemble.begin.shape[0]
     now = np.zeros((ROWS, LANES))
@@ -99,12 +99,12 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
 
 @kernel
 def place_ensemble(time, ensemble, places, channels):
-    """Set `places` (2, n) to x and y at a time, and `channels` (n,) of orbits that have left; orbits far outside are at NaN."""
+    """Set `places` (2, n) to x and y at a time, NaN far outside, and `channels` (n,) to the exits of orbits that have left."""
     for orbit in range(ensemble.begin.shape[0]):
         if time >= ensemble.escape_time[orbit]:
             channels[orbit] = ensemble.leaving[orbit]
         tau = time - ensemble.begin[orbit]
-        # The size of the last step of an orbit that has broken down is not a number.
+        # After an orbit has failed, the size of its last step is NaN.
         is_far = time > ensemble.last[orbit] or not tau <= ensemble.ends[SIZE_ROW, orbit]
         for axis in range(2):
             places[axis, orbit] = np.nan if is_far else series_value(ensemble.jets[axis], orbit, tau)
@@ -112,7 +112,7 @@ def place_ensemble(time, ensemble, places, channels):
 
 @kernel
 def begin_ensemble(starts, ensemble, places, channels):
-    """Put orbits at their starts (n, 4), and `places` (2, n) and `channels` (n,) with them."""
+    """Set orbits to their starts (n, 4), and set `places` (2, n) and `channels` (n,) accordingly."""
     ensemble.ends[:] = 0.0
     ensemble.begin[:] = 0.0
     ensemble.leaving[:] = 0
@@ -144,7 +144,7 @@ def reverse_ensemble(time, ensemble, channels, states):
 
 @kernel
 def measure_spread(starts, places, channels):
-    """How many times as wide as at their starts (n, 4) the orbits are spread that are still inside; places (2, n)."""
+    """Return the ratio of the spread of the orbits still inside, at places (2, n), to their spread at the starts (n, 4)."""
     before = _variance(starts[:, 0], channels) + _variance(starts[:, 1], channels)
     now = _variance(places[0], channels) + _variance(places[1], channels)
     return np.sqrt(now / before)
@@ -152,12 +152,12 @@ def measure_spread(starts, places, channels):
 
 @subroutine
 def _variance(values, channels):
-    """The variance of the values (n,) of orbits inside."""
+    """Return the variance of the values (n,) of orbits inside."""
     count, total, squares, origin = 0, 0.0, 0.0, 0.0
     for orbit in range(channels.shape[0]):
         if channels[orbit] != 0:
             continue
-        # Relative to the first one: those of a small disc differ in their last digits only.
+        # The values are taken relative to the first, because those of a small disc differ only in their last digits.
         if count == 0:
             origin = values[orbit]
         difference = values[orbit] - origin
@@ -170,14 +170,14 @@ def _variance(values, channels):
 
 @subroutine
 def _is_late(ensemble, orbit, time):
-    """Whether the step of an orbit that is followed ends before a time; the time of one that has broken down is NaN."""
+    """Return whether the step of a followed orbit ends before a time; the time of a failed orbit is NaN."""
     end = ensemble.ends[4, orbit]
     return end < time and end < ensemble.last[orbit]
 
 
 @subroutine
 def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble, orbit):
-    """Make the step of lane i the present one of its orbit, with its events."""
+    """Make the step of lane i, with its events, the current step of its orbit."""
     for k in range(ORDER + 1):
         ensemble.jets[0, k, orbit] = x_jet[k, i]
         ensemble.jets[1, k, orbit] = y_jet[k, i]

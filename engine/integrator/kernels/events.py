@@ -1,6 +1,6 @@
 """Events within one step, located in its dense output: exits and crossings of the section y = 0.
 
-An exit is where an orbit ends: the curve or line across a channel, the edge of the disc around a centre, or the escape circle.
+An exit is a place where orbits end: a curve or line across a channel, the edge of a disc around a centre, or the escape circle.
 It is a row of numbers, the first of which are the same for all shapes. A disc has its centre as origin and its radius as half
 width, the escape circle its radius as half width.
 
@@ -11,8 +11,8 @@ curve, it is continued by straight lines through the forbidden region, up to |s|
 line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame an exit is a line u = c + a q²,
 parallel to the ridge of V at the saddle.
 
-An orbit that has crossed the path of a Lyapunov orbit does not return. All other exits can be passed and left again within a
-step, which is examined as a whole.
+An orbit that has crossed the path of a Lyapunov orbit does not return. Any other exit can be crossed and recrossed within a step,
+so that the whole step is examined.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 # Values of the column SHAPE; orbits cannot return from a CURVE.
 CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
 
-# Fates of an orbit, or of a start without one, other than the number, 1 or more, of the channel through which it escaped.
+# Fates of an orbit or a start, besides the number, 1 or more, of the channel through which it escaped.
 BOUNDED, FORBIDDEN, OUTSIDE, NOT_COMPUTED, FAILED = 0, -1, -2, -3, -4
 
 # Degree of the polynomial f, a sum of Chebyshev polynomials.
 CURVE_DEGREE = 40
 CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
-# Parts of a step that are examined in turn; within one, ẏ is taken to change its sign at most once.
+# Number of parts of a step that are examined in turn; within a part, ẏ is assumed to change its sign at most once.
 _PARTS = 8
 _ROOT_ITERATIONS = 80
 _ROOT_ACCURACY = 1e-15
@@ -43,7 +43,7 @@ _ROOT_ACCURACY = 1e-15
 
 @subroutine
 def position_across(x, y, curve):
-    """s of a point, −1 and 1 at the ends of the exit."""
+    """Return s of a point; −1 and 1 are the ends of the exit."""
     q = curve[OUTWARD_X] * (y - curve[ORIGIN_Y]) - curve[OUTWARD_Y] * (x - curve[ORIGIN_X])
     return (q - curve[MIDDLE]) / curve[HALF_WIDTH]
 
@@ -68,7 +68,7 @@ def exit_height(s, curve):
 
 @subroutine
 def exit_distance(x, y, curve):
-    """Distance of (x, y) from an exit, along the channel or the radius: positive beyond, negative inside."""
+    """Return the distance of (x, y) from an exit, along the channel or the radius: positive outside, negative inside."""
     if curve[SHAPE] >= DISC:
         radius = np.sqrt((x - curve[ORIGIN_X]) ** 2 + (y - curve[ORIGIN_Y]) ** 2)
         return curve[HALF_WIDTH] - radius if curve[SHAPE] == DISC else radius - curve[HALF_WIDTH]
@@ -78,7 +78,7 @@ def exit_distance(x, y, curve):
 
 @subroutine
 def crossed_exit(x0, y0, x1, y1, curves, gates):
-    """The number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1), 0 for none."""
+    """Return the number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1); 0 for none."""
     for k in range(curves.shape[0]):
         curve = curves[k]
         if curve[SHAPE] < DISC and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
@@ -100,7 +100,7 @@ def crossed_exit(x0, y0, x1, y1, curves, gates):
 
 @subroutine
 def series_value(jet, i, tau):
-    """A series at time tau after the start of its step."""
+    """Return a series at time tau after the start of its step."""
     value = jet[jet.shape[0] - 1, i]
     for k in range(jet.shape[0] - 2, -1, -1):
         value = value * tau + jet[k, i]
@@ -109,7 +109,7 @@ def series_value(jet, i, tau):
 
 @subroutine
 def series_slope(jet, i, tau):
-    """The time derivative of a series at time tau after the start of its step."""
+    """Return the time derivative of a series at time tau after the start of its step."""
     order = jet.shape[0] - 1
     slope = order * jet[order, i]
     for k in range(order - 1, 0, -1):
@@ -119,7 +119,7 @@ def series_slope(jet, i, tau):
 
 @subroutine
 def find_extremum(jet, i, low, high):
-    """The time between `low` and `high` at which the slope of a series changes its sign, by bisection."""
+    """Find the time between `low` and `high` at which the slope of a series changes its sign, by bisection."""
     rising = series_slope(jet, i, low) > 0.0
     for _ in range(_ROOT_ITERATIONS):
         middle = 0.5 * (low + high)
@@ -134,7 +134,7 @@ def find_extremum(jet, i, low, high):
 
 @subroutine
 def find_zero(jet, i, low, high):
-    """The zero of a series between two times at which its signs differ: Newton's method, safeguarded by bisection."""
+    """Find the zero of a series between two times at which its signs differ, by Newton's method, safeguarded by bisection."""
     positive = series_value(jet, i, low) > 0.0
     tau = 0.5 * (low + high)
     for _ in range(_ROOT_ITERATIONS):
@@ -153,12 +153,12 @@ def find_zero(jet, i, low, high):
 
 @subroutine
 def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slope_high):
-    """Times before and after a crossing of the section in a part of a step, pairs of zeros included; equal times: none.
+    """Return times before and after a crossing, or a pair of crossings, of the section in a part of a step; equal for none.
 
-    jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for those from y > 0 to y ≤ 0; low, high: the ends of the
-    part; y_…, slope_…: the values there of y and ẏ times `direction`.
+    jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for crossings from y > 0 to y ≤ 0; low, high: the ends of
+    the part; y_…, slope_…: y and ẏ there, times `direction`.
     """
-    # An orbit that starts on the section against the direction is before it from then on.
+    # An orbit that starts on the section and moves against the direction counts as before the section from then on.
     before = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
     if before and y_high >= 0.0:
         return low, high
@@ -174,7 +174,7 @@ def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slo
 
 @subroutine
 def count_upward_crossings(y_jet, i, duration):
-    """Number of upward crossings of y = 0 within `duration` of the start of a step."""
+    """Count the upward crossings of y = 0 within `duration` of the start of a step."""
     count = 0
     low = 0.0
     y_low, slope_low = series_value(y_jet, i, low), series_slope(y_jet, i, low)
@@ -212,7 +212,7 @@ def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, fou
 
 @subroutine
 def _exit_rate(x_jet, y_jet, i, tau, curve):
-    """What has the sign of the time derivative of the distance from a line, a disc or the escape circle."""
+    """Return a number with the sign of the time derivative of the distance from a line, a disc or the escape circle."""
     vx = series_slope(x_jet, i, tau)
     vy = series_slope(y_jet, i, tau)
     if curve[SHAPE] == LINE:
@@ -226,7 +226,7 @@ def _exit_rate(x_jet, y_jet, i, tau, curve):
 
 @subroutine
 def _find_excursion(x_jet, y_jet, i, duration, curve):
-    """When, within `duration` of the start of a step, an orbit is furthest beyond an exit to which it returns; −1 for never."""
+    """Return the time within `duration` when an orbit is furthest beyond an exit through which it returns; −1 for never."""
     low = 0.0
     rate_low = _exit_rate(x_jet, y_jet, i, low, curve)
     for part in range(1, _PARTS + 1):
@@ -250,13 +250,13 @@ def _find_excursion(x_jet, y_jet, i, duration, curve):
 
 @subroutine
 def _is_beyond(x, y, curve):
-    """Whether a point is beyond an exit, and within the reach of a line."""
+    """Return whether a point is beyond an exit and, for a line, within its reach."""
     return exit_distance(x, y, curve) > 0.0 and (curve[SHAPE] >= DISC or abs(position_across(x, y, curve)) <= curve[REACH])
 
 
 @subroutine
 def passed_exit(x_jet, y_jet, i, duration, curves):
-    """The number of the exit that an orbit passes and leaves again within `duration` of the start of a step, 0 for none."""
+    """Return the number of the exit that an orbit crosses and recrosses within `duration` of the start of a step; 0 for none."""
     for k in range(curves.shape[0]):
         if curves[k, SHAPE] >= LINE and _find_excursion(x_jet, y_jet, i, duration, curves[k]) >= 0.0:
             return k + 1
@@ -265,7 +265,7 @@ def passed_exit(x_jet, y_jet, i, duration, curves):
 
 @subroutine
 def find_exit_time(x_jet, y_jet, i, duration, curve):
-    """Time from the start of a step to the crossing of an exit in it, by the Illinois method."""
+    """Find the time from the start of a step to its crossing of an exit, by the Illinois method."""
     low, high = 0.0, duration
     if curve[SHAPE] >= LINE:
         excursion = _find_excursion(x_jet, y_jet, i, duration, curve)

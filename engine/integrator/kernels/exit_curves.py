@@ -1,4 +1,4 @@
-"""Exits at any energy, interpolated in a table, and their points."""
+"""Exits at any energy, interpolated in a table, and points on them."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from engine.integrator.kernels.events import (
     exit_height,
 )
 
-# Columns of a table: gate and reach, then those of an exit for its axes, and from `MIDDLE` on.
+# Columns of a table: gate, reach, the columns of an exit that describe its axes, and its columns from `MIDDLE` on.
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 
 @subroutine
 def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
-    """Set an exit (columns,), and its gate (3,), from a table; both are zeros before.
+    """Set an exit (columns,) and its gate (3,), both zeros initially, from a table.
 
-    place: between the nodes, 0.0 or less for a closed channel. By the barycentric formula (Berrut & Trefethen 2004, SIAM Review
-    46, 501). The reach is not smooth: the smaller one of two neighbours is taken.
+    place: the position between the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen
+    2004, SIAM Review 46, 501), except for the reach, which is not smooth: it is the smaller one of two neighbours.
     """
     count = nodes.shape[0]
     exit_curve[OUTWARD_X] = 1.0
@@ -76,7 +76,7 @@ def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
 
 @subroutine
 def exit_point(exit_curve, s):
-    """x and y of the point of an exit at s, from −1 to 1; around a circle s goes from −1 to 1, too."""
+    """Return x and y of the point of an exit at s, from −1 to 1; on a circle this range is a full turn."""
     if exit_curve[SHAPE] >= DISC:
         x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
         y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)
@@ -90,17 +90,18 @@ def exit_point(exit_curve, s):
 
 @kernel
 def exit_points(exit_curve, positions, points):
-    """Set `points` (2, n) to those of an exit at s (n,), see `exit_point`."""
+    """Set `points` (2, n) to the points of an exit at s (n,), see `exit_point`."""
     for i in range(positions.shape[0]):
         points[0, i], points[1, i] = exit_point(exit_curve, positions[i])
 
 
 @kernel
 def interpolate_exit(nodes, rows, saddle, shape, energies, number, curves, gates):
-    """Set the exit of a number at energies (n,) in `curves` (n, exits, columns), and its gate in `gates` (exits, 3), from zeros.
+    """Set exit `number` in `curves` (n, exits, columns) at energies (n,) and its gate in `gates` (exits, 3), zeros initially.
 
     nodes (m,): √(h − saddle), rising Chebyshev nodes of the first kind, where `saddle` is the energy at which the channel opens;
-    rows (m, columns): the exit there; shape: CURVE or LINE. The gate is that of the lowest value, inside all of these exits.
+    rows (m, columns): the exit there; shape: CURVE or LINE. Of the gates at these energies the lowest is chosen, which lies
+    inside all of these exits.
     """
     gate = np.zeros(3)
     for i in range(energies.shape[0]):

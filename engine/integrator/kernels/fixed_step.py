@@ -1,7 +1,7 @@
-"""Many orbits at one fixed step, exits ignored: weighted Birkhoff averages, section points and SALI.
+"""Many orbits with one fixed step, without exits: weighted Birkhoff averages, section points and SALI.
 
-Compiled once for all potentials, as `engine.integrator.kernels.propagate`. All lanes have the same time, so none takes a new
-orbit; an orbit that escapes goes to infinity or NaN.
+These kernels are compiled once for all potentials, like `engine.integrator.kernels.propagate`. All lanes have the same time, so
+that no lane takes a new orbit. The coordinates of an orbit that escapes become infinite or NaN.
 """
 
 from __future__ import annotations
@@ -22,9 +22,10 @@ _STEPS_BETWEEN_CHECKS = 16
 
 @kernel
 def birkhoff_averages(fixed_step, coefficients, h, weights, state, averages):
-    """Weighted averages of x² and y² over two consecutive windows, and over a third one that overlaps half of each.
+    """Compute weighted averages of x² and y² over two consecutive windows, and over a third one that overlaps half of each.
 
-    weights (m,): of the samples of a window, h apart; state (4, lanes), changed in place; averages (3, 2, lanes), written.
+    weights (m,): weights of the samples of a window, h apart; state (4, lanes), changed in place; averages (3, 2, lanes),
+    written.
     """
     lanes = state.shape[1]
     current = _load_lanes(state)
@@ -46,7 +47,7 @@ def birkhoff_averages(fixed_step, coefficients, h, weights, state, averages):
 
 @subroutine
 def _load_lanes(state):
-    """A (4, LANES) array with the states (4, lanes) in its first columns."""
+    """Return a (4, LANES) array with the states (4, lanes) in its first columns."""
     current = np.zeros((4, LANES))
     for c in range(4):
         for i in range(state.shape[1]):
@@ -64,10 +65,10 @@ def _store_lanes(current, state):
 
 @kernel
 def find_section_points(fixed_step, jets, coefficients, h, steps, state, points, found):
-    """The next points (x, px) at which orbits cross y = 0 upward, until each has m points or `steps` are taken.
+    """Find the next points (x, px) at which orbits cross y = 0 upward, until each has m points or `steps` are taken.
 
-    state (4, lanes), changed in place; points (lanes, m, 3), filled from index found (lanes,) on: x, px and
-    the time since the start of the step.
+    state (4, lanes), changed in place; points (lanes, m, 3), filled from index found (lanes,) on: x, px and the time since the
+    start of the step.
     """
     lanes = state.shape[1]
     current = _load_lanes(state)
@@ -120,10 +121,10 @@ def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found)
 
 @kernel
 def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, second, sali):
-    """The smallest SALI of orbits over `steps`: min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, eq. 9 of Zotos (2014).
+    """Compute the smallest SALI over `steps`, min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, eq. 9 of Zotos (2014).
 
     state, first, second (4, lanes): orbits and their two deviation vectors, changed in place; sali (lanes,): lowered in place,
-    NaN for an orbit that has gone to infinity.
+    NaN for an orbit whose coordinates have become infinite.
     """
     lanes = state.shape[1]
     duration = np.zeros(lanes)

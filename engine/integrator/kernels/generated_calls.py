@@ -1,4 +1,4 @@
-"""Generated functions as kernels, for machines that cannot call them otherwise."""
+"""Kernels that call the generated functions, for machines that cannot call these otherwise."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine.integrator.source.series import ORDER
 
 @kernel
 def compute_series(jets, coefficients, start, series):
-    """Set `series` (2, ORDER + 1, n) to those of x and y of the steps that begin at `start` (4, n); n is even."""
+    """Set `series` (2, ORDER + 1, n) to the series of x and y of the steps that begin at `start` (4, n); n is even."""
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], series[0], series[1])
 
 
@@ -23,7 +23,7 @@ def sample_steps(jets, coefficients, steps, count, end, path):
     steps (n, 5): x, y, px, py, t at the start of each; end: the time at which the last one ends.
     """
     points = path.shape[1] // count
-    # Two at a time; WebAssembly computes the series of pairs.
+    # WebAssembly computes the series of pairs, so that two steps are processed at a time.
     start = np.zeros((4, 2))
     x_series, y_series = np.zeros((ORDER + 1, 2)), np.zeros((ORDER + 1, 2))
     for first in range(0, count, 2):

@@ -1,11 +1,12 @@
 """Which points of the Hill region lie inside the exits: connected to the origin below the energy without crossing an exit.
 
-A path leads downhill from the point. As soon as the straight line to the origin is below the energy as well, it is complete,
-and the point is inside if the path crosses the exits an even number of times. A path to another minimum, or to a value of V below
-that at the origin, ends outside, and the point is inside if the path crosses the exits an odd number of times.
+A path leads downhill from the point. It is complete as soon as V on the straight line to the origin is below the energy. The
+point is then inside if the path crosses the exits an even number of times. If the path leads to another minimum, or to a value of
+V below that at the origin, it ends outside, and the point is inside if the path crosses the exits an odd number of times.
 
-The two kernels differ in how they evaluate V: polynomials from their terms, with a proof that V on a line is below a level;
-expressions by a generated function, with V on a line between neighbouring points replaced by the cubic of its values and slopes.
+The two kernels differ in how they evaluate V. For polynomials they use the terms, with a proof that V on a line is below a level.
+For expressions they use a generated function, and replace V on a line between neighbouring points by the cubic with its values
+and slopes.
 """
 
 from __future__ import annotations
@@ -26,28 +27,28 @@ from engine.integrator.kernels.events import (
     position_across,
 )
 
-# Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
+# Lengths and energies are in units of the well. When the step reaches its smallest length, the path has reached a minimum.
 _LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
 _MOST_STEPS = 10_000
-# Far from the exits steps grow with the distance, by this factor.
+# Far from the exits, steps are proportional to the distance, by this factor.
 _FAR_SHARE = 0.25
 # The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
 _COS, _SIN = np.cos(0.1), np.sin(0.1)
 # Smallest decrease of V in a step, relative to that along the gradient.
 _DECREASE = 0.25
-# Lines to the origin stay below the energy by this, so that they do not pass over a saddle of the same energy.
+# On lines to the origin V stays below the energy by at least this, so that they do not pass over a saddle of the same energy.
 _ENERGY_MARGIN = 1e-12
 # Largest slope at a critical point.
 _NO_SLOPE = 1e-9
-# Parts of a line to the origin.
+# Number of parts of a line to the origin.
 _PIECES = 32
-# Points at the edge of a disc at the origin.
+# Number of points on the edge of a disc at the origin.
 _EDGE_POINTS = 64
 
 
 @subroutine
 def _polynomial_slopes(polynomial, x, y):
-    """V, V_x and V_y; row 2 of `work` becomes the series of V(t x, t y) in t."""
+    """Return V, V_x and V_y; row 2 of `work` becomes the series of V(t x, t y) in t."""
     powers, coefficients, _, work = polynomial
     x_power = 1.0
     y_power = 1.0
@@ -75,7 +76,7 @@ def _polynomial_slopes(polynomial, x, y):
 
 @subroutine
 def _polynomial_is_below(polynomial, x, y, level):
-    """Whether all Bernstein coefficients of the series on [0, 1] at the last point expanded, (x, y), are at most a level."""
+    """Return whether all Bernstein coefficients on [0, 1] of the series at (x, y), expanded last, are at most a level."""
     _, _, bernstein, work = polynomial
     for i in range(bernstein.shape[0]):
         b = 0.0
@@ -95,7 +96,7 @@ def _expression_slopes(generated, x, y):
 
 @subroutine
 def _expression_is_below(generated, x, y, level):
-    """Whether V on the line from the well to (x, y) is at most a level: all Bernstein coefficients of a cubic on each part.
+    """Return whether V on the line from the well to (x, y) is at most a level, by Bernstein coefficients of cubics.
 
     The line begins at the origin, or at the edge of the disc around a centre at the origin.
     """
@@ -117,7 +118,7 @@ def _expression_is_below(generated, x, y, level):
 
 @subroutine
 def _crosses_exits(x0, y0, x1, y1, curves):
-    """Whether the line from (x0, y0) to (x1, y1) crosses the open exits an odd number of times."""
+    """Return whether the line from (x0, y0) to (x1, y1) crosses the open exits an odd number of times."""
     odd = False
     for k in range(curves.shape[0]):
         curve = curves[k]
@@ -144,7 +145,7 @@ def _crosses_exits(x0, y0, x1, y1, curves):
 
 @subroutine
 def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
-    """Whether a point is outside; slopes, is_below: two of the functions above; potential: their first argument."""
+    """Return whether a point is outside; slopes, is_below: two of the functions above; potential: their first argument."""
     level = energy - _ENERGY_MARGIN
     odd = False
     step = _LONGEST_STEP
@@ -176,16 +177,16 @@ def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
 
 @subroutine
 def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, bottom, outside):
-    """Set `outside` (n,) int8 to the number of an exit for each point beyond one; others, and forbidden ones, keep 0.
+    """Set `outside` (n,) int8 to the number of an exit for each point outside; other and forbidden points keep 0.
 
-    Beyond a circle it is that exit, else the one whose saddle is nearest in direction.
+    Outside a circle it is the number of the circle, otherwise that of the exit whose saddle is nearest in direction.
     """
     for i in range(x.shape[0]):
         row = curves[curve_row[i]]
         value, _, _ = slopes(potential, x[i], y[i])
         highest = energy[i] + _ENERGY_MARGIN
         circle = _find_circle(x[i], y[i], row)
-        # At the centre of a body V need not be a number.
+        # At the centre of a body V may be infinite or NaN.
         if circle > 0 and not value > highest:
             outside[i] = circle
         if circle > 0 or not value <= highest or not _has_exits(row):
@@ -202,7 +203,7 @@ def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, 
 
 @subroutine
 def _find_circle(x, y, curves):
-    """The number of the circle beyond which a point is, 0 for none; one within which orbits end may lie beyond another."""
+    """Return the number of the circle beyond which a point lies, 0 for none; a disc in which orbits end may be beyond one."""
     found = 0
     for shape in (CIRCLE, DISC):
         for k in range(curves.shape[0]):
@@ -213,7 +214,7 @@ def _find_circle(x, y, curves):
 
 @subroutine
 def _has_exits(curves):
-    """Whether there are exits over saddles; with an escape circle there are none."""
+    """Return whether there are exits over saddles; with an escape circle there are none."""
     found = False
     for k in range(curves.shape[0]):
         found |= curves[k, SHAPE] < DISC and curves[k, REACH] >= 0.0
@@ -222,10 +223,10 @@ def _has_exits(curves):
 
 @kernel
 def find_outside_polynomial(powers, coefficients, bernstein, work, x, y, energy, curves, curve_row, outside):
-    """`_find_outside` for a polynomial.
+    """Apply `_find_outside` to a polynomial.
 
-    powers (terms, 2), coefficients (terms,): of V; bernstein (n, n): matrix of `engine.exits.interior`; work (3, n): work space;
-    x, y, energy (n,); curves (rows, exits, columns); curve_row (n,).
+    powers (terms, 2), coefficients (terms,): terms of V; bernstein (n, n): matrix of `engine.exits.interior`; work (3, n): work
+    space; x, y, energy (n,); curves (rows, exits, columns); curve_row (n,).
     """
     polynomial = (powers, coefficients, bernstein, work)
     bottom, _, _ = _polynomial_slopes(polynomial, 0.0, 0.0)
@@ -234,9 +235,9 @@ def find_outside_polynomial(powers, coefficients, bernstein, work, x, y, energy,
 
 @kernel
 def find_outside(potential_slopes, coefficients, inner_radius, x, y, energy, curves, curve_row, outside):
-    """`_find_outside` for an expression; inner_radius: radius of the disc around a centre at the origin, 0.0 for a well there."""
+    """Apply `_find_outside` to an expression; inner_radius: radius of the disc around a centre at the origin, or 0.0."""
     generated = (potential_slopes, coefficients, inner_radius)
-    # The lowest value of V on the edge of the disc: a path below it cannot lead to the disc.
+    # `bottom` is the lowest value of V on the edge of the disc; a path below it cannot lead to the disc.
     bottom = np.inf
     for k in range(_EDGE_POINTS):
         angle = 2.0 * np.pi * k / _EDGE_POINTS

@@ -1,6 +1,6 @@
-"""Orbits of one lane each, followed with adaptive steps until they escape: passages through y = 0, and integrals of the speed.
+"""Adaptive steps of one orbit per lane until it escapes, for passages through y = 0 and integrals of the speed.
 
-Compiled once for all potentials, as `engine.integrator.kernels.propagate`.
+These kernels are compiled once for all potentials, like `engine.integrator.kernels.propagate`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from engine.integrator.source.recurrence import LANES, ROWS, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 
-# Nodes of Gauss's rule of 8 points on [−1, 1], and their weights.
+# Nodes and weights of Gauss's rule with 8 points on [−1, 1].
 _NODES = (
     -0.96028985649753623168, -0.79666647741362673959, -0.52553240991632898582, -0.18343464249564980494,
     0.18343464249564980494, 0.52553240991632898582, 0.79666647741362673959, 0.96028985649753623168,
@@ -26,16 +26,18 @@ _WEIGHTS = (
     0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
     0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915,
 )  # fmt: skip
-# Parts of a step are halved until the rule on a part and on its halves differ by less than this share of the integral over the
-# step. Where an orbit almost stops, a power of the speed below 1 is almost singular; parts are halved this often at most.
+# Parts of a step are halved until the results of the rule on a part and on its halves differ by less than this share of the
+# integral over the step. Near a point of rest, a power of the speed below 1 is almost singular, so that the number of halvings is
+# limited.
 _ACCURACY = 1e-13
 _MOST_HALVINGS = 40
 
 
 class _StepBuffer(NamedTuple):
-    """Steps whose passages are still to be located.
+    """Steps whose passages have not been located yet.
 
-    start (6, lanes): x, y, px, py, t and step size; orbit (lanes,); channel (lanes,): where the step escapes, 0 for inside.
+    start (6, lanes): x, y, px, py, t and step size; orbit (lanes,); channel (lanes,): the exit through which the step escapes, or
+    0.
     """
 
     start: np.ndarray
@@ -45,10 +47,10 @@ class _StepBuffer(NamedTuple):
 
 @subroutine
 def fill_lanes(orbits):
-    """The arrays for the steps of orbits (rows, lanes), one in each lane: now, new, flag, crossed, and the orbit of each lane."""
+    """Return the arrays for steps of orbits (rows, lanes), one per lane: now, new, flag, crossed, and the orbit of each lane."""
     lanes = orbits.shape[1]
     now = np.zeros((ROWS, LANES))
-    # Element by element: for `now[:4] = orbits` Numba compiles an error message as well, which takes 2 s.
+    # The elements are copied one by one, because for `now[:4] = orbits` Numba also compiles an error message, which takes 2 s.
     for c in range(orbits.shape[0]):
         for i in range(lanes):
             now[c, i] = orbits[c, i]
@@ -60,7 +62,7 @@ def fill_lanes(orbits):
 
 @kernel
 def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, curves, state, passages, found):
-    """The first m downward passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
+    """Find the first m downward passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
 
     gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of `VECTOR` up to `LANES`;
     passages (lanes, m, 3): x, px and time; found (lanes,), zeros. A passage goes from y > 0 to y ≤ 0; none is counted after the
@@ -106,7 +108,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
 
 @subroutine
 def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
-    """Append the downward passages in each of the first `n` buffered steps to those of the step's orbit."""
+    """Append the downward passages in each of the first `n` buffered steps to those of the orbit of the step."""
     start = buffer.start
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
@@ -162,7 +164,7 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
 
 @subroutine
 def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
-    """How long the orbit of lane i is inside within its step and the duration, and whether it ends in the step."""
+    """Return how long, within its step and the duration, the orbit of lane i is inside, and whether it ends in the step."""
     late = flags & OVERSHOOT != 0
     within = min(new[5, i], duration - now[4, i])
     channel = 0
@@ -177,14 +179,14 @@ def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
 
 @subroutine
 def _integrate_step(x_jet, y_jet, i, duration, power):
-    """The integral over a step, in parts from its start on."""
+    """Integrate over a step, in parts from its start on."""
     total = 0.0
     low = 0.0
     width = duration
     error = 0.0
     halvings = 0
     while low < duration:
-        # Gauss's rule on the part and on its halves.
+        # Gauss's rule is applied to the part and to its halves.
         whole = 0.0
         halves = 0.0
         for rule in range(3):
@@ -203,7 +205,7 @@ def _integrate_step(x_jet, y_jet, i, duration, power):
             continue
         total += halves
         low += width
-        # The next part may be longer again, up to the end of the step.
+        # The next part may be longer again, but ends within the step.
         if halvings > 0:
             width *= 2.0
             halvings -= 1
@@ -213,7 +215,7 @@ def _integrate_step(x_jet, y_jet, i, duration, power):
 
 @subroutine
 def _gauss(x_jet, y_jet, i, middle, half, power):
-    """Gauss's rule on a part of a step, given by its middle and half its width."""
+    """Apply Gauss's rule to a part of a step, given by its middle and half its width."""
     total = 0.0
     for k in range(8):
         vx = series_slope(x_jet, i, middle + half * _NODES[k])

@@ -1,6 +1,6 @@
 """Shooting for Lyapunov orbits: half a period of motion across a channel, from one zero-velocity curve to the other.
 
-Compiled once for all potentials, as `engine.integrator.kernels.propagate`.
+These kernels are compiled once for all potentials, like `engine.integrator.kernels.propagate`.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ _WALL_STRIDE = 0.02
 _FURTHEST_WALL = 20.0
 _BISECTIONS = 80
 _MOST_STEPS = 400
-# At least the number of saddles of any potential of the highest degree that is supported.
+# This is at least the number of saddles of any potential of the highest supported degree.
 _MOST_CHANNELS = 128
 
 
 @subroutine
 def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
-    """The q < 0 at which V = energy on the line across the channel at u, on the zero-velocity curve; NaN where there is none.
+    """Return the q < 0 at which V = energy on the line across the channel at u, on the zero-velocity curve; NaN if there is none.
 
     (u, q) are coordinates from the saddle along `outward` and 90° counterclockwise from it.
     """
@@ -54,15 +54,16 @@ def shoot(
 ):
     """Start at rest on the zero-velocity curve at u, q < 0, and follow the orbit until its motion across the channel turns back.
 
-    Returns (u̇ at the turning point, its time, number of steps): u̇ < 0 for a start too far in, > 0 for one too far out, 0 for the
-    Lyapunov orbit. For an orbit that moves further than `reach` along the channel before it turns, returns ∓1 and NaN.
+    Returns (u̇ at the turning point, its time, number of steps): u̇ < 0 for a start too close to the well, > 0 for a start too
+    far out, 0 for the Lyapunov orbit. If an orbit moves further than `reach` along the channel before it turns, returns ∓1 and
+    NaN.
     steps (m, 5): x, y, px, py, t at the start of each step, written in place.
     """
     now = np.zeros((ROWS, LANES))
     new = np.zeros((ROWS, LANES))
     flag = np.zeros(LANES, np.int64)
     crossed = np.zeros(LANES, np.int64)
-    # No step is past these gates: exits are ignored.
+    # No step passes these gates, so that exits are ignored.
     gates = np.zeros((_MOST_CHANNELS, 3))
     gates[:, 2] = np.inf
     q = find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy)
@@ -85,7 +86,7 @@ def shoot(
 
 @subroutine
 def _turning_point(jets, coefficients, now, h, outward_x, outward_y, count):
-    """What `shoot` returns for an orbit whose motion across the channel turns back within the step from `now`."""
+    """Return the result of `shoot` for an orbit whose motion across the channel turns back within the step from `now`."""
     x_jet = np.empty((ORDER + 1, 1))
     y_jet = np.empty((ORDER + 1, 1))
     call_jets(jets, coefficients, 1, now[0], now[1], now[2], now[3], x_jet, y_jet)

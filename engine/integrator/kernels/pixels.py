@@ -1,4 +1,4 @@
-"""Pixels of a part of a picture: their points, the starts inside, and what becomes of the orbits."""
+"""Pixels of a part of a picture: their points, the starts inside the exits, and the outcomes of their orbits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def place_pixels(window, columns, rows, part_rows, part_columns, energy_axis, po
     """Set `points` (2, n) to the centres of the pixels in some rows (m,) of a picture and in its first columns, row by row.
 
     window (4,): lowest and highest abscissa and ordinate; columns, rows: of the whole picture; energy_axis: 0, 1, or −1 for none.
-    energy_rows (n,) is set to the place of each pixel along the axis of the energy, else 0.
+    energy_rows (n,) is set to the position of each pixel along the axis of the energy; 0 without such an axis.
     """
     for place in range(part_rows.shape[0]):
         ordinate = interval_centre(window[2], window[3], part_rows[place], rows)
@@ -29,10 +29,10 @@ def place_pixels(window, columns, rows, part_rows, part_columns, energy_axis, po
 
 @kernel
 def select_starts(states, outside, rows, fate, kept, kept_states, kept_rows):
-    """Number of the starts that exist and lie beyond no exit; these are kept, and the `fate` (n,) of the others is set.
+    """Select the starts that exist and lie inside all exits, return their number, and set the `fate` (n,) of the other starts.
 
-    states (4, n): NaN where forbidden; outside (n,): number of an exit, 0 for none; rows (n,): of the energies in the exits. Set
-    are kept (n,), the numbers of the starts, kept_states (n, 4) and kept_rows (n,).
+    states (4, n): NaN where forbidden; outside (n,): number of an exit, 0 for none; rows (n,): rows of the exits at the energies.
+    The kernel sets kept (n,), the numbers of the selected starts, kept_states (n, 4) and kept_rows (n,).
     """
     count = 0
     for i in range(outside.shape[0]):
@@ -51,9 +51,9 @@ def select_starts(states, outside, rows, fate, kept, kept_states, kept_rows):
 
 @kernel
 def report_ends(orbits, kept, fate, time, crossings):
-    """Set the `fate`, the `time` of the escape, NaN without one, and the `crossings` (n,) of the orbits with numbers `kept`.
+    """Set `fate`, `time` of the escape, NaN if there is none, and `crossings` (n,) for the orbits numbered `kept`.
 
-    Orbits that are inside at the horizon are undecided. orbits: see `engine.integrator.kernels.propagate.Orbits`.
+    Orbits that are inside at the horizon are undecided. For `orbits` see `engine.integrator.kernels.propagate.Orbits`.
     """
     for k in range(orbits.t.shape[0]):
         pixel, code = kept[k], orbits.fate[k]

@@ -1,10 +1,10 @@
 """The loop over steps that propagates many orbits until they escape, reach a horizon or use up a budget of steps.
 
-Compiled once for all potentials: `step` and `jets` are the addresses of one potential's functions, see
-`engine.integrator.jit.function_pointers`. A fixed number of lanes is stepped together in vector code, and a lane whose orbit ends
-takes the next orbit. Flags set by the vector step tell which lanes need scalar code. Steps that contain an exit, the horizon or
-possibly hidden crossings are collected in a buffer, and the series of a full buffer are computed together. No orbit's arithmetic
-depends on the other lanes, so results do not depend on the order, the budget or threads.
+The kernel is compiled once for all potentials: `step` and `jets` are the addresses of the functions of one potential, see
+`engine.integrator.jit.function_pointers`. Vector code steps a fixed number of lanes together, and a lane whose orbit ends takes
+the next orbit. The vector step sets flags of lanes that need scalar code. Steps that contain an exit, the horizon or possibly
+hidden crossings are collected in a buffer, and the series of a full buffer are computed together. The arithmetic of an orbit does
+not depend on the other lanes, so that results do not depend on the order, the budget or the threads.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 
 VECTOR = 8
-"""The number of active lanes is rounded up to a multiple of this, so that none is computed by the scalar remainder of a loop."""
+"""The number of active lanes is rounded up to a multiple of this, so that no lane falls into the scalar remainder of a loop."""
 
 
 NO_TRACE = np.empty((0, 5))
 """The argument `trace` of `propagate` for orbits whose steps are not recorded."""
 
 GOES_ON = -1
-"""Stands for a channel in the buffer of steps: the orbit does not end in the step."""
+"""Replaces the channel in the buffer of steps if the orbit does not end in the step."""
 
 
 class Exits(NamedTuple):
@@ -49,8 +49,8 @@ class Exits(NamedTuple):
     Attributes
     ----------
     gates
-        (exits, 3) g_x, g_y, g, the same for all energies: beyond the line g_x x + g_y y = g an orbit may be outside; of a disc or
-        the escape circle its centre and its radius.
+        (exits, 3) g_x, g_y, g, the same for all energies. For a channel, an orbit can be outside only beyond the line g_x x + g_y
+        y = g. For a disc or the escape circle, they are its centre and its radius.
     curves
         (energies, exits, columns) exits, see `engine.integrator.kernels.events`.
     curve_row
@@ -74,13 +74,13 @@ class Orbits(NamedTuple):
     crossings
         (n,) upward crossings of y = 0 until `t`.
     last_crossings
-        (n,) those between `t` and t_max, for bounded orbits.
+        (n,) upward crossings between `t` and t_max, for bounded orbits.
     fate
         (n,) int8: the number of the exit at which an orbit ended, BOUNDED, NOT_COMPUTED or FAILED.
     pending
         (n,) uint8: set to 0 when an orbit has escaped, failed or reached the horizon.
     remainder
-        (n, 2) what rounding has dropped from x and y at time `t`; 0 where steps do not carry it.
+        (n, 2) rounding errors of x and y at time `t`; 0 if steps do not carry them.
     """
 
     state: np.ndarray
@@ -93,10 +93,10 @@ class Orbits(NamedTuple):
 
 
 class _StepBuffer(NamedTuple):
-    """Steps whose events are still to be located.
+    """Steps whose events have not been located yet.
 
     start (4, lanes): state; h, orbit, channel (lanes,): size of the step, number of the orbit, and the channel through which it
-    escapes, 0 where the step passes the horizon, or GOES_ON; x_jet, y_jet (ORDER + 1, lanes): work space for their series.
+    escapes, 0 if the step passes the horizon, or GOES_ON; x_jet, y_jet (ORDER + 1, lanes): work space for their series.
     """
 
     start: np.ndarray
@@ -109,7 +109,7 @@ class _StepBuffer(NamedTuple):
 
 @subroutine
 def _make_buffer(lanes):
-    """An empty buffer."""
+    """Return an empty buffer."""
     h, orbit, channel = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
     return _StepBuffer(np.zeros((4, lanes)), h, orbit, channel, np.zeros((ORDER + 1, lanes)), np.zeros((ORDER + 1, lanes)))
 
@@ -118,12 +118,12 @@ def _make_buffer(lanes):
 def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits, trace):
     """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
 
-    It also ends when fewer than `least` orbits are left, as these would not fill the lanes. exits: `Exits`; orbits: `Orbits`.
-    With `final` the horizon is t_max: events of the last, partial step are located and an orbit still inside is BOUNDED; without,
-    it stays NOT_COMPUTED. trace (m, 5): x, y, px, py, t at the start of each step of the first lane, written until it is full;
-    `NO_TRACE` for more than one orbit. Returns the number of steps of orbits.
+    It also ends when fewer than `least` orbits are left, because these would not fill the lanes. exits: `Exits`; orbits:
+    `Orbits`. With `final` the horizon is t_max: events of the last, partial step are located, and an orbit still inside is
+    BOUNDED; otherwise it stays NOT_COMPUTED. trace (m, 5): x, y, px, py, t at the start of each step of the first lane, written
+    until it is full; `NO_TRACE` for more than one orbit. Returns the total number of steps of all orbits.
     """
-    # Only `np.zeros`: Numba compiles each function that makes arrays, and for each type of array, in about 0.1 s.
+    # Only `np.zeros` is used: Numba takes about 0.1 s to compile each function that makes arrays, for each type of array.
     now = np.zeros((ROWS, LANES))
     new = np.zeros((ROWS, LANES))
     # Lanes without an orbit take harmless steps that never reach the horizon.
@@ -134,7 +134,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     lane_orbit = np.zeros(LANES, np.int64)
     buffer = _make_buffer(LANES)
     buffered = 0
-    # For one step; WebAssembly computes the series of pairs.
+    # These arrays hold one step; WebAssembly computes the series of pairs.
     single = _make_buffer(2)
     active = min(LANES, todo.shape[0])
     next_orbit = active
@@ -152,7 +152,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
         call_step(step, coefficients, width, tolerance, horizon, exits.gates, now, new, flag, crossed)
         taken += active
         left -= width
-        # Downward, since the last active lane replaces one whose orbit has ended.
+        # The loop runs downward, because the last active lane replaces a lane whose orbit has ended.
         for i in range(active - 1, -1, -1):
             if flag[i] == 0:
                 continue
@@ -190,7 +190,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
 
 @subroutine
 def _judge_step(flags, now, new, i, final, exits, orbit):
-    """What happens in a flagged step: (the orbit ends, channel of the exit it crosses or 0, it fails, events are to be located).
+    """Return what happens in a flagged step: (the orbit ends, exit that it crosses or 0, it fails, events are to be located).
 
     now, new: lanes at the start and the end of the step; i: lane of the orbit.
     """
@@ -206,7 +206,7 @@ def _judge_step(flags, now, new, i, final, exits, orbit):
 
 @subroutine
 def _passes_exit(jets, coefficients, now, i, h, curves, buffer):
-    """The number of the exit that the orbit of lane i passes and leaves again within the step of size h, 0 for none."""
+    """Return the number of the exit that the orbit of lane i crosses and recrosses within the step of size h; 0 for none."""
     start = buffer.start
     for c in range(4):
         start[c, 0] = now[c, i]
@@ -216,7 +216,7 @@ def _passes_exit(jets, coefficients, now, i, h, curves, buffer):
 
 @subroutine
 def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
-    """Put an orbit into lane i of the (ROWS, LANES) array `lanes`."""
+    """Load an orbit into lane i of the (ROWS, LANES) array `lanes`."""
     for c in range(4):
         lanes[c, i] = orbits.state[orbit, c]
     lanes[4, i] = orbits.t[orbit]
@@ -228,7 +228,7 @@ def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
 
 @subroutine
 def _store_orbit(lanes, i, crossed, orbits, orbit):
-    """Write lane i of the (ROWS, LANES) array `lanes` back to its orbit."""
+    """Store lane i of the (ROWS, LANES) array `lanes` in its orbit."""
     for c in range(4):
         orbits.state[orbit, c] = lanes[c, i]
     orbits.t[orbit] = lanes[4, i]
@@ -247,7 +247,7 @@ def _move_lane(lanes, source, target, lane_orbit, crossed):
 
 @subroutine
 def _buffer_step(now, new, i, orbit, channel, buffer, k):
-    """Put the step of lane i into place k of the buffer."""
+    """Store the step of lane i in place k of the buffer."""
     for c in range(4):
         buffer.start[c, k] = now[c, i]
     buffer.h[k] = new[5, i]
@@ -273,7 +273,7 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
             channel = crossed_exit(start[0, i], start[1, i], x_end, y_end, curves, exits.gates)
             if channel == 0:
                 channel = passed_exit(x_jet, y_jet, i, h, curves)
-        # The whole step decides, so that the escape time is the same to the bit for every horizon.
+        # The series of the whole step is used, so that the escape time is the same to the bit for every horizon.
         tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1]) if channel > 0 else h
         if channel == 0 or orbits.t[j] + tau > horizon:
             # The state stays at the start of the step that would pass t_max, so that the orbit can be continued.
@@ -287,5 +287,5 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
         orbits.state[j, 2] = series_slope(x_jet, i, tau)
         orbits.state[j, 3] = series_slope(y_jet, i, tau)
         orbits.remainder[j] = 0.0
-        # Only rounding errors make an orbit leave over the saddle of a closed channel, on which it is at rest.
+        # Only rounding errors can carry an orbit at rest on the saddle of a closed channel over this saddle.
         orbits.fate[j] = BOUNDED if curves[channel - 1, SHAPE] == CLOSED else channel

@@ -1,6 +1,6 @@
 """Random starts: points of a slice, and states on the exits.
 
-The random numbers are those of the generator mulberry32 (Tommy Ettinger), whose state is one number, so that equal seeds give
+The random numbers are those of the generator mulberry32 (Tommy Ettinger). Its state is a single integer, and equal seeds give
 equal starts on all machines.
 """
 
@@ -14,20 +14,20 @@ from engine.integrator.kernels.events import CURVE, DISC, HALF_WIDTH, OUTWARD_X,
 from engine.integrator.kernels.exit_curves import exit_point
 
 BEFORE_EXIT = 9.0
-"""How long before they come to the exit the orbits at a tube start, in units of the well."""
+"""Orbits near the edge of a tube start this long before they reach the exit, in units of the well."""
 
 _WORD = 0xFFFFFFFF
-# Parts of an exit, each with the flux through it.
+# Number of parts of an exit, for each of which the flux is computed.
 _PARTS = 200
-# Distance of orbits that enter from the exit, as a share of its half width: on it, rounding would decide what is inside.
+# Distance of entering orbits from the exit, as a share of its half width; on the exit, rounding would decide what is inside.
 _SHIFT = 1e-7
-# Distance of the orbits at a tube from its edge, where they pass the exit, as a share of half its width.
+# Distance of these orbits from the edge of the tube, measured at the exit, as a share of half its width.
 _FROM_EDGE = 3e-3
 
 
 @subroutine
 def _draw_number(seed):
-    """A random number from 0 to 1; seed (1,): changed."""
+    """Return a random number from 0 to 1; seed (1,) is changed."""
     seed[0] = (seed[0] + 0x6D2B79F5) & _WORD
     state = seed[0]
     mixed = ((state ^ (state >> 15)) * (state | 1)) & _WORD
@@ -37,9 +37,9 @@ def _draw_number(seed):
 
 @kernel
 def scatter_points(seed, window, is_round, points):
-    """Set `points` (axes, n) to random ones, evenly spread over a window (4,) or over the ellipse in it.
+    """Set `points` (axes, n) to random points, uniform in a window (4,) or in the ellipse inscribed in it.
 
-    Beyond the second axis there is an angle, from 0 to 2π. seed (1,): changed.
+    A third coordinate is an angle from 0 to 2π. seed (1,) is changed.
     """
     width, height = window[1] - window[0], window[3] - window[2]
     for i in range(points.shape[1]):
@@ -55,11 +55,12 @@ def scatter_points(seed, window, is_round, points):
 
 @kernel
 def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed, states):
-    """Set `states` (n, 4) to random ones on the open exits over saddles (exits, columns); their number, 0 without exits.
+    """Set `states` (n, 4) to random states on the open exits over saddles (exits, columns); return their number.
 
-    They move into the well, distributed as the flux, as those of `engine.sample_entrances`. Or, `of_tubes`, they lie at the edge
-    of the tubes of orbits that approach the Lyapunov orbits, backward in time: half of them inside, which pass the exit, and half
-    outside, which turn back. The lines in a frame that rotates are no Lyapunov orbits, and have none.
+    The states move into the well, with the distribution of the flux, as those of `engine.sample_entrances`. With `of_tubes`, they
+    lie near the edge of the tubes of orbits that, in backward time, approach the Lyapunov orbits: half of them inside, where
+    orbits pass the exit, and half outside, where they turn back. In a rotating frame the exits are lines, not Lyapunov orbits,
+    and have no tubes.
     """
     flux = np.zeros(curves.shape[0] * _PARTS)
     total = 0.0
@@ -89,7 +90,7 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
 
 @subroutine
 def _find_above(values, limit):
-    """The place of the first of rising values (n,) above a limit, which is below the last one."""
+    """Return the index of the first of rising values (n,) above a limit; the last value must be above it."""
     low, high = 0, values.shape[0] - 1
     while low < high:
         middle = (low + high) // 2
@@ -102,13 +103,13 @@ def _find_above(values, limit):
 
 @subroutine
 def _middle(part):
-    """s in the middle of a part of an exit."""
+    """Return s in the middle of a part of an exit."""
     return -1.0 + (2 * part + 1) / _PARTS
 
 
 @subroutine
 def _launch(potential_value, coefficients, energy, curve, s, share, shift, state):
-    """Set a state on an exit, shifted inward, whose velocity has a share along the exit; the rest is inward."""
+    """Set a state at s of an exit, shifted inward; `share` is the component of its direction along the exit."""
     x, y, along_x, along_y = _look(curve, s)
     length = np.sqrt(along_x * along_x + along_y * along_y)
     along_x, along_y = along_x / length, along_y / length
@@ -124,7 +125,7 @@ def _launch(potential_value, coefficients, energy, curve, s, share, shift, state
 
 @subroutine
 def _look(curve, s):
-    """x and y of a point of an exit, and their derivatives with respect to s."""
+    """Return x and y of a point of an exit, and their derivatives with respect to s."""
     half = 0.5 / _PARTS
     x, y = exit_point(curve, s)
     x_before, y_before = exit_point(curve, s - half)
@@ -134,5 +135,5 @@ def _look(curve, s):
 
 @subroutine
 def _speed(potential_value, coefficients, energy, x, y):
-    """The speed at a point."""
+    """Return the speed at a point."""
     return np.sqrt(max(2.0 * (energy - call_potential_value(potential_value, coefficients, x, y)), 0.0))

@@ -1,4 +1,4 @@
-"""The closed curve through successive points of a rotation: their order along it, and how far it lies from their polygon."""
+"""The closed curve through successive points of a rotation: their order along it, and its distance from their polygon."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from engine.integrator.jit.decorator import kernel, subroutine
 
 @kernel
 def arrange_loop(points, loop):
-    """Sort the points (n, 2) along their closed curve into `loop` (n, 2); the largest height of an arc, −1 if there is no curve.
+    """Sort points (n, 2) along their closed curve into `loop` (n, 2); return the largest height of an arc, −1 without a curve.
 
     The neighbours of the first point on the curve are its nearest returns ahead and behind, after a and b steps. As no other
     point is nearer, there are at most a + b points (three-gap theorem, Sós 1958), in the order of the rotation by p/(a + b) with
@@ -39,7 +39,7 @@ def arrange_loop(points, loop):
 
 @subroutine
 def _nearest_returns(points):
-    """Steps to the nearest later point on the side of the nearest of all, and to the nearest on the other side; 0 for none."""
+    """Return the steps to the nearest later point on either side of the first point, the nearer one first; 0 for none."""
     nearest = 1
     for i in range(2, points.shape[0]):
         if _squared_distance(points, i) < _squared_distance(points, nearest):
@@ -62,7 +62,7 @@ def _squared_distance(points, i):
 
 @subroutine
 def _inverse(a, modulus):
-    """p with p a ≡ 1; 0 if a and the modulus have a common divisor. Euclid's algorithm."""
+    """Return p with p a ≡ 1, by Euclid's algorithm; 0 if a and the modulus have a common divisor."""
     remainder, next_remainder = modulus, a
     p, next_p = 0, 1
     while next_remainder:
@@ -74,7 +74,7 @@ def _inverse(a, modulus):
 
 @subroutine
 def _largest_arc_height(loop):
-    """Largest height of the curve's arc over the gap between two points of a loop (n, 2), from the larger turn at its ends."""
+    """Return the largest height of the curve's arc over a gap of a loop (n, 2), from the larger turn at its ends."""
     n = loop.shape[0]
     largest = 0.0
     before = _turn(loop, 0)

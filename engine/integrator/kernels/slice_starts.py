@@ -1,6 +1,6 @@
-"""The starts of the points of a slice, in units of the well.
+"""Starts at the points of a slice, in units of the well.
 
-The subroutines take numbers in kernels and arrays when Python calls them: they are the formulas of `engine.slices.slice_starts`.
+Kernels call the subroutines with numbers, and Python with arrays, so that `engine.slices.slice_starts` uses the same formulas.
 """
 
 from __future__ import annotations
@@ -10,43 +10,43 @@ import numpy as np
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_potential_value
 
-# Columns of the coordinates that move along the axes of a slice: the state, an angle of the velocity, and the energy.
+# Columns of the coordinates that vary along the axes of a slice: the state, an angle of the velocity, and the energy.
 X, Y, PX, PY, ANGLE, H = range(6)
 COORDINATES = 6
 
-# What the energy decides: a momentum, named by its column, or the speed, whose angle is that from the x axis or from the radius.
+# What the energy determines: a momentum, given by its column, or the speed, at an angle from the x axis or from the radius.
 LAUNCHED, LAUNCHED_FROM_RADIUS = 6, 7
 
 
 @subroutine
 def interval_centre(low, high, place, count):
-    """The centre of one of the equal parts of an interval; all together are exactly symmetric if the interval is."""
+    """Return the centre of one of `count` equal parts of an interval; all are exactly symmetric if the interval is."""
     return 0.5 * (low + high) + (high - low) * ((2 * place + 1 - count) / (2 * count))
 
 
 @subroutine
 def rest_energy(momentum, value):
-    """The energy of a start without the momentum that the energy decides; value: V there."""
+    """Return the energy of a start without the momentum that the energy determines; value: V at the start."""
     return 0.5 * (momentum * momentum) + value
 
 
 @subroutine
 def decided_momentum(energy, value, momentum, sign):
-    """The momentum that the energy decides, of a sign, beside the other momentum; NaN where the start is forbidden."""
+    """Return the momentum determined by the energy, with a sign, given the other momentum; NaN where the start is forbidden."""
     return sign * np.sqrt(2.0 * (energy - value) - momentum * momentum)
 
 
 @subroutine
 def launch(speed, angle):
-    """The px and py of a speed, at an angle from the x axis."""
+    """Return px and py of a velocity with a speed, at an angle from the x axis."""
     return speed * np.cos(angle), speed * np.sin(angle)
 
 
 @subroutine
 def launch_from_radius(x, y, speed, angle):
-    """The px and py of a speed, at an angle from the direction away from the origin.
+    """Return px and py of a velocity with a speed, at an angle from the direction away from the origin.
 
-    At the origin, where no direction is radial, that of the +y axis is taken, which is its own mirror image under x → −x.
+    At the origin the radial direction is undefined; the +y direction is used, which is its own mirror image under x → −x.
     """
     radius = np.hypot(x, y)
     at_origin = 1.0 * (radius == 0.0)
@@ -57,7 +57,7 @@ def launch_from_radius(x, y, speed, angle):
 
 @subroutine
 def _place(motion, points, i, start):
-    """Set the coordinates of a start (COORDINATES,); the decided momentum is that of `motion`."""
+    """Set the coordinates of a start (COORDINATES,); for the momentum determined by the energy, set that of `motion`."""
     for column in range(COORDINATES):
         start[column] = motion[0, column]
         for axis in range(points.shape[0]):
@@ -66,7 +66,7 @@ def _place(motion, points, i, start):
 
 @subroutine
 def _held_momentum(start, decided):
-    """The momentum that the energy does not decide; 0 if it decides the speed."""
+    """Return the momentum that the energy does not determine; 0 if it determines the speed."""
     held = 0.0
     if decided == PX:
         held = start[PY]
@@ -79,8 +79,8 @@ def _held_momentum(start, decided):
 def find_starts(potential_value, coefficients, motion, decided, sign, points, states, energies):
     """Set `states` (4, n) to the starts of points, NaN where they are forbidden, and `energies` (n,).
 
-    motion (1 + axes, COORDINATES): the coordinates at the origin of the slice, then how far they move where an axis rises by 1;
-    decided: PX, PY, LAUNCHED or LAUNCHED_FROM_RADIUS; sign: that of the decided momentum; points (axes, n).
+    motion (1 + axes, COORDINATES): the coordinates at the origin of the slice, then their change per unit along each axis;
+    decided: PX, PY, LAUNCHED or LAUNCHED_FROM_RADIUS; sign: sign of the determined momentum; points (axes, n).
     """
     start = np.zeros(COORDINATES)
     for i in range(points.shape[1]):
@@ -102,8 +102,8 @@ def find_starts(potential_value, coefficients, motion, decided, sign, points, st
 def find_required_energies(potential_value, coefficients, motion, decided, window, required):
     """Set `required` (rows, columns) to the lowest energies at which starts exist, on a lattice that includes the edges.
 
-    window (4,): lowest and highest abscissa and ordinate; motion, decided: as of `find_starts`. Where the energy is an axis it is
-    the energy that is missing.
+    window (4,): lowest and highest abscissa and ordinate; motion, decided: as in `find_starts`. If the energy is an axis, the
+    value is instead the energy that is missing.
     """
     rows, columns = required.shape
     start = np.zeros(COORDINATES)
@@ -119,7 +119,7 @@ def find_required_energies(potential_value, coefficients, motion, decided, windo
 
 @kernel
 def interpolate_window(energies, windows, energy, window):
-    """Set `window` (4,) to the one at an energy, linear between those of a table; whether the energy is within the table.
+    """Set `window` (4,) by linear interpolation in a table of windows; return whether the energy is within the table.
 
     energies (n,): rising; windows (n, 4).
     """

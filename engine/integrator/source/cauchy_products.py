@@ -1,4 +1,4 @@
-"""Planning of Cauchy products: a cheap sequence that yields every monomial in the forces, and the scales of their series."""
+"""Plans of Cauchy products: cheap sequences that yield every monomial in the forces, and the scales of their series."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ Polynomial = Mapping[Monomial, float]
 
 X, Y = (1, 0), (0, 1)
 
-# Relative error up to which coefficients count as equal: those of terms like −x³ ε/3 have a few rounding errors.
+# Coefficients count as equal up to this relative difference; those of terms like −x³ ε/3 have a few rounding errors.
 _ROUNDING = 1e-15
-# Cached products, 1 kB each; a potential of degree 8 needs about 4 000.
+# Number of cached products, of 1 kB each; a potential of degree 8 needs about 4 000.
 _CHEAPEST_PRODUCTS = 4096
 
 
 @dataclass(frozen=True)
 class Product:
-    """One Cauchy product: the series of `monomial` from the series of two factors already known.
+    """One Cauchy product: the series of `monomial` from the series of two known factors.
 
-    For a square only half of it is computed, which saves a multiplication in every other coefficient; therefore the series of a
-    monomial has a scale factor, see `find_scales`.
+    Only half of a square is computed, which saves a multiplication in every other coefficient. Therefore the series of a monomial
+    has a scale factor, see `find_scales`.
     """
 
     monomial: Monomial
@@ -34,9 +34,10 @@ class Product:
 
 
 def plan_products(needed: AbstractSet[Monomial]) -> list[Product]:
-    """A short list of Cauchy products that yields every needed monomial.
+    """Return a short list of Cauchy products that yields every needed monomial.
 
-    A greedy search, monomial by monomial, repeated with each divisor of a needed monomial formed first; the cheapest plan wins.
+    The search is greedy, monomial by monomial, and is repeated with each divisor of a needed monomial formed first; the cheapest
+    plan wins.
     """
     seeds = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
     plans = [_greedy_plan([*seed, *sorted(needed, key=_by_degree)]) for seed in ([], *([m] for m in sorted(seeds)))]
@@ -48,7 +49,7 @@ def _by_degree(monomial: Monomial) -> tuple[int, Monomial]:
 
 
 def _cost(product: Product) -> float:
-    """The cost in units of a full product: a square has half the terms and some extra work."""
+    """Return the cost in units of a full product: a square has half the terms and some extra work."""
     return 0.55 if product.left == product.right else 1.0
 
 
@@ -64,7 +65,7 @@ def _greedy_plan(wanted: list[Monomial]) -> list[Product]:
 
 @functools.lru_cache(maxsize=_CHEAPEST_PRODUCTS)
 def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, list[Product]]:
-    """The cost and the products of the cheapest way to form a monomial."""
+    """Return the cost and the products of the cheapest way to form a monomial."""
     if monomial in known:
         return 0.0, []
     best: tuple[float, list[Product]] = (float("inf"), [])
@@ -82,7 +83,7 @@ def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, li
 
 
 def find_scales(plan: Sequence[Product]) -> dict[Monomial, float]:
-    """{monomial: scale}: the computed series is that of the monomial times its scale."""
+    """Return {monomial: scale}: the computed series is the series of the monomial times its scale."""
     scales = {X: 1.0, Y: 1.0, (0, 0): 1.0}
     for p in plan:
         scales[p.monomial] = scales[p.left] * scales[p.right] * (0.5 if p.left == p.right else 1.0)
@@ -90,9 +91,9 @@ def find_scales(plan: Sequence[Product]) -> dict[Monomial, float]:
 
 
 def find_difference(products: Sequence[Product], polynomials: Sequence[Polynomial]) -> tuple[Product, Product] | None:
-    """Two squares that enter all `polynomials` only as their difference, to rounding, so that one series replaces both.
+    """Return two squares that enter all `polynomials` only as their difference, to rounding, so that one series replaces both.
 
-    Their series have the same scale, as the difference is formed of the series.
+    Their series must have the same scale, because the difference is formed from the series.
     """
     scales = find_scales(products)
     factors = {monomial for p in products for monomial in (p.left, p.right)}

@@ -1,10 +1,10 @@
 """exp, log, sin, cos and real powers of a value of a straight-line program, written in its own operations.
 
-A library function would be a call in each lane, which ends vectorisation, and vector libraries give other last bits than the
-scalar function, so that results would depend on the lane. These are reductions of the argument by exact multiples of log 2 or π/2
-and polynomials, without branches: the same operations in each lane, and in WebAssembly. Their relative errors are below 1e-15,
-those of `power_of` with other exponents than halves of integers |a log u| times as large. NaN or an unbounded result marks an
-argument outside the domain; a step from there fails.
+A call of a library function in each lane would prevent vectorisation, and vector libraries round differently from scalar
+functions, so that results would depend on the lane. The functions here reduce the argument by exact multiples of log 2 or π/2 and
+evaluate polynomials, without branches: the operations are the same in each lane and in WebAssembly. Their relative errors are
+below 1e-15, except for `power_of` with exponents that are not halves of integers, where they are |a log u| times as large. NaN or
+an infinite result marks an argument outside the domain, and a step from there fails.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from engine.integrator.source.straight_line import Value, where
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 _LN_2 = Fraction("0.69314718055994530941723212145817656807550013436025525412068")
 
-# Added to a number below 2^51 in magnitude and subtracted again, it rounds to an integer, which the bits of the sum show.
+# When this number is added to a number below 2^51 in magnitude, the sum is rounded to an integer, which its bits contain.
 _ROUND = 1.5 * 2.0**52
 _ROUND_BITS = 0x4338000000000000
 _EXPONENT = 1 << 52
 _ONE_BITS = 1023 << 52
 _ROOT_HALF_BITS = 0x3FE6A09E667F3BCD
 
-# exp of more is infinite to the engine: no orbit has such a force.
+# exp of larger arguments is treated as infinite, because no orbit meets such a force.
 _LARGEST_EXPONENT = 700.0
 _SMALLEST_NORMAL = 2.0**-1022
-# Multiples of π/2 with more bits are not exact.
+# Larger multiples of π/2 have too many bits to be exact.
 _LARGEST_ANGLE = 1e6
 _HIGH_BITS = 30
 
 
 def _parts(value: Fraction, count: int) -> list[float]:
-    """A number as a sum of doubles, of which all but the last have few bits, so that their products with integers are exact."""
+    """Split a number into doubles, all but the last with few bits, so that their products with integers are exact."""
     parts = []
     for _ in range(count - 1):
         _, exponent = math.frexp(float(value))
@@ -56,7 +56,7 @@ _ATANH = [1.0 / (2 * k + 3) for k in range(10, -1, -1)]
 
 
 def exp_of(u: Value) -> Value:
-    """exp u = 2^n exp r with |r| ≤ log 2 / 2; beyond ±700 that of the limit."""
+    """Return exp u = 2^n exp r with |r| ≤ log 2 / 2; beyond ±700, its value at ±700."""
     u = where(u < _LARGEST_EXPONENT, u, _LARGEST_EXPONENT)
     u = where(u > -_LARGEST_EXPONENT, u, -_LARGEST_EXPONENT)
     n, bits = _nearest_integer(u * (1.0 / math.log(2.0)))
@@ -89,7 +89,7 @@ def cos_of(u: Value) -> Value:
 
 
 def _turned(u: Value, quarters: int) -> Value:
-    """sin(u + quarters π/2)."""
+    """Return sin(u + quarters π/2)."""
     n, bits = _nearest_integer(u * (2.0 / math.pi))
     r = _reduced(u, n, _HALF_PI_PARTS)
     square = r * r
@@ -102,7 +102,7 @@ def _turned(u: Value, quarters: int) -> Value:
 
 
 def power_of(u: Value, exponent: float) -> Value:
-    """u^a: products and a square root for halves of integers, exp(a log u) for others, which are NaN for u ≤ 0."""
+    """Return u^a: by products and a square root if 2a is an integer, otherwise as exp(a log u), which is NaN for u ≤ 0."""
     if 2.0 * exponent != int(2.0 * exponent):
         return exp_of(exponent * log_of(u))
     whole, size = int(abs(exponent)), abs(exponent)
@@ -120,11 +120,11 @@ def power_of(u: Value, exponent: float) -> Value:
 
 
 FUNCTIONS: Mapping[str, Callable[[Value], Value]] = MappingProxyType({"exp": exp_of, "log": log_of, "sin": sin_of, "cos": cos_of})
-"""The functions of expressions, as operations."""
+"""The functions of expressions as operations of a program."""
 
 
 def _nearest_integer(u: Value) -> tuple[Value, Value]:
-    """The nearest integer, as a double and as an integer."""
+    """Return the nearest integer as a double and as an integer."""
     shifted = u + _ROUND
     return shifted - _ROUND, u.program.apply("bits_of", shifted) - _ROUND_BITS
 

@@ -1,10 +1,10 @@
-"""From an expression to straight-line programs for its Taylor kernels: the recurrence of each node of its graph.
+"""Straight-line programs for the Taylor kernels of an expression, by the recurrence of each node of its graph.
 
-The derivatives of V are expressions, too. Along an orbit each node is a power series in time. Coefficient k of a sum or a product
-follows from coefficients 0 … k of its operands; that of w = u^a, exp u, log u, sin u or cos u from those of u and from the lower
-ones of w, because w' is a product of u' and known series (Jorba & Zou 2005, Experimental Mathematics 14, 99, section 2; Haro et
-al. 2016, The Parameterization Method for Invariant Manifolds, chapter 2). Coefficient 0 is the function itself, see
-`engine.integrator.source.elementary`.
+The derivatives of V are also expressions. Along an orbit each node is a power series in time. Coefficient k of a sum or a product
+follows from coefficients 0 … k of its operands. Coefficient k of w = u^a, exp u, log u, sin u or cos u follows from the
+coefficients of u and from the lower coefficients of w, because w' is a product of u' and known series (Jorba & Zou 2005,
+Experimental Mathematics 14, 99, section 2; Haro et al. 2016, The Parameterization Method for Invariant Manifolds, chapter 2).
+Coefficient 0 is the function itself, see `engine.integrator.source.elementary`.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ _ROOT = 0.5
 
 _HESSIAN = ((0, 0), (0, 1), (1, 1))
 
-# Norms of the last coefficients above this would give steps too short to change t.
+# If the norm of the last coefficients is above this, the step would be too short to change t.
 _LARGEST_NORM = 1e180
 
 Entry = tuple[str, int]
-"""(graph, place): an entry of the table with a number of one of the graphs of a structure."""
+"""(graph, place): an entry of the table, which contains a number of one of the graphs of a structure."""
 
 
 class ExpressionStructure(NamedTuple):
@@ -68,7 +68,7 @@ class ExpressionStructure(NamedTuple):
 
     @property
     def largest_norm(self) -> float:
-        """Return the norm of a step of 1e-12, as is needed near centres."""
+        """Return the norm of a step of 1e-12, which is needed near centres."""
         return _LARGEST_NORM
 
     @property
@@ -77,14 +77,14 @@ class ExpressionStructure(NamedTuple):
         return min(self.setting.sides, default=0) < 0
 
     def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """The recurrence of the gradient."""
+        """Return the recurrence of the gradient."""
         recurrence = _Recurrence(program, "motion", self.motion, self.setting.rotates, remainders)
         for k in range(ORDER - 1):
             recurrence.advance(k)
         return recurrence.x, recurrence.y
 
     def hessian(self, program: StraightLine) -> Hessian:
-        """The recurrence of gradient and Hessian, of which the latter enters the variational equations."""
+        """Return the recurrence of the gradient and of the Hessian, which enters the variational equations."""
         recurrence = _Recurrence(program, "variations", self.variations, self.setting.rotates)
 
         def entry(index: int) -> Callable[[int], Value]:
@@ -98,7 +98,7 @@ class ExpressionStructure(NamedTuple):
         return {axes: (entry(index), not zero) for axes, index, zero in zip(_HESSIAN, indices, self.zero, strict=True)}
 
     def point_functions(self) -> PointFunctions:
-        """V, and V with its gradient."""
+        """Return the functions V, and V with its gradient."""
         names = ("value", "slope_x", "slope_y")
         return {
             "potential_value": lambda program: {"value": _values(program, "value", self.value)[0]},
@@ -106,13 +106,13 @@ class ExpressionStructure(NamedTuple):
         }
 
     def tabulate(self, expression: Expression, entries: Sequence[Entry]) -> list[float]:
-        """The numbers of the graphs."""
+        """Return the numbers of the graphs."""
         numbers = {name: values for name, (_, values) in _graphs(expression).items()}
         return [numbers[graph][place] for graph, place in entries]
 
 
 def structure_of_expression(expression: Expression, setting: Setting) -> ExpressionStructure:
-    """The structure of a potential that is an expression."""
+    """Return the structure of a potential that is an expression."""
     zero = tuple(not _second(expression, axes).key[1] for axes in _HESSIAN)
     return ExpressionStructure(setting, zero=zero, **{name: graph for name, (graph, _) in _graphs(expression).items()})
 
@@ -178,7 +178,7 @@ class _Recurrence:
         return reduce(add, self._remainders(node), value)
 
     def _remainders(self, node: Node) -> Iterator[Value]:
-        """What is to be added to a sum with x or y, such as the distance from a body; elsewhere the remainders do not count."""
+        """Yield what the remainders add to a sum with x or y, such as the distance from a body; elsewhere they do not matter."""
         for operand, place in zip(node.operands, node.numbers, strict=False):
             remainder = self.remainders.get(self.graph.nodes[operand].kind)
             if remainder is not None and node.kind in ("sum", "shift"):
@@ -197,7 +197,7 @@ class _Recurrence:
         return self._reciprocals[index]
 
     def add(self, index: int, node: Node, k: int) -> Value:
-        """(Σ c u)_k = Σ c u_k."""
+        """Return (Σ c u)_k = Σ c u_k."""
         entries = {each: self.program.entry((self.name, place)) for each, place in zip(node.operands, node.numbers, strict=False)}
         groups = self._plan.groups[index]
         grouped = {each for products in groups.values() for each in products}
@@ -206,7 +206,7 @@ class _Recurrence:
         return total(self.program, chain(single, common))
 
     def _common_product(self, index: int, root: int, entries: Mapping[int, Value], k: int) -> Value:
-        """(Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k; x + d is next to 0 near a body."""
+        """Return (Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k; x + d is almost 0 near a body."""
         factors = {product: self.graph.nodes[product].operands for product in entries}
         combined = self._combined.setdefault((index, root), [])
         for j in range(len(combined), k + 1):
@@ -216,11 +216,11 @@ class _Recurrence:
         return sum_of_products(pairs)
 
     def shift(self, _index: int, node: Node, k: int) -> Value:
-        """(u + c)_k = u_k for k > 0."""
+        """Return (u + c)_k = u_k for k > 0."""
         return self.series[node.operands[0]][k]
 
     def product(self, _index: int, node: Node, k: int) -> Value:
-        """(u v)_k = Σ u_j v_(k − j), of which u + c and v + d have all in common but the first and the last."""
+        """Return (u v)_k = Σ u_j v_(k − j); products of u + c and v + d differ only in the first and the last term."""
         one, other = node.operands
         u, v = self.series[one], self.series[other]
         if one == other:
@@ -229,7 +229,7 @@ class _Recurrence:
         return reduce(add, [*self._inner_sum(one, other, k), u[0] * v[k], u[k] * v[0]])
 
     def _inner_sum(self, one: int, other: int, k: int) -> list[Value]:
-        """Σ u_j v_(k − j) over j = 1 … k − 1, or half of it for a square, unless it is empty."""
+        """Return Σ u_j v_(k − j) over j = 1 … k − 1, or half of it for a square; an empty list for an empty sum."""
         if k == 1:
             return []
         key = self._plan.roots[one], self._plan.roots[other], one == other, k
@@ -255,12 +255,12 @@ class _Recurrence:
         return total(self.program, iter([sum_of_products(pairs)] if pairs else [])) * (1.0 / k) * self.reciprocal(argument)
 
     def _root(self, index: int, argument: int, k: int) -> Value:
-        """2 w_0 w_k = u_k − Σ w_j w_(k − j) over j = 1 … k − 1, from w² = u; a quarter of the work for other powers."""
+        """2 w_0 w_k = u_k − Σ w_j w_(k − j) over j = 1 … k − 1, from w² = u, with a quarter of the work of other powers."""
         half, lower = 0.5 * self.series[argument][k], list(islice(half_square(self.series[index], k), k // 2))
         return (half - sum_of_products(lower) if lower else half) * self.reciprocal(index)
 
     def _quotient(self, index: int, numerator: list[int], argument: int, k: int) -> Value:
-        """u_0 w_k = v_k − Σ u_(k − j) w_j over j = 0 … k − 1, from u w = v, which is 1 if it is not given; half the work."""
+        """u_0 w_k = v_k − Σ u_(k − j) w_j over j = 0 … k − 1, from u w = v, by default 1, with half the work."""
         u, w = self.series[argument], self.series[index]
         lower = sum_of_products((u[k - j], w[j]) for j in range(k))
         return (self.series[numerator[0]][k] - lower if numerator else -1.0 * lower) * self.reciprocal(argument)
@@ -309,7 +309,7 @@ def _weighted(slopes: Series, other: Series, k: int) -> Value:
 
 
 def _value_of(program: StraightLine, name: str, node: Node, values: Mapping[int, Value]) -> Value:
-    """The value of a node from those of its operands."""
+    """Return the value of a node from those of its operands."""
     match node.kind:
         case "sum":
             places = iter(node.numbers)
@@ -327,7 +327,7 @@ def _value_of(program: StraightLine, name: str, node: Node, values: Mapping[int,
 
 
 def _values(program: StraightLine, name: str, graph: Graph) -> list[Value]:
-    """The values of the expressions of a graph at the inputs x and y."""
+    """Return the values of the expressions of a graph at the inputs x and y."""
     values: dict[int, Value] = {}
     for index, node in enumerate(graph.nodes):
         is_axis = node.kind in ("x", "y")

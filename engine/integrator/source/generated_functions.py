@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 from engine.integrator.source.straight_line import TABLE, StraightLine, Value
 
 ADDED = ("crossed", "sums")
-"""Arrays to whose numbers kernels add; they replace those of others."""
+"""Arrays to which kernels add their results; in other arrays the results replace the previous numbers."""
 
 
 class Place(NamedTuple):
-    """A number in an array that a kernel takes: ``array[row, column]``, where the column is that of the lane if it is None.
+    """The place of a number in an array: ``array[row, column]``, where a column of None stands for the column of the lane.
 
-    An array without rows has the row None.
+    For a one-dimensional array the row is None.
     """
 
     array: str
@@ -37,9 +37,9 @@ class GeneratedFunction(NamedTuple):
     arguments
         Names of its arguments.
     reads
-        Where the inputs of the program are that are not arguments.
+        Places of those inputs of the program that are not arguments.
     writes
-        Where its results go, in order; none for those that the kernel returns.
+        Places for its results, in order; empty if the kernel returns them.
     """
 
     name: str
@@ -58,12 +58,12 @@ def lane_loop(
     constants: Mapping[str, Place] | None = None,
     rows: Mapping[str, int] = MappingProxyType({}),
 ) -> GeneratedFunction:
-    """A kernel with a loop over lanes that reads inputs from arrays, runs a straight-line program and writes its results.
+    """Return a kernel that, for each lane, reads inputs from arrays, runs a straight-line program and writes its results.
 
-    reads, constants: where inputs are; writes: values of the program, or source. Constants are read before the loop: read in it,
-    each would be checked for overlap with every array that the loop writes, and beyond some 100 checks nothing is vectorised.
-    rows: the arrays whose rows have a length that the compiler knows, with it, so that it sees that they do not overlap; the
-    checks of separate arrays take as long as 16 lanes.
+    reads, constants: places of the inputs; writes: values of the program, or source. Constants are read before the loop. If they
+    were read in it, each would be checked for overlap with every array that the loop writes, and with more than about 100 checks
+    nothing is vectorised. rows: arrays with rows of a fixed length. The compiler then knows that their rows do not overlap; the
+    checks of separate arrays would take as long as 16 lanes.
     """
     program.results = [value.index for value in writes.values() if isinstance(value, Value)]
     sources = {place: f"r{value.index}" if isinstance(value, Value) else value for place, value in writes.items()}
@@ -85,7 +85,7 @@ def lane_loop(
 
 
 def point_function(name: str, append: Callable[[StraightLine], Mapping[str, Value]], table: dict[Any, int]) -> GeneratedFunction:
-    """A function of one point (x, y)."""
+    """Return a function of one point (x, y)."""
     program = StraightLine(f"_{name}", table)
     values = append(program)
     program.results = [value.index for value in values.values()]

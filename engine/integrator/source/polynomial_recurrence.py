@@ -1,4 +1,4 @@
-"""From a polynomial V to the recurrence of its orbits.
+"""Recurrence of the orbits in a polynomial V.
 
 Along an orbit every quantity is a power series in time, and the series of a product is a Cauchy product. Coefficient k + 2 of x
 and y follows from coefficients 0 … k of the monomials in V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99).
@@ -39,10 +39,10 @@ from engine.integrator.source.series import (
 )
 from engine.integrator.source.straight_line import StraightLine, Value
 
-# Cached plans, two for each structure.
+# Number of cached plans, two for each structure.
 _PLANS = 64
 
-# Norms of the last coefficients above this would give steps too short to change t.
+# If the norm of the last coefficients is above this, the step would be too short to change t.
 _LARGEST_NORM = 1e90
 
 Terms = tuple[tuple[int, int, float], ...]
@@ -50,10 +50,10 @@ Terms = tuple[tuple[int, int, float], ...]
 Entry = tuple[Monomial, float, int]
 """(term, multiple, divisor): an entry of the table with the value −multiple · (the coefficient of a term of V) / divisor."""
 
-# A derivative of V: for each of its monomials the term of V that it comes from, and the factor from differentiating it.
+# A derivative of V: for each of its monomials, the term of V from which it arises and the factor of its differentiation.
 _Derivative = Mapping[Monomial, tuple[Monomial, float]]
 
-# Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and in the variational equations too.
+# Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and also those in the variational equations.
 _GRADIENT, _HESSIAN = ((0,), (1,)), ((0, 0), (0, 1), (1, 1))
 _GRADIENT_AND_HESSIAN = (*_GRADIENT, *_HESSIAN)
 
@@ -61,7 +61,7 @@ _Difference = tuple[Product, Product] | None
 
 
 class PolynomialStructure(NamedTuple):
-    """What generated code depends on; the differences are those of `_find_difference` without and with the Hessian."""
+    """The facts on which generated code depends; the differences are those of `_find_difference` without and with the Hessian."""
 
     monomials: tuple[Monomial, ...]
     setting: Setting
@@ -85,7 +85,7 @@ class PolynomialStructure(NamedTuple):
         return False
 
     def orbit(self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """The recurrence with the products for the equations of motion only."""
+        """Return the recurrence with the products for the equations of motion only."""
         products = _plan(self.monomials, _GRADIENT)
         series = _recurrence(program, self.monomials, products, self.difference, self.setting.rotates)
         return series[X], series[Y]
@@ -103,7 +103,7 @@ class PolynomialStructure(NamedTuple):
         return {axes: (entry(axes), bool(_derivative(self.monomials, axes))) for axes in _HESSIAN}
 
     def point_functions(self) -> PointFunctions:
-        """V alone."""
+        """Return the function V alone."""
         return {"potential_value": lambda program: {"value": self._value(program)}}
 
     def _value(self, program: StraightLine) -> Value:
@@ -112,13 +112,13 @@ class PolynomialStructure(NamedTuple):
         return total(program, parts)
 
     def tabulate(self, terms: Any, entries: Sequence[Entry]) -> list[float]:
-        """Multiples of the coefficients."""
+        """Return multiples of the coefficients."""
         polynomial = _sorted(terms)
         return [-1.0 / divisor * (polynomial[term] * multiple) for term, multiple, divisor in entries]
 
 
 def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivative:
-    """The derivative of V with respect to each of `axes` in turn."""
+    """Return the derivative of V with respect to each of `axes` in turn."""
     factors: Polynomial = dict.fromkeys(monomials, 1)
     for axis in axes:
         factors = derivative(factors, axis)
@@ -127,19 +127,19 @@ def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivati
 
 @functools.lru_cache(maxsize=_PLANS)
 def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], ...]) -> tuple[Product, ...]:
-    """The products from which the series of some derivatives of V are formed."""
+    """Return the products from which the series of some derivatives of V are formed."""
     return tuple(plan_products(frozenset(m for axes in derivatives for m in _derivative(monomials, axes))))
 
 
 def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...], ...]) -> _Difference:
-    """Two squares of which only the difference enters some derivatives of V."""
+    """Return two squares that enter some derivatives of V only as their difference."""
     derived = [_derivative(polynomial, axes) for axes in derivatives]
     values = [{m: factor * polynomial[term] for m, (term, factor) in each.items()} for each in derived]
     return find_difference(_plan(tuple(polynomial), derivatives), values)
 
 
 def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
-    """A derivative of V as a sum over the series that are formed: that of a difference stands for both squares."""
+    """Write a derivative of V as a sum over the series formed; the series of a difference replaces those of both squares."""
     contained = difference[1].monomial if difference is not None else None
     return {m: origin for m, origin in _derivative(monomials, axes).items() if m != contained}
 
@@ -152,9 +152,9 @@ def _linear_combination(
     k: int,
     divisor: int,
 ) -> Value:
-    """−(coefficient k of the series of a derivative of V) / divisor.
+    """Return −(coefficient k of the series of a derivative of V) / divisor.
 
-    Low degrees last: a sum of two products contracts into the product that comes first, and the linear term is known earliest.
+    Low degrees come last: a sum of two products contracts into the first product, and the linear term is known earliest.
     """
 
     def part(m: Monomial) -> Value:
@@ -172,7 +172,7 @@ def _recurrence(
     difference: _Difference,
     rotates: bool,
 ) -> dict[Monomial, list[Value]]:
-    """The series of x and y and of `products`, where a difference of two squares is stored as the first of them."""
+    """Return the series of x and y and of `products`; a difference of two squares is stored as the first of them."""
     series: dict[Monomial, list[Value]] = {
         X: [program.input("x0"), program.input("x1")],
         Y: [program.input("y0"), program.input("y1")],
@@ -198,7 +198,7 @@ def _recurrence(
 
 
 def structure_of_polynomial(terms: Terms, setting: Setting, reach: float = REACH) -> PolynomialStructure:
-    """The structure of a potential that is a polynomial."""
+    """Return the structure of a potential that is a polynomial."""
     polynomial = _sorted(terms)
     differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
     can_hide = setting.rotates or crossings_can_hide(polynomial, reach)
@@ -206,10 +206,10 @@ def structure_of_polynomial(terms: Terms, setting: Setting, reach: float = REACH
 
 
 def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
-    """Whether a step can contain two crossings of y = 0 that the signs of y at its ends do not show, without rotation.
+    """Return whether, without rotation, the signs of y at the ends of a step can miss two crossings of y = 0 in it.
 
-    Where V is even in y, ÿ = −g(x, y) y. With g below (π/h)² two zeros of y are further than h apart, by Sturm's comparison
-    with the oscillator of that frequency. Terms of g that are nowhere positive cannot raise it.
+    If V is even in y, ÿ = −g(x, y) y. With g below (π/h)², two zeros of y are further than h apart, by Sturm's comparison with
+    the oscillator of that frequency. Terms of g that are nowhere positive cannot raise it.
     """
     force = derivative(terms, 1)
     if any(j % 2 == 0 for _, j in force):
@@ -219,5 +219,5 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
 
 
 def _sorted(terms: Terms) -> dict[Monomial, float]:
-    """The terms by degree, so that the order in which they are given does not matter."""
+    """Sort the terms by degree, so that the order in which they are given does not matter."""
     return {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}

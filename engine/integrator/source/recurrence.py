@@ -1,10 +1,10 @@
-"""From a potential to straight-line programs for its Taylor kernels.
+"""Straight-line programs of the Taylor kernels of a potential.
 
 Along an orbit every quantity is a power series in time, and the series of a product is a Cauchy product. With
 ẍ = −V_x, ÿ = −V_y and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in
 V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside
 one loop over orbits, this recurrence has neither branches nor calls, so the compiler vectorises all of it. Formulas with other
-functions have the recurrences of `engine.integrator.source.expression_recurrence`; the functions below are the same for both.
+functions use the recurrences of `engine.integrator.source.expression_recurrence`; the functions below are the same for both.
 
 For each potential there are four functions with a loop over lanes `i`, and one for a single point:
 
@@ -13,11 +13,11 @@ For each potential there are four functions with a loop over lanes `i`, and one 
 ``fixed_step``       one step of a given size, which also adds weighted x² and y² to sums;
 ``jets``             the coefficients of x and y: the dense output of a step;
 ``tangent``          propagates a deviation vector over a given time by the linearised recurrence;
-``potential_value``  V at one point; for expressions there is ``potential_slopes`` with V and its gradient, too.
+``potential_value``  V at one point; for expressions, ``potential_slopes`` also gives V and its gradient.
 
-The code depends on the structure of V only, that is on the graph of an expression, or on the exponents of a polynomial and on a
-few facts about the coefficients that save work (`find_difference`, `crossings_can_hide`). The numbers are passed at run time in a
-table, every function's first argument, so that potentials of the same structure share compiled code.
+The code depends only on the structure of V: the graph of an expression, or the exponents of a polynomial and a few facts about
+its coefficients that save work (`find_difference`, `crossings_can_hide`). The numbers are passed at run time in a table, the
+first argument of every function, so that potentials of the same structure share compiled code.
 """
 
 from __future__ import annotations
@@ -55,10 +55,11 @@ TOLERANCE = 3e-15
 
 # Weight of the third coefficient from the end in the step size, found together with ORDER and TOLERANCE by `benchmarks/steps.py`.
 _EARLIER_WEIGHT = 0.3
-# Steps for which it was found; and by what the norm is multiplied where frequencies differ, as coefficients of functions with
-# singularities fall more slowly than those of polynomials: the largest power of 10 with which energies are held to 1e-11.
+# Size of the steps for which it was found, and factor of the norm where frequencies differ, because coefficients of functions
+# with singularities decrease more slowly than those of polynomials: the largest power of 10 with which energies are conserved to
+# 1e-11.
 _USUAL_STEP, _CAUTION = 0.35, 10.0
-# Added to the speed that limits a step.
+# This is added to the speed that limits a step.
 _LEAST_SPEED = 1.0 / 16.0
 _ORDERS_OF_NORM = 3
 
@@ -66,22 +67,22 @@ LANES = 64
 """Length of the rows of arrays with one column per orbit, of which a step computes the first ones."""
 
 ROWS = 8
-"""Rows of the arrays of lanes ``now`` and ``new``: x, y, px, py, t, the size of the last step, and the remainders of x and
-y, which rounding has dropped; they are 0 for structures whose steps do not carry them."""
+"""Rows of the arrays of lanes ``now`` and ``new``: x, y, px, py, t, the size of the last step, and the remainders of x and y,
+which are their rounding errors; the remainders are 0 for structures whose steps do not carry them."""
 
 TIME_ROW, SIZE_ROW = 4, 5
 """The rows with the time, and with the size of the last step."""
 
-# Cached structures, 3 MB each with eight terms of degree 8.
+# Number of cached structures, of 3 MB each with eight terms of degree 8.
 _STRUCTURES = 32
 
 Definition = Terms | Expression
-"""What V is: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
+"""A potential: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
 
 
 @dataclass(frozen=True, eq=False)
 class GeneratedCode:
-    """The generated functions of all potentials of one structure; equal if all programs and kernels are.
+    """The generated functions of all potentials of one structure; equal if all their programs and kernels are equal.
 
     Attributes
     ----------
@@ -89,7 +90,7 @@ class GeneratedCode:
         ``step``, ``fixed_step``, ``jets``, ``tangent`` and ``potential_value``. Besides the programs, their kernels refer to
         ``kernel`` and ``read_table``.
     entries
-        The entries of the table, as its structure knows them.
+        The entries of the table, as defined by the structure.
     structure
         The structure of the potentials.
     """
@@ -116,19 +117,19 @@ class GeneratedCode:
         return hash(self.digest)
 
     def tabulate(self, definition: Definition, rotation: float = 0.0) -> np.ndarray:
-        """(m,) the table of a potential, which every function takes as its first argument; read-only."""
+        """Return (m,) the table of a potential, which every function takes as its first argument; read-only."""
         own = [entry for entry in self.entries if entry != ROTATION]
         values = {**dict(zip(own, self.structure.tabulate(definition, own), strict=True)), ROTATION: 2.0 * rotation}
         return read_only(np.array([values[entry] for entry in self.entries], dtype=float))
 
 
 def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure) -> Value:
-    """The h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
+    """Return the h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
 
-    The norm contains three orders of both coordinates, so that a step is not too long when one coefficient happens to vanish.
-    This suits a well of one frequency. Where frequencies differ from place to place, a first step h sets units of time and
-    length in which the second is found: h is 0.35, and the orbit moves by 1 or so in a unit of time. So steps and their errors
-    shrink near bodies. NaN marks an orbit that has broken down.
+    The norm contains three orders of both coordinates, so that a step is not too long if one coefficient happens to vanish. This
+    suits a well of one frequency. Where frequencies differ from place to place, a first step h defines units of time and length
+    in which the second step is found: in these units h is 0.35, and the orbit moves by about 1 in a unit of time. Thus steps and
+    their errors become smaller near bodies. NaN marks an orbit that has failed.
     """
     last, before, earlier = (abs(x[-k]) + abs(y[-k]) for k in range(1, _ORDERS_OF_NORM + 1))
     norm = last + before + _EARLIER_WEIGHT * earlier
@@ -145,10 +146,10 @@ def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure
 
 
 def _root_of_tolerance(program: StraightLine, norm: Value) -> Value:
-    """(tolerance / norm)^(1/16), up to 6 % too large, the same on every machine.
+    """Return (tolerance / norm)^(1/16), up to 6 % too large, the same on every machine.
 
-    The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa, and a shift by four
-    divides that by 16.
+    The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa; a shift by four bits
+    divides it by 16.
     """
     one = 1023 << 52
     bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
@@ -156,7 +157,7 @@ def _root_of_tolerance(program: StraightLine, norm: Value) -> Value:
 
 
 def _horner(series: Series, h: Value) -> tuple[Value, Value]:
-    """The value and the time derivative of a series at h."""
+    """Return the value and the time derivative of a series at h."""
     slope = series[-1]
     value = slope * h + series[-2]
     for coefficient in reversed(series[:-2]):
@@ -166,9 +167,9 @@ def _horner(series: Series, h: Value) -> tuple[Value, Value]:
 
 
 def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
-    """Evaluate as `_horner`, with a remainder that is added to the first coefficient; also return the remainder of the value.
+    """Evaluate like `_horner`, with a remainder added to the first coefficient; also return the remainder of the value.
 
-    The latter is the rounding error of the last sum, which is found exactly (Knuth's TwoSum).
+    This is the rounding error of the last sum, which is computed exactly (Knuth's TwoSum).
     """
     if remainder is None:
         return *_horner(series, h), []
@@ -182,7 +183,7 @@ _START = {"x0": Place("x"), "y0": Place("y"), "x1": Place("px"), "y1": Place("py
 
 
 def _start_in(lanes: str) -> dict[str, Place]:
-    """The inputs of the recurrence, read from the first rows of an array of lanes."""
+    """Return the inputs of the recurrence, read from the first rows of an array of lanes."""
     return {name: Place(lanes, row) for row, name in enumerate(_START)}
 
 
@@ -217,7 +218,7 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
     h = program.input("h")
     x_end, px_end = _horner(x, h)
     y_end, py_end = _horner(y, h)
-    # The sums are left to the loop: within the program they make it up to a sixth slower.
+    # The sums are computed in the loop, because within the program they make it up to a sixth slower.
     writes: dict[Place, Value | str] = {
         Place("sums", 0): "weight*(x0*x0)",
         Place("sums", 1): "weight*(y0*y0)",
@@ -266,18 +267,18 @@ def generate_code(
     sides: tuple[int, ...] = (),
     rotates: bool = False,
 ) -> GeneratedCode:
-    """The generated functions for a potential, the same object for all potentials of the same structure.
+    """Return the generated functions for a potential, the same object for all potentials of the same structure.
 
     Parameters
     ----------
     definition
         ((i, j, c), …) of V = Σ c x^i y^j, in any order, or an expression.
     channels
-        How many lines ``step`` tests, 0 or more.
+        Number of lines that ``step`` tests, 0 or more.
     reach
         Radius about the origin, above 0, that contains all orbits.
     sides
-        Of each circle that ``step`` tests, see `Setting`.
+        Sides of the circles that ``step`` tests, see `Setting`.
     rotates
         Whether the frame rotates.
     """
@@ -285,7 +286,7 @@ def generate_code(
 
 
 def code_digest(definition: Definition, setting: Setting) -> str:
-    """`GeneratedCode.digest` of a potential; keeps nothing of the code, which takes megabytes."""
+    """Return `GeneratedCode.digest` of a potential without keeping the code, which takes megabytes."""
     return _write_code(_find_structure(definition, setting, REACH)).digest
 
 

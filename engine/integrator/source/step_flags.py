@@ -1,4 +1,4 @@
-"""Tests of a step for events, appended to its straight-line program."""
+"""Tests of a step for events, which are appended to its straight-line program."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from engine.integrator.source.series import ORDER, Series, Setting
 from engine.integrator.source.straight_line import StraightLine, Value, where
 
 HIDDEN, GATE, OVERSHOOT, NEAR = 1, 2, 4, 8
-"""Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon; it may pass an
-exit although its end is not beyond."""
+"""Flags of a step: it may hide crossings of y = 0; it ends beyond the gate of an exit; it ends after the horizon; it may cross
+and recross an exit although its end is not beyond the gate."""
 
-# Of σ − σ^k, 0 ≤ σ ≤ 1, rounded up; 1 for larger k.
+# Maxima of σ − σ^k for 0 ≤ σ ≤ 1, rounded up; 1 for larger k.
 _LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
 
 
@@ -31,10 +31,10 @@ def _sag(series: Series, h: Value) -> Value:
 
 
 def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
-    """The test of a step for hidden crossings of y = 0, for potentials where there can be any: HIDDEN or 0.
+    """Return the test of a step for hidden crossings of y = 0, for potentials where they are possible: HIDDEN or 0.
 
-    The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. So none hide where ẏ keeps its sign (|ẏ(0)| h > bound), nor where both
-    ends lie on one side, further off than bound/2.
+    The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. So there are no hidden crossings if ẏ keeps its sign (|ẏ(0)| h > bound),
+    or if both ends lie on one side, further away than bound/2.
     """
     bound = _bend(y, h)
     near, far = abs(y[0]), abs(end)
@@ -45,7 +45,7 @@ def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
 def flag_gates(
     setting: Setting, program: StraightLine, series: tuple[Series, Series], end: tuple[Value, Value], h: Value
 ) -> tuple[dict[str, tuple[int, int]], Value]:
-    """The inputs of the gates with their rows and columns of `gates`, and GATE, NEAR or 0.
+    """Return the inputs of the gates with their rows and columns of `gates`, and GATE, NEAR or 0.
 
     A row of `gates` is g_x, g_y, g: for a channel the line g_x x + g_y y = g, for a circle its centre and its radius.
     """
@@ -60,7 +60,7 @@ def flag_gates(
             flag = where(g_x * end[0] + g_y * end[1] > g, GATE, flag)
         return sources, flag
     start = series[0][0], series[1][0]
-    # No point of the step is further than this from its chord.
+    # All points of the step are within this distance of its chord.
     bend = _sag(series[0], h) + _sag(series[1], h)
     half_chord = 0.5 * (abs(end[0] - start[0]) + abs(end[1] - start[1]))
     for g_x, g_y, g in lines:

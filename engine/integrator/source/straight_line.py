@@ -1,4 +1,4 @@
-"""Straight-line programs, recorded by calculating with symbolic values; compiled by `engine.integrator.jit.llvm_emitter`."""
+"""Straight-line programs, recorded by operations on symbolic values; `engine.integrator.jit.llvm_emitter` compiles them."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 TABLE = "table"
-"""Name of the parameter with the numbers that `StraightLine.entry` refers to."""
+"""Name of the parameter that contains the numbers to which `StraightLine.entry` refers."""
 
 
 @dataclass
 class StraightLine:
-    """A function without branches: a list of operations, each on the results of earlier ones.
+    """A function without branches: a list of operations, each on results of earlier operations.
 
     Attributes
     ----------
     name
         Name of the function.
     table
-        {key: index} of the table that is passed at run time; may be shared with other programs, and grows with `entry`.
+        {key: index} of the table that is passed at run time; programs can share it, and `entry` extends it.
     operations
         (symbol, operands): ``input`` with a name, ``constant`` with a number, ``entry`` with an index of the table, or an
         operation on the results with the given indices: + − · / on doubles, + − · >> on 64-bit integers, < <= > >= == on two
@@ -36,23 +36,23 @@ class StraightLine:
 
     @property
     def parameters(self) -> list[str]:
-        """The table, then the inputs in the order of their first use."""
+        """The table, followed by the inputs in the order of their first use."""
         return [TABLE, *dict.fromkeys(operands[0] for symbol, operands in self.operations if symbol == "input")]
 
     def input(self, name: str) -> Value:
-        """A parameter: a double or an integer."""
+        """Return a parameter, which is a double or an integer."""
         return self._append("input", name)
 
     def constant(self, number: float) -> Value:
-        """An integer or a double."""
+        """Return a constant, which is an integer or a double."""
         return self._append("constant", number)
 
     def entry(self, key: Any) -> Value:
-        """A number of the table."""
+        """Return a number of the table."""
         return self._append("entry", self.table.setdefault(key, len(self.table)))
 
     def apply(self, symbol: str, *operands: Value | float) -> Value:
-        """The result of an operation; numbers among the operands become constants."""
+        """Return the result of an operation; numbers among the operands become constants."""
         values = [each if isinstance(each, Value) else self.constant(each) for each in operands]
         return self._append(symbol, *(value.index for value in values))
 
@@ -74,7 +74,7 @@ def _binary(symbol: str, *, swapped: bool = False) -> Callable[[Value, Value | f
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A result within a program; operators and comparisons append to the program and return new values."""
+    """A result within a program; its operators and comparisons append operations to the program and return new values."""
 
     program: StraightLine
     index: int
@@ -88,5 +88,5 @@ class Value:
 
 
 def where(condition: Value, chosen: Value | float, otherwise: Value | float) -> Value:
-    """One of two values; both are computed."""
+    """Return one of two values; both are computed."""
     return condition.program.apply("where", condition, chosen, otherwise)

@@ -116,3 +116,11 @@ def test_another_slice_removes_the_orbits_and_says_so(begin: Callable[[Slice], S
     assert (note.visible, note.object) == (True, REMOVED)
     session.state.add_start((0.1, 0.0))
     assert not note.visible
+
+
+def test_the_chosen_orbit_is_removed_and_the_others_stay(begin: Callable[[Slice], Session]) -> None:
+    session = begin(Plane.X_PX)
+    starts = ((-0.3, 0.0), (0.1, 0.0), (0.2, 0.1))
+    session.state.param.update(starts=starts, chosen=1)
+    session.presenter.controls.remove.clicks += 1
+    assert session.state.starts == (starts[0], starts[2])

@@ -14,7 +14,7 @@ from app.state.system_review import review_catalogue_entry
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts
-from engine import CASES, Plane, System, compute_flux
+from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, compute_flux
 from engine.jobs.manager import Jobs
 from engine.sweeps.warmup import prepare_for_maps
 from tests.app.browser_messages import send
@@ -78,11 +78,15 @@ def test_choices_of_the_browser_change_the_state_and_other_messages_nothing(sess
     assert session.state.watched == WatchedStarts(StartsFrom.VIEW, 1000, 4, -3.0)
 
 
-def test_the_player_gets_the_rate_of_mixed_motion(session: Session) -> None:
+def test_the_player_gets_the_rate_of_mixed_motion_where_starts_share_energy_and_parameters(session: Session) -> None:
     prepare_for_maps(CASES["III"])
     expected = compute_flux(CASES["III"], 0.45).decay_rate
     with session.changed:
         session.context.results.frame = disc_map()
         assert session.changed.wait_for(lambda: session.player.rate == expected, 60)
-    session.state.plane = Plane.X_H
-    assert session.player.rate == 0.0
+    for several in (Plane.X_H, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))):
+        session.state.plane = several
+        assert session.player.rate == 0.0
+        # A result that is known is there at once.
+        session.state.plane = Plane.X_PX
+        assert session.player.rate == expected

@@ -10,9 +10,11 @@ import pytest
 import shapely
 
 from engine import CASES, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, start_states
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.foundations.execution import Execution
 from engine.propagation.section_points import find_section_points
 from engine.trajectories.stable_manifolds import MOST_IMAGES, StableManifolds, find_stable_manifolds
+from engine.trajectories.unstable_manifold import UnstableManifold
 
 # The original orientation of the Hénon-Heiles potential (Case II): not even in y, so that orbits can touch y = 0.
 TURNED = Potential("turned", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3)))
@@ -137,7 +139,17 @@ def test_first_images_are_closed_curves_and_not_truncated() -> None:
 # The unstable manifold.
 
 
-# Arguments.
+def test_an_orbit_of_the_unstable_manifold_has_no_passages_after_its_escape() -> None:
+    # Channel 1 lies on y = 0, about which orbits oscillate as they leave.
+    tube = UnstableManifold.from_orbit(find_orbits_in_well_units(CASES["II"], 0.2)[0])
+    phases = np.linspace(0.0, 1.0, 200)
+    displacements = tube.displacements(phases)
+    growth_time = tube.orbit.period / math.log(tube.max_displacement / tube.min_displacement)
+    times = tube.find_passages(phases, 12)[:, :, 2] - growth_time * np.log(displacements)[:, None]
+    outcomes = classify_orbits(tube.potential, tube.orbit.energy, tube.start_states(displacements), 1e3)
+    escapes = outcomes.fate >= 1
+    assert np.count_nonzero(escapes & np.isnan(times[:, -1])) > 100
+    assert not np.any(times[escapes] > outcomes.escape_time[escapes, None])
 
 
 def test_there_are_no_arcs_at_the_escape_energy() -> None:
