@@ -1,5 +1,5 @@
 // @ts-check
-/** The share of an ensemble that is still inside, against time, on a logarithmic axis, beside the law of mixed motion. */
+/** The share of an ensemble that is still inside against time, on a logarithmic axis, with the law of mixed motion. */
 
 /** Smallest share on the axis. */
 const LEAST = 1e-3
@@ -53,7 +53,7 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
 }
 
 /**
- * Number of values of a rising array that are at most a limit.
+ * Return the number of values of a rising array that are at most a limit.
  *
  * @param {Float64Array} values
  * @param {number} limit
