@@ -32,8 +32,8 @@ MEMORY = 2**30
 
 # Interval at which the process checks whether the server still exists, in seconds.
 _WATCH_SECONDS = 2.0
-# On a busy machine a call takes at most this many times its processor time.
-_PATIENCE = 4
+# On a busy machine a call takes at most this many times its processor time, in addition to the start of its process.
+_PATIENCE, _START_SECONDS = 4, 60.0
 # Interval at which a call checks whether anyone still waits for it, and the time until it ends if nobody does, in seconds.
 _POLL_SECONDS, _ABANDONED_SECONDS = 0.1, 1.0
 
@@ -124,7 +124,7 @@ class LimitedProcess:
             seconds = time.monotonic() - begun
             if cancel.is_set() and seconds > _ABANDONED_SECONDS:
                 raise CancelledError
-            if seconds > _PATIENCE * self._seconds:
+            if seconds > _START_SECONDS + _PATIENCE * self._seconds:
                 raise FutureTimeoutError
         return future.result()
 

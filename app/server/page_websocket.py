@@ -71,7 +71,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             address = str(self.request.remote_ip)
             count_socket(address)
             self._is_counted = True
-            check_session(self._token, self.application_context, address)
+            check_session(self._token, self.application_context, address, self.application)
             return super().open(*args, **kwargs)
         except Exception as error:
             return self._refuse_connection(error)

@@ -74,7 +74,7 @@ class Axes(NamedTuple):
     outward: np.ndarray
 
     def coordinates(self, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """u and q of a path (2, n)."""
+        """Return u and q of a path (2, n)."""
         dx, dy = path[0] - self.origin[0], path[1] - self.origin[1]
         return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
 

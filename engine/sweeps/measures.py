@@ -29,7 +29,7 @@ _describe = methodcaller("describe")
 
 
 def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variables:
-    """Shares of the interior starts that are bounded, and of each outcome, with 95 % intervals (Wilson 1927).
+    """Return the shares of the interior starts that are bounded, and of each outcome, with 95 % intervals (Wilson 1927).
 
     The intervals hold for independent random starts.
     """

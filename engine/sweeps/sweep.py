@@ -74,14 +74,14 @@ class Sweep(Result):
         return np.asarray(self.dataset[name].values)
 
     def interval(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper ends of a measure: of its 95 % interval, or one standard error away; the measure itself without any."""
+        """Return the ends of the 95 % interval of a measure, or one standard error away; without errors, the measure itself."""
         if f"{name}_low" in self.dataset:
             return self[f"{name}_low"], self[f"{name}_high"]
         error = self[f"{name}_error"] if f"{name}_error" in self.dataset else 0.0
         return self[name] - error, self[name] + error
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """All numbers by name, the energy or the parameter first; shares by outcome: ``share_bounded``, ``share_exit_1``."""
+        """Return all numbers by name, the energy or parameter first; shares by outcome: ``share_bounded``, ``share_exit_1``."""
         labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in self.outcomes)]
         found = {self.name: self.values}
         for name in map(str, self.dataset.data_vars):
@@ -96,7 +96,7 @@ class Sweep(Result):
         return self.dataset
 
     def describe(self) -> str:
-        """How much is measured."""
+        """Describe how much is measured."""
         attributes = self.dataset.attrs
         return f"{self.values.size} of {attributes['count']} values of {self.symbol} on {attributes['plane']}."
 

@@ -338,7 +338,7 @@ class Potential(Result):
         return self.form.terms
 
     def value(self, x: Any, y: Any) -> Any:
-        """V at (x, y); arrays broadcast."""
+        """Return V at (x, y); arrays broadcast."""
         return self.form.value(x, y)
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
@@ -354,7 +354,7 @@ class Potential(Result):
         return hessian_matrix(self.form, x, y)
 
     def energy(self, states: Any) -> Any:
-        """H of states (…, 4) = x, y, px, py."""
+        """Return H of states (…, 4) = x, y, px, py."""
         x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
         return 0.5 * (px * px + py * py) + self.value(x, y)
 

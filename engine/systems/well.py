@@ -114,7 +114,7 @@ class Well(ReadOnlyArrays):
         return float(self.saddle_energies.min(initial=np.inf))
 
     def open_channels(self, energy: float) -> tuple[int, ...]:
-        """Numbers of the channels whose saddle lies below `energy`; empty at or below the escape energy."""
+        """Return the numbers of the channels whose saddle lies below `energy`; empty at or below the escape energy."""
         return tuple(
             int(k) + 1 for k in np.flatnonzero(self.saddle_energies < energy - EQUAL_ENERGY_TOLERANCE * self.units.energy)
         )

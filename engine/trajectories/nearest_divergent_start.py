@@ -144,7 +144,7 @@ def find_divergent_start(
 
 
 def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:
-    """Energy h of the start; ValueError unless it and the coordinates are finite numbers."""
+    """Return the energy h of the start; ValueError unless it and the coordinates are finite numbers."""
     for name, value in zip(plane.axis_names, (x, ordinate), strict=True):
         checked_number(name, value)
     if plane.energy_axis is not None:
@@ -233,7 +233,7 @@ def _directions(plane: Slice) -> np.ndarray:
 
 
 def _ring_radii(furthest: float, directions: int) -> Iterator[np.ndarray]:
-    """Batches of logarithmically spaced, increasing radii; each batch begins with the last radius of the previous one."""
+    """Yield batches of logarithmically spaced, increasing radii; each batch begins with the last radius of the previous one."""
     count = int(np.ceil(_STARTS_PER_DECADE / directions * np.log10(furthest / _MIN_DISTANCE))) + 1
     radii = np.concatenate([[0.0], np.geomspace(_MIN_DISTANCE, furthest, count)])
     rings = _BATCH_SIZE // directions

@@ -36,7 +36,7 @@ export function render({model, el}) {
     button.className = on ? "pause" : "play"
     button.setAttribute("aria-label", on ? "Pause the orbits" : "Play the orbits")
   }
-  // At the beginning of another interval; what is played goes on.
+  // Go to the beginning of another interval; playing continues.
   const follow = () => {
     const nothing = model.begin === model.end
     for (const input of [button, rail]) input.disabled = nothing
@@ -49,6 +49,6 @@ export function render({model, el}) {
   model.on("lifecycle:remove", () => clearInterval(timer))
   play(false)
   follow()
-  // Back on the page, the player is at the beginning.
+  // When the player returns to the page, it is at the beginning.
   if (!rail.disabled) go(0)
 }

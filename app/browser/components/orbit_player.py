@@ -37,7 +37,7 @@ class OrbitPlayer(JSComponent):
         self.on_msg(lambda event: self._receive(event.data))
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected, and steps of an earlier interval.
+        # Messages come from a browser: unexpected ones, and steps of an earlier interval, are ignored.
         match message:
             case {"step": int(step), "begin": self.begin, "end": self.end} if 0 <= step <= self.steps and self.begin < self.end:
                 self._on_step(step)

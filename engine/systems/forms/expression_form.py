@@ -91,16 +91,16 @@ class ExpressionForm:
         return isinstance(self.expression, Sum) and self.expression.constant != 0.0
 
     def value(self, x: Any, y: Any) -> Any:
-        """V at (x, y); arrays broadcast; NaN where it is not defined."""
+        """Return V at (x, y); arrays broadcast; NaN where it is not defined."""
         return self._evaluate(x, y, self.expression)[0]
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """(V_x, V_y)."""
+        """Return (V_x, V_y)."""
         along_x, along_y = self._evaluate(x, y, *slopes(self.expression))
         return along_x, along_y
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
-        """(V_xx, V_xy, V_yy)."""
+        """Return (V_xx, V_xy, V_yy)."""
         vxx, vxy, vyy = self._evaluate(x, y, *curvatures(self.expression))
         return vxx, vxy, vyy
 
@@ -110,7 +110,7 @@ class ExpressionForm:
         return [value[()] for value in evaluate(graph, numbers, x, y)]
 
     def force(self, axis: int) -> ExpressionForm:
-        """−∂V/∂x or −∂V/∂y."""
+        """Return −∂V/∂x or −∂V/∂y."""
         return ExpressionForm(linear_combination([(-1.0, derivative(self.expression, axis))]))
 
     def find_critical_points(self) -> np.ndarray:
@@ -152,7 +152,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(1.0, self.expression), (1.0, from_terms(terms))]))
 
     def scaled(self, length: float, energy: float) -> ExpressionForm:
-        """V(length x, length y) / energy."""
+        """Return V(length x, length y) / energy."""
         x, y = (linear_combination([(length, axis)]) for axis in (X, Y))
         return ExpressionForm(linear_combination([(1.0 / energy, substitute(self.expression, x, y))]))
 
@@ -173,7 +173,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(epsilon, self.expression), (1.0, from_terms(changes))]))
 
     def moved(self, x: float, y: float) -> ExpressionForm:
-        """V(x + x₀, y + y₀)."""
+        """Return V(x + x₀, y + y₀)."""
         axes = (linear_combination([(1.0, axis), (place, number(1.0))]) for axis, place in ((X, x), (Y, y)))
         return ExpressionForm(substitute(self.expression, *axes))
 

@@ -42,7 +42,7 @@ class Form(Protocol):
         """Whether V has a constant term that can be left out."""
 
     def value(self, x: Any, y: Any) -> Any:
-        """V at (x, y); arrays broadcast."""
+        """Return V at (x, y); arrays broadcast."""
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
         """Return (V_x, V_y) at (x, y); arrays broadcast."""
@@ -51,7 +51,7 @@ class Form(Protocol):
         """Return (V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
 
     def force(self, axis: int) -> Form:
-        """−∂V/∂x (axis 0) or −∂V/∂y (axis 1)."""
+        """Return −∂V/∂x (axis 0) or −∂V/∂y (axis 1)."""
 
     def find_critical_points(self) -> np.ndarray:
         """Find (n, 3) x, y of the points with ∇V = 0, and 1 for a minimum or maximum, −1 for a saddle, 0 for a degenerate point.
@@ -73,7 +73,7 @@ class Form(Protocol):
         """Return V plus a polynomial {(i, j): c}."""
 
     def scaled(self, length: float, energy: float) -> Form:
-        """V(length x, length y) / energy."""
+        """Return V(length x, length y) / energy."""
 
     def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> Form:
         """See `Potential.with_parameters`."""

@@ -88,16 +88,16 @@ class PolynomialForm:
         return (0, 0) in self.coefficients
 
     def value(self, x: Any, y: Any) -> Any:
-        """V at (x, y); arrays broadcast."""
+        """Return V at (x, y); arrays broadcast."""
         return evaluate(self.coefficients, x, y)
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """(V_x, V_y)."""
+        """Return (V_x, V_y)."""
         along_x, along_y = self.slopes
         return evaluate(along_x, x, y), evaluate(along_y, x, y)
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
-        """(V_xx, V_xy, V_yy)."""
+        """Return (V_xx, V_xy, V_yy)."""
         return tuple(evaluate(self.derivative(*order), x, y) for order in ((2, 0), (1, 1), (0, 2)))
 
     def derivative(self, nx: int, ny: int) -> dict[Powers, float]:
@@ -113,7 +113,7 @@ class PolynomialForm:
         return self.derivative(1, 0), self.derivative(0, 1)
 
     def force(self, axis: int) -> PolynomialForm:
-        """−∂V/∂x or −∂V/∂y."""
+        """Return −∂V/∂x or −∂V/∂y."""
         return PolynomialForm(tuple((i, j, -c) for (i, j), c in self.slopes[axis].items()))
 
     def find_critical_points(self) -> np.ndarray:
@@ -153,7 +153,7 @@ class PolynomialForm:
         return checked_form(tuple((i, j, c) for (i, j), c in added.items() if c))
 
     def scaled(self, length: float, energy: float) -> PolynomialForm:
-        """V(length x, length y) / energy."""
+        """Return V(length x, length y) / energy."""
         # `checked_form` is not used, because the legal range of coefficients applies to the units of the potential.
         return PolynomialForm(tuple((i, j, c * length ** (i + j) / energy) for i, j, c in self.terms))
 
@@ -183,7 +183,7 @@ class PolynomialForm:
         return math.gcd(*(a - b for a, b in self._complex_terms() if a != b))
 
     def _complex_terms(self) -> dict[Powers, complex]:
-        """{(a, b): c} of V = Σ c z^a z̄^b, without rounding errors of zero coefficients."""
+        """Return {(a, b): c} of V = Σ c z^a z̄^b, without rounding errors of zero coefficients."""
         x, y = {(1, 0): 0.5 + 0j, (0, 1): 0.5 + 0j}, {(1, 0): -0.5j, (0, 1): 0.5j}
         largest = largest_coefficients(self.coefficients)
         terms = substitute(self.coefficients, x, y)

@@ -40,7 +40,7 @@ def add(one: FormulaValue, other: FormulaValue) -> FormulaValue:
 
 
 def negative(value: FormulaValue) -> FormulaValue:
-    """−value."""
+    """Return −value."""
     return linear_combination([(-1.0, value)]) if isinstance(value, Expression) else exact_negative(value)
 
 
@@ -52,7 +52,7 @@ def product(one: FormulaValue, other: FormulaValue) -> FormulaValue:
 
 
 def quotient(one: FormulaValue, other: FormulaValue) -> FormulaValue:
-    """one / other; ZeroDivisionError if the divisor is 0."""
+    """Return one / other; ZeroDivisionError if the divisor is 0."""
     divisor = constant_of(other)
     if divisor is not None and not isinstance(other, Expression):
         return product(one, {(0, 0): 1 / divisor})

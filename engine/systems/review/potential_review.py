@@ -82,7 +82,7 @@ class PotentialReview(Result):
         return super().provenance() | describe_potential(self.potential)
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Place, kind, energy and channel of each critical point."""
+        """Return place, kind, energy and channel of each critical point."""
         names = [field.name for field in fields(CriticalPoint)]
         columns = {name: np.array([getattr(point, name) for point in self.critical_points]) for name in names}
         return columns | {"kind": np.array([point.kind.value for point in self.critical_points], dtype=str)}

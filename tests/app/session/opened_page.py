@@ -20,10 +20,9 @@ from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
+from tests.waiting import SECONDS
 
 NO_LINK: Mapping[str, str] = {}
-SECONDS = 60.0
-"""Longest wait, on a busy machine."""
 
 
 # Bokeh calls other handlers in a thread.

@@ -21,6 +21,7 @@ from plots.layers.table import LAYERS
 from plots.pictures.palette import CLEAR
 from tests.app.map_actions import make_maps
 from tests.app.session.session_lock import context_of
+from tests.waiting import SECONDS
 
 
 class Session:
@@ -46,7 +47,7 @@ class Session:
 
     def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
-            assert self.changed.wait_for(true, 60), (
+            assert self.changed.wait_for(true, SECONDS), (
                 self.context.notice.layout().object,
                 self.presenter.notes.object,
                 self.presenter.measures.text.object,

@@ -1,7 +1,7 @@
 // @ts-check
-/** Plays the energy: raises it to the end of its range, once per frame of the display. */
+/** Plays the energy: raises it to the end of its range in each frame of the display. */
 
-/** Duration of the whole range. */
+/** Duration of playing the whole range. */
 const SWEEP_MS = 20_000
 /** Least number of steps of the range: those of a decimal, so that the numbers beside the picture are short. */
 const STEPS = 1000
@@ -26,7 +26,7 @@ export class Player {
   }
 
   /**
-   * Start at an energy, from the beginning of the range if it is at the end; no effect while it plays.
+   * Start at an energy, or at the beginning of the range if the energy is at its end; no effect while the energy is playing.
    *
    * @param {number} energy
    * @param {number} low

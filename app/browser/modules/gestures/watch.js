@@ -15,21 +15,21 @@ const LONGEST = 100
 /** Time of the first frame after the start on a logarithmic scale. */
 const FIRST = 0.5
 const STEPS = 1000
-/** What a press of "Step" shows of a playing ensemble. */
+/** Playing time by which the button "Step" advances the ensemble. */
 const STEP_SECONDS = 0.05
-/** Side of a particle, in pixels, and how fast trails fade: the share of the light that is left after a frame. */
+/** Side of a particle, in pixels, and the speed at which trails fade: the share of the light that remains after a frame. */
 const [SIDE, TRAIL] = [2.5, 0.88]
 const FRAMES_PER_NUMBER = 6
-/** Share of the map under the passages of the section that is covered. */
+/** Opacity of the cover over the map under the passages of the section. */
 const COVERED = 0.85
 /** Time in each frame for finding the outcomes of orbits, in ms. */
 const OUTCOMES_MS = 6
-/** A longer frame, such as one of a hidden page, advances the time by this only. */
+/** Largest time by which a frame advances the orbits; frames of a hidden page take longer. */
 const LONGEST_FRAME_MS = 100
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none"
 
 /**
- * How the time goes on: in units of time per second, or in factors of two per second.
+ * The pace of the time: in units of time per second, or in factors of two per second.
  *
  * @type {Record<string, (time: number, seconds: number) => number>}
  */
@@ -153,7 +153,7 @@ class Watch {
   }
 
   /**
-   * Tell the server of a choice, which comes back as a change of the model.
+   * Send a choice to the server, which returns it as a change of the model.
    *
    * @param {object} choice
    */
@@ -162,7 +162,7 @@ class Watch {
     this.#model.send_msg({where, count, seed, radius, ...choice})
   }
 
-  /** Follow the page and the choices. Other starts begin at time 0; a playing ensemble keeps playing. */
+  /** Follow the page and the choices. Other starts begin at time 0; a playing ensemble continues to play. */
   #follow() {
     const {where, count, seed, radius, point, box} = this.#model
     Object.assign(this.#where, {value: where})
@@ -183,7 +183,7 @@ class Watch {
     this.#show(0)
   }
 
-  /** Find in the next frames through which exits the orbits leave. */
+  /** Find, in the next frames, the exits through which the orbits leave. */
   #findOutcomes() {
     cancelAnimationFrame(this.#nextSearch)
     const tick = () => {
@@ -214,7 +214,7 @@ class Watch {
   #setPlaying(on) {
     cancelAnimationFrame(this.#frame)
     this.#frame = 0
-    // With the counters of the moment, which are not written in every frame.
+    // Update the counters, which are not written in every frame.
     if (!on || !this.#ensemble) return this.#draw()
     if (this.#hasEnded) this.#begin()
     let last = performance.now()
@@ -230,12 +230,12 @@ class Watch {
     this.#label()
   }
 
-  /** Whether the time is where the pace leads. */
+  /** Whether the time is at the end of the pace. */
   get #hasEnded() {
     return this.#pace.value === "backwards" ? this.#time <= 0 : this.#time >= LONGEST
   }
 
-  /** Go to the time from which the pace leads on. */
+  /** Go to the time at which the pace begins. */
   #begin() {
     this.#show(this.#pace.value === "backwards" ? LONGEST : 0)
   }
@@ -268,7 +268,7 @@ class Watch {
     this.#text.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
     this.#paintWell(ensemble, shown)
     this.#paintSection(ensemble, shown)
-    // While the time goes on, numbers that change in every frame cannot be read.
+    // While the time runs, numbers that change in every frame could not be read.
     if (this.#frame !== 0 && this.#painted++ % FRAMES_PER_NUMBER) return
     this.#writeCounters(ensemble, shown)
     this.#writeGrowth(ensemble, time)
@@ -310,7 +310,7 @@ class Watch {
   }
 
   /**
-   * On (x, px): each orbit at its last passage.
+   * Draw each orbit on (x, px), at its last passage.
    *
    * @param {Ensemble} ensemble
    * @param {import("./present.js").Shown} shown
@@ -319,7 +319,7 @@ class Watch {
     const [frame, view] = [frames()[0], scene()]
     // The second coordinate of the origin is y.
     const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
-    // Before the first passage the map stays as it is.
+    // Before the first passage the map is not covered.
     if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
       return void (this.#section.style.display = "none")
     const style = getComputedStyle(this.#note)
@@ -329,7 +329,7 @@ class Watch {
   }
 
   /**
-   * Paint the orbits as particles in the colours of the exits that they will take, others in that of the text.
+   * Paint the orbits as particles in the colours of the exits through which they will leave; others have the colour of the text.
    *
    * @param {HTMLCanvasElement} canvas
    * @param {DOMRect} box
@@ -381,7 +381,8 @@ class Watch {
   }
 
   /**
-   * The growth of a disc, as a factor and as a rate: where it is small and the motion chaotic, the rate is near the Lyapunov exponent.
+   * Describe the growth of a disc, as a factor and as a rate. While the disc is small and the motion chaotic, the rate is close
+   * to the Lyapunov exponent.
    *
    * @param {Ensemble} ensemble
    * @param {number} time

@@ -1,5 +1,5 @@
 // @ts-check
-/** The share of an ensemble that is still inside, against time, on a logarithmic axis, beside the law of mixed motion. */
+/** The share of an ensemble that is still inside against time, on a logarithmic axis, with the law of mixed motion. */
 
 import {number} from "../numbers.js"
 
@@ -55,7 +55,7 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
 }
 
 /**
- * Number of values of a rising array that are at most a limit.
+ * Return the number of values of a rising array that are at most a limit.
  *
  * @param {Float64Array} values
  * @param {number} limit
