@@ -17,6 +17,9 @@ from engine.integrator.portable_kernels import kernel_module, module_digest
 
 MODULES = Path(__file__).parent / "modules"
 
+NUMBERS = MODULES / "numbers.js"
+"""The functions that write numbers, also for callbacks of Bokeh and for components."""
+
 
 def _digest() -> str:
     """Return a hash of all modules and of the sources of the kernels."""

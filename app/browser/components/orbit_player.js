@@ -1,4 +1,6 @@
 // @ts-check
+import {number} from "../modules/numbers.js"
+
 /**
  * A button and a slider for the time along the orbits: the steps from `begin` to `end`, played in a loop. Each step is sent.
  *
@@ -21,7 +23,7 @@ export function render({model, el}) {
     const time = model.begin + ((model.end - model.begin) * step) / model.steps
     rail.valueAsNumber = step
     rail.style.setProperty("--share", String(step / model.steps))
-    text.textContent = `t = ${Number(time.toPrecision(5))}`
+    text.textContent = `t = ${number(time, 5)}`
     rail.setAttribute("aria-valuetext", text.textContent)
   }
   const go = (/** @type {number} */ step) => {

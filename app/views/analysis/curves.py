@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from html import escape
@@ -17,9 +19,10 @@ from app.state.view_state import ViewState
 from app.views.components.in_turns import InTurns, Later
 from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_decades, set_range, square_figure
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, plain_symbol
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Measure, Outcome, System
+from engine.foundations.wording import format_number, format_whole
 from engine.results import Sweep
 from engine.systems.parameters import symbol_of
 from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, THRESHOLD, Entry
@@ -66,6 +69,7 @@ class CurvesView:
         self._state, self._on_value = state, on_value
         self.shown: Sweep | None = None
         self.running = False
+        self._began = 0.0
         self.button = button(START, on_sweep, width=180, align="end")
         self.against = pn.widgets.Select(label="Against", options={"h": "h"}, value="h", width=80)
         self.text = TextPane(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
@@ -96,7 +100,7 @@ class CurvesView:
         """Remove the curves of another system, and offer the parameters of this one."""
         if self.shown is not None:
             self.show(None)
-        self.against.options = {"h": "h"} | {symbol_of(name): name for name in system.parameter_names}
+        self.against.options = {"h": "h"} | {plain_symbol(symbol_of(name)): name for name in system.parameter_names}
 
     def _mark(self) -> None:
         """Mark the energy in view, or the system's own value of the parameter."""
@@ -105,6 +109,8 @@ class CurvesView:
 
     def show_running(self, running: bool) -> None:
         """Label the button with its next action."""
+        if running and not self.running:
+            self._began = time.monotonic()
         self.running = running
         self.button.label = STOP if running else START
 
@@ -140,7 +146,7 @@ class CurvesView:
         self._name_axes()
         self._mark()
         self._scale_values(curves)
-        self.text.object = _progress(curves)
+        self.text.object = _progress(curves, time.monotonic() - self._began)
         self._legend.object = legend(entries)
 
     def _scale_values(self, curves: Sweep) -> None:
@@ -231,10 +237,13 @@ def _make_key(panel: Measure) -> pn.viewable.Viewable:
     return TextPane(legend(entries), margin=(0, 10))
 
 
-def _progress(curves: Sweep) -> str:
+def _progress(curves: Sweep, seconds: float) -> str:
+    """What the curves show; while they are computed, how long that will take at the pace of the past `seconds`."""
     request = curves.dataset.attrs
     done, total = curves.values.size, request["count"]
-    where = f"values of {curves.symbol} on {request['plane']}" + (f" at h = {request['energy']:.6g}" if request["along"] else "")
+    energy = f" at h = {format_number(request['energy'], 6)}" if request["along"] else ""
+    where = f"values of {curves.symbol} on {request['plane']}{energy}"
     if curves.complete:
         return f"{total} {where}. Click a curve to open the map there."
-    return f"{done} of {total} {where} …"
+    left = seconds * (total - done) / done if done else math.inf
+    return f"{done} of {total} {where} …" + (f" about {format_whole(left)} s left" if left < math.inf else "")

@@ -11,9 +11,10 @@ import panel as pn
 
 from app.browser.inputs.formula_box import FormulaBox
 from app.browser.inputs.parameter_slider import ParameterSlider
-from app.views.components.texts import StatusPane, TextPane
+from app.views.components.texts import StatusPane, TextPane, plain_symbol
 from app.views.components.widgets import button, flex_row
 from engine import System
+from engine.foundations.wording import format_number
 from engine.results import PotentialReview
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
@@ -41,7 +42,7 @@ NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outc
 """Note about a formula that the maps do not follow while it is typed."""
 
 
-_DEFINITION = "V = ½(ω1² x² + ω2² y²) + ε V1, and Φ = V − ½Ω²(x² + y²) in a frame that rotates at the rate Ω"
+_DEFINITION = "V = ½(ω₁²x² + ω₂²y²) + ε V₁, and Φ = V − ½Ω²(x² + y²) in a frame that rotates at the rate Ω"
 
 
 class Propose(Protocol):
@@ -113,7 +114,7 @@ class PotentialPanel:
         label, _, (lowest, highest) = WELL_PARAMETERS[name]
         low, high = _ENDS.get(name, (_LOW, _HIGH))
         return ParameterSlider(
-            partial(self._slide, name), 1.0, label=label, low=low, high=high, lowest=lowest, highest=highest,
+            partial(self._slide, name), 1.0, label=plain_symbol(label), low=low, high=high, lowest=lowest, highest=highest,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 
@@ -255,18 +256,18 @@ def _alert(sentence: str) -> str:
 def _channels(review: PotentialReview) -> str:
     if review.potential.ends:
         labels = ", ".join(outcome.label for outcome in review.potential.outcomes)
-        opened = f"; exits open above h = {review.escape_energy:.6g}" if review.channels else ""
+        opened = f"; exits open above h = {format_number(review.escape_energy, 6)}" if review.channels else ""
         return f"Orbits end at: {labels}{opened}"
     if not review.channels:
         return "no exits"
-    return f"{review.channels} exits above the escape energy h = {review.escape_energy:.6g}"
+    return f"{review.channels} exits above the escape energy h = {format_number(review.escape_energy, 6)}"
 
 
 def _points(review: PotentialReview) -> str:
     """A table of the critical points."""
     rows = "".join(
-        f"<tr><td>{point.kind.value}</td><td>({point.x:.6g}, {point.y:.6g})</td>"
-        f"<td>{point.energy:.6g}</td><td>{point.channel or ''}</td></tr>"
+        f"<tr><td>{point.kind.value}</td><td>({format_number(point.x)}, {format_number(point.y)})</td>"
+        f"<td>{format_number(point.energy)}</td><td>{point.channel or ''}</td></tr>"
         for point in sorted(review.critical_points, key=lambda point: point.channel or MOST_CHANNELS + 1)
     )
     names = ("critical point", "(x, y)", potential_symbol(review.potential), "exit")

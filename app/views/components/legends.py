@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from engine.foundations.wording import format_whole
+from engine.foundations.wording import format_number, format_whole
 from plots.layers.picture import ColourScale, ColourTable, Legend
 from plots.pictures.palette import Entry, Mark, short_label
 
@@ -63,7 +63,7 @@ def _scale(scale: ColourScale) -> str:
 
 
 def _number(value: float) -> str:
-    return format_whole(value) if value == round(value) else f"{value:g}"
+    return format_whole(value) if value == round(value) else format_number(value)
 
 
 def _table(table: ColourTable) -> str:

@@ -37,7 +37,8 @@ class PictureGrid:
         self._enlarged = ""
         # Pictures that show nothing.
         self._empty: frozenset[str] = frozenset()
-        classes = ["maps", "alone"] if alone else ["maps"]
+        # Without a map yet, the axes show nothing of this system.
+        classes = ["maps", "stale", *(["alone"] if alone else [])]
         self._column = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=classes)
         self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"], visible=False)
         self.picker.param.watch(lambda event: self._choose(event.new), "value")

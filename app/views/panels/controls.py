@@ -234,11 +234,11 @@ class Controls:
 
 def _outcomes(potential: Potential) -> str:
     """Describe the ends of orbits, and the energies from which on they exist."""
-    frame = f"rotates at Ω = {potential.rotation:.6g}; " if potential.rotation else ""
+    frame = f"rotates at Ω = {format_number(potential.rotation, 6)}; " if potential.rotation else ""
     if not potential.ends:
-        return f"{frame}{potential.channels} exits above h = {potential.escape_energy:.6g}"
+        return f"{frame}{potential.channels} exits above h = {format_number(potential.escape_energy, 6)}"
     labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
-    opened = f"; exits open above h = {potential.escape_energy:.6g}" if potential.channels else ""
+    opened = f"; exits open above h = {format_number(potential.escape_energy, 6)}" if potential.channels else ""
     return f"{frame}{labels}{opened}"
 
 

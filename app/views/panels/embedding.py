@@ -9,7 +9,7 @@ from app.state.permalink import write_link
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 
-NOT_ALLOWED = "This server lets no other page embed it."
+NOT_ALLOWED = "Embedding is switched off on this server."
 
 # Side of the frame in pixels; pictures are square.
 _SIDE = 600

@@ -21,7 +21,7 @@ from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, figure_choi
 from plots.printed.figure_style import FigureFormat, FigureStyle
 
 _TITLES = "Titles"
-_NUMBERS = {"width": ("Width in cm", 0.5), "dpi": ("Pixels per inch", 50.0), "font_size": ("Letters in points", 0.5)}
+_NUMBERS = {"width": ("Width, cm", 0.5), "dpi": ("Pixels/inch", 50.0), "font_size": ("Letters, pt", 0.5)}
 Send = Callable[[str, bytes | None], None]
 """Sends the name and the content of a file to the browser; None if it could not be made."""
 
@@ -66,10 +66,13 @@ class FigureForm:
     def build(self) -> list[pn.viewable.Viewable]:
         """The section, in a column."""
         boxes = [
-            NumberBox(partial(self.type, name), self._style[name], label=label, step=step, width=110, margin=(0, 4, 0, 10))
+            NumberBox(
+                partial(self.type, name), self._style[name], label=label, step=step, min_width=60, margin=(0, 4, 0, 10),
+                sizing_mode="stretch_width",
+            )
             for name, (label, step) in _NUMBERS.items()
-        ]
-        numbers = pn.Row(*boxes, margin=0)
+        ]  # fmt: skip
+        numbers = pn.Row(*boxes, margin=0, sizing_mode="stretch_width")
         return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
 
     def _offer(self) -> None:

@@ -8,6 +8,7 @@ import {exitLines, LimitingCurves} from "../engine/curves.js"
 import {Integrator} from "../engine/integrator.js"
 import {findPath} from "../engine/path.js"
 import {windowAt} from "../engine/starts.js"
+import {number} from "../numbers.js"
 import {cover, frames, strokeLine, wellFrame} from "../painting/pictures.js"
 
 /** Longest time that is followed, in units of the well. */
@@ -25,10 +26,9 @@ const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;backgro
 
 /** What is known of an orbit, in words. @type {(path: Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">, unit: number, labels: string[]) => string} */
 export function describe({channel, time, crossings}, unit, labels) {
-  const t = Number((time * unit).toPrecision(4))
   const count = crossings === 1 ? "1 crossing" : `${crossings} crossings`
   const label = labels[channel - 1] ?? "inside until"
-  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${t}, ${count}`
+  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${number(time * unit)}, ${count}`
 }
 
 /**

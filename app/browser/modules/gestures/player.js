@@ -3,6 +3,8 @@
 
 /** Duration of playing the whole range. */
 const SWEEP_MS = 20_000
+/** Least number of steps of the range: those of a decimal, so that the numbers beside the picture are short. */
+const STEPS = 1000
 
 export class Player {
   /**
@@ -33,12 +35,14 @@ export class Player {
   start(energy, low, high) {
     if (this.playing) return
     this.#energy = energy >= low && energy < high ? energy : low
-    let last = performance.now()
+    const decimals = Math.max(Math.ceil(Math.log10(STEPS / (high - low))), 0)
+    let [exact, last] = [this.#energy, performance.now()]
     const tick = (/** @type {number} */ now) => {
-      this.#energy = Math.min(this.#energy + ((high - low) * Math.max(now - last, 0)) / SWEEP_MS, high)
+      exact = Math.min(exact + ((high - low) * Math.max(now - last, 0)) / SWEEP_MS, high)
       last = now
+      this.#energy = Math.min(Number(exact.toFixed(Math.min(decimals, 20))), high)
       this.#show(this.#energy)
-      if (this.#energy >= high) this.stop()
+      if (exact >= high) this.stop()
       else this.#frame = requestAnimationFrame(tick)
     }
     this.#frame = requestAnimationFrame(tick)

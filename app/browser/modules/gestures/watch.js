@@ -5,6 +5,7 @@ import {Ensemble, Outcomes} from "../engine/ensemble.js"
 import {Integrator} from "../engine/integrator.js"
 import {drawStarts} from "../engine/random_starts.js"
 import {energyAxis, windowAt} from "../engine/starts.js"
+import {count as whole, number, percent} from "../numbers.js"
 import {cover, frames, onMoved, wellFrame} from "../painting/pictures.js"
 import {drawSurvival} from "../painting/survival_chart.js"
 import {onPresent, present} from "./present.js"
@@ -284,7 +285,7 @@ class Watch {
     if (where === "disc" && !point.length) return "Click a map first. These starts are in the view."
     if (explanations[where]) return explanations[where]
     const words = this.#where.selectedOptions[0].textContent
-    return `${this.#ensemble.count} starts ${words}, in the colours of the exits that they will take; grey ones stay.`
+    return `${whole(this.#ensemble.count)} starts ${words}, in the colours of the exits that they will take; grey ones stay.`
   }
 
   /**
@@ -369,11 +370,10 @@ class Watch {
    */
   #writeCounters({channel, count}, shown) {
     const [names, colours] = [["inside", ...shown.labels()], shown.colours()]
-    const numbers = new Array(names.length).fill(0)
-    for (const code of channel) numbers[code]++
-    const cells = numbers.map((number, code) => {
-      const share = count ? ((100 * number) / count).toFixed(1) : "0"
-      const cell = make("td", {}, `${names[code]}: ${number} (${share} %)`)
+    const sums = new Array(names.length).fill(0)
+    for (const code of channel) sums[code]++
+    const cells = sums.map((sum, code) => {
+      const cell = make("td", {}, `${names[code]}: ${whole(sum)} (${percent(count ? sum / count : 0)})`)
       if (code) cell.style.setProperty("--colour", colours[code - 1])
       return cell
     })
@@ -394,7 +394,7 @@ class Watch {
     const growth = ensemble.growth()
     const isKnown = time > 0 && growth > 0 && growth < Infinity
     this.#growth.textContent = isKnown
-      ? `${growth.toPrecision(3)} times as wide as at the start: ln(width)/t = ${(Math.log(growth) / time).toFixed(3)}`
+      ? `${number(growth, 3)} times as wide as at the start: ln(width)/t = ${number(Math.log(growth) / time, 3)}`
       : ""
   }
 

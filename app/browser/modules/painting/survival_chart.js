@@ -1,6 +1,8 @@
 // @ts-check
 /** The share of an ensemble that is still inside against time, on a logarithmic axis, with the law of mixed motion. */
 
+import {number} from "../numbers.js"
+
 /** Smallest share on the axis. */
 const LEAST = 1e-3
 const [LEFT, BOTTOM, TOP] = [34, 18, 6]
@@ -30,7 +32,7 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
     context.fillRect(LEFT, placeY(share), width - LEFT - 4, 0.5)
   }
   const law = rate > 0 ? "; dashed: flux over volume" : ""
-  context.fillText(`Share inside until t = ${Number((longest * unit).toPrecision(3))}${law}`, LEFT, height - 4)
+  context.fillText(`Share inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4)
   const times = escapeTime.filter(each => each <= time).sort()
   const line = (/** @type {(t: number) => number} */ shareAt, /** @type {number} */ end) => {
     context.beginPath()
