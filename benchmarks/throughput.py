@@ -99,7 +99,7 @@ def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
 
 
 def by_engine(problem: Problem) -> Integrate:
-    """Integrate with the engine, with refill and tests of exits and crossings; return the states at the start of the last step."""
+    """Integrate with the engine, with refill and tests of exits and crossings; return states at the start of the last step."""
     curves, kernels = closed_exits(problem.potential)[None], kernels_of(problem.potential)
     gates = exit_gates(curves)
 
