@@ -1,4 +1,4 @@
-"""Curves against energy or a parameter: shares, islands, measures of the basins, escapes; a click opens the map of a value."""
+"""Curves of measures against energy or a parameter; a click opens the map at a value."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ class CurvesView:
     on_sweep
         Called when the button is pressed.
     on_value
-        Called with the energy, or the value of the parameter, of the point clicked.
+        Called with the energy or parameter value of the point that is clicked.
     later
-        Of the session, for the figures.
+        Wraps functions of the session; used to make the figures.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class CurvesView:
         self.against = pn.widgets.Select(label="Against", options={"h": "h"}, value="h", width=80)
         self.text = TextPane(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
         self._axis = Range1d(0.0, 1.0)
-        # Automatic ranges would warn in the browser as long as there are no numbers.
+        # Automatic ranges would cause warnings in the browser until there are numbers.
         self._values = {
             panel.name: Range1d(*(_FIRST_DECADES if panel.curve.logarithmic else (0.0, panel.curve.least_top)))
             for panel in CURVE_PANELS
@@ -108,7 +108,7 @@ class CurvesView:
         self._here.location = self._state.energy if name == "h" else self._state.system.value_of(name)
 
     def show_running(self, running: bool) -> None:
-        """Label the button with what it does next."""
+        """Label the button with its next action."""
         if running and not self.running:
             self._began = time.monotonic()
         self.running = running
@@ -131,7 +131,7 @@ class CurvesView:
         self.points.data = points
         shares, outcomes = curves["share"].T, curves.outcomes
         entries = self._entries(outcomes)
-        # Symmetric channels have equal shares: dashed curves, drawn last, leave the solid ones visible.
+        # Symmetric exits have equal shares: dashed curves, which are drawn last, leave the solid ones visible.
         order = sorted(range(len(shares)), key=_is_dashed)
         self._shares.data = {
             "xs": [curves.values] * len(shares),
@@ -150,7 +150,7 @@ class CurvesView:
         self._legend.object = legend(entries)
 
     def _scale_values(self, curves: Sweep) -> None:
-        """Fit the ranges of all but the shares."""
+        """Fit the ranges of all plots except that of the shares."""
         for panel in CURVE_PANELS:
             numbers, axis = find_numbers(panel, curves), self._values[panel.name]
             if not panel.curve.logarithmic:
@@ -163,7 +163,7 @@ class CurvesView:
         self.text.object = escape(sentence)
 
     def open_near(self, value: float) -> None:
-        """Open the map of the measured value next to this one."""
+        """Open the map of the measured value that is nearest to this one."""
         values = np.asarray(self.points.data["value"])
         if values.size:
             self._on_value(float(values[np.argmin(np.abs(values - value))]))
@@ -173,7 +173,7 @@ class CurvesView:
         return [Entry("bounded", palette.bounded), *palette.end_entries(outcomes)]
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the button and the place of the plots, which are made with the first curves."""
+        """Make the button and the container of the plots, which are made with the first curves."""
         row = flex_row(self.against, self.button, gap="8px", align="end")
         row.css_classes = ["whole-row"]
         return [row, self.text, self._plots]

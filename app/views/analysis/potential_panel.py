@@ -1,4 +1,4 @@
-"""The choice of potential: known ones by name, a typed one, their parameters, and the properties that follow."""
+"""The choice of the potential: known ones by name, a typed formula, their parameters, and the resulting properties."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ from plots.texts.mathml import potential_formula, potential_symbol
 # Ends of the sliders; their boxes, links and the command line allow wider ranges.
 _LOW, _HIGH = 0.2, 2.0
 _ENDS = {"rotation": (-1.0, 1.0)}
-# Ends of the slider of a letter, unless its value lies beyond their halves.
+# Ends of the slider of a letter; they are farther apart if its value lies beyond half of them.
 _LETTER_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
     "for example 0.5(x^2+y^2) - a x^2 y. “; well (1, 0)” moves the axes to the minimum near (1, 0)."
 )
-# What buttons add: a term, or a clause after all terms.
+# Texts that buttons add: a term, or a clause after all terms.
 _TERMS = {"+ letter": " + a x y"}
 _CLAUSES = {"+ body": "; centre (0, 0) 0.001", "+ escape radius": "; escape 10"}
 NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outcomes is compiled first, which takes some seconds."
-"""What is said of a text that the maps do not follow while it is typed."""
+"""Note about a formula that the maps do not follow while it is typed."""
 
 
 _DEFINITION = "V = ½(ω₁²x² + ω₂²y²) + ε V₁, and Φ = V − ½Ω²(x² + y²) in a frame that rotates at the rate Ω"
@@ -69,7 +69,7 @@ class PotentialPanel:
         self.used = used
         """The system of the maps."""
         self.shown = used.system
-        """The system of the widgets; that of the maps may be another one."""
+        """The system of the widgets; it may differ from that of the maps."""
         known = {f"{entry.title}: {entry.description}": name for name, entry in CATALOGUE.items()}
         self.known = pn.widgets.Select(
             label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width", margin=(5, 0)
@@ -95,7 +95,7 @@ class PotentialPanel:
         self.known.param.watch(lambda event: self._take_known(event.new), "value")
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Return the parts of a column, those of fixed height first, so that no part moves while the formula is typed."""
+        """Return the parts of a column; parts of fixed height come first, so that no part moves while the formula is typed."""
         buttons = flex_row(self.reset, self.move, gap="8px")
         return [
             self.known,
@@ -126,7 +126,7 @@ class PotentialPanel:
         )  # fmt: skip
 
     def _show_letters(self, system: System) -> None:
-        """Show a slider for each letter of the formula; one that stays keeps its range."""
+        """Show a slider for each letter of the formula; a slider that remains keeps its range."""
         letters = tuple(name for name in _parameter_names(system) if name not in WELL_PARAMETERS)
         if letters != tuple(self.letter_sliders):
             before = self.letter_sliders
@@ -163,7 +163,7 @@ class PotentialPanel:
         self.typeset.object = self.facts.object = ""
 
     def _write(self, message: str) -> None:
-        """Show a message, and what the maps show if it is another system."""
+        """Show a message, and the system of the maps if it differs."""
         used = self.used
         shows = f"The maps still show {used.system.title}: V = {used.formula}"
         draft = f"<p class='quiet'>{escape(shows)}</p>" if self.shown != used.system else ""
@@ -182,7 +182,7 @@ class PotentialPanel:
         self._show_around_text(system)
 
     def _show_around_text(self, system: System) -> None:
-        """Update all widgets but the text, which is being typed."""
+        """Update all widgets except the text, which is being typed."""
         self.shown = system
         self.known.value = system.case
         names = _parameter_names(system)
@@ -199,7 +199,7 @@ class PotentialPanel:
         if case == self.used.system.case:
             self._choose(self.used.system)
         else:
-            # A typed potential starts from the formula of the previous one.
+            # A typed potential begins with the formula of the previous one.
             self._choose(self.shown.as_typed if case == TYPED else System(case))
 
     def _take_text(self, text: str, done: bool) -> None:
@@ -232,12 +232,12 @@ def _text(system: System) -> str:
 
 
 def _typed(text: str, before: System) -> System:
-    """A system of a formula, with the parameters of the previous one that it still has."""
+    """Return a system of a formula; parameters of the previous system that it still has are kept."""
     return System(TYPED, text, {name: before.value_of(name) for name in (*WELL_PARAMETERS, *_letters(text))})
 
 
 def _letters(text: str) -> tuple[str, ...]:
-    """The letters of a formula; none while it is not understood."""
+    """The letters of a formula; empty while it is not understood."""
     try:
         return formula_letters(text)
     except ValueError:
@@ -245,7 +245,7 @@ def _letters(text: str) -> tuple[str, ...]:
 
 
 def _parameter_names(system: System) -> tuple[str, ...]:
-    """The parameters of a system, also while its formula is not understood."""
+    """The parameters of a system, even while its formula is not understood."""
     return (*WELL_PARAMETERS, *_letters(system.formula)) if system.case == TYPED else system.parameter_names
 
 

@@ -50,9 +50,9 @@ class StatisticsView:
     Parameters
     ----------
     state
-        The view state, whose box the button removes.
+        The view state; the button removes its box.
     results
-        Of the session.
+        The results of the session.
     on_copy
         Called with the table as tab-separated text.
     """
@@ -177,7 +177,7 @@ def _frame() -> dict[str, Any]:
 
 
 def _simplify(plot: Any, _element: Any) -> None:
-    """Remove background and ticks, as in `square_figure`."""
+    """Remove background and ticks; the same look as `square_figure`."""
     plot.state.min_border_top = 28
     plot.state.sizing_mode = "scale_width"
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
@@ -210,5 +210,5 @@ def _number(value: float) -> str:
 
 
 def prepare() -> None:
-    """Load the part of HoloViews that draws with Bokeh, which takes longer than a turn of the event loop may."""
+    """Load the part of HoloViews that draws with Bokeh. This takes longer than a single iteration of the event loop may."""
     hv.renderer("bokeh")

@@ -1,4 +1,4 @@
-"""The section "Figure" of the downloads: what to draw, in which format, and how large."""
+"""The section "Figure" of the downloads: the content, the format and the size of the figure."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ class FigureForm:
     Parameters
     ----------
     state, results
-        Of the session.
+        State and results of the session.
     saver
         Sends files to the browser.
     name
-        Called with the end of a file name for the whole.
+        Returns the whole file name; called with its end.
     on_copied
         Called with the success of copying an image.
     """
@@ -76,7 +76,7 @@ class FigureForm:
         return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
 
     def _offer(self) -> None:
-        """Offer the figures of what the page shows; what is chosen stays, as the next map may have it."""
+        """Offer the figures of the page's content; the chosen title stays, because the next map may have this figure."""
         offered = {ALL_MAPS, self.what.value, *figure_choices(self._results, self._state)}
         self.what.options = [title for title in FIGURES if title in offered]
 
@@ -86,7 +86,7 @@ class FigureForm:
         return FigureStyle(**self._style, titles=bool(self.titles.value))
 
     def figure(self) -> tuple[str, Make]:
-        """Part of the file name, empty for all maps, and the call that makes the chosen figure.
+        """Return a part of the file name, empty for all maps, and the call that makes the chosen figure.
 
         Raises
         ------
@@ -110,7 +110,7 @@ class FigureForm:
         self._begin(FigureFormat.PNG, lambda name, content: self.copy.send(content))
 
     def _begin(self, format: FigureFormat, send: Send) -> None:
-        """Make the figure from the results at the moment of the click, and send it or show an error."""
+        """Make the figure from the results at the time of the click; send it or show an error."""
         try:
             name, make = self.figure()
             style = self.style
