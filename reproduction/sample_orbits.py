@@ -1,4 +1,4 @@
-"""Selection of one orbit through each channel of a map."""
+"""Selection of one orbit through each exit of a map."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Waiting for other threads and processes: how long at most, and for a condition of which no event tells."""
+"""Waiting for other threads and processes: the longest time, and waiting for a condition that no event reports."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from tornado.iostream import IOStream
 from app.runtime.process_state import process_state
 from app.runtime.visitors import network_of
 from app.server.admission import LONGEST_LINK
-from app.server.routes import refuse_other_hosts, refuse_other_routes
+from app.server.routes import lead_to_page, refuse_other_hosts, refuse_other_routes
 
 LIMITS: Mapping[str, int] = {
     # Seconds until the next request of a connection, and until the end of its headers.
@@ -53,6 +53,7 @@ class LimitedHTTPServer(HTTPServer):
         if isinstance(self.request_callback, BokehTornado):
             refuse_other_routes(self.request_callback)
             refuse_other_hosts(self.request_callback)
+            lead_to_page(self.request_callback)
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
         """Serve a new connection, or close it."""

@@ -5,8 +5,8 @@ Bokeh and Panel add more routes: ``autoload.js`` creates sessions, and ``compone
 The handlers are installed in ``bokeh.server.urls``, from which Bokeh builds its web application. Bokeh documents both lists
 (https://docs.bokeh.org/en/latest/docs/reference/server/urls.html); Panel puts its own handlers there as well. They are the only
 public way to reach the handlers of ``panel serve`` without a command line option: lifecycle hooks get no reference to the web
-application, which already exists when they run. Not covered, because Bokeh and Panel add them elsewhere: the redirect from ``/``,
-``/favicon.ico``, ``/app/static`` and Panel's login pages.
+application, which already exists when they run. Not covered, because Bokeh and Panel add them elsewhere: ``/favicon.ico``,
+``/app/static`` and Panel's login pages.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 from bokeh.server.tornado import BokehTornado
 from bokeh.settings import settings as bokeh_settings
 from panel.io.server import DocHandler, RootHandler, WSHandler
-from tornado.web import Finish, HTTPError, StaticFileHandler
+from tornado.web import Finish, HTTPError, RedirectHandler, StaticFileHandler
 
 from app.browser.module_files import ROUTES as MODULES
 from app.runtime.process_state import process_state
@@ -56,6 +56,19 @@ def refuse_other_routes(application: BokehTornado) -> None:
     """Answer all other paths with status 404."""
     # Tornado tries handlers that were added later first.
     application.add_handlers(".*", [(f"(?!(?:{'|'.join(served_routes(application))})$).*", NotFound)])
+
+
+class ToPage(SecurityHeaders, RedirectHandler):
+    """Redirects from the root to the page, with the query of the link."""
+
+
+def lead_to_page(application: BokehTornado) -> None:
+    """Answer the root with the page of the server's only application; Bokeh's own redirect drops the query."""
+    paths = list(application.app_paths)
+    if len(paths) == 1:
+        # Relative, as a proxy may have removed a part of the path.
+        target = {"url": f".{paths[0]}", "permanent": False}
+        application.add_handlers(".*", [(f"{application.prefix}/", ToPage, target)])
 
 
 class OtherHost(SecurityHeaders):

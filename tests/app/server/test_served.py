@@ -168,6 +168,14 @@ def test_other_hosts_are_refused(path: str, host: str, status: int, served: Serv
     assert served.metric("sessions_created_total") == 0
 
 
+def test_root_leads_to_the_page_with_the_query(served: Served) -> None:
+    connection = http.client.HTTPConnection(served.host, timeout=60)
+    connection.request("GET", "/?case=III&h=0.3")
+    with connection.getresponse() as answer:
+        assert (answer.status, answer.headers["Location"]) == (302, "./app?case=III&h=0.3")
+    connection.close()
+
+
 def test_token_of_another_server_is_refused(served: Served) -> None:
     token = generate_jwt_token(generate_session_id(), signed=False, extra_payload={"arguments": {"h": ["0" * 2**20]}})
     assert upgrade(served, token, f"http://{served.host}") == 403

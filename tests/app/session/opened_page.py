@@ -78,7 +78,7 @@ async def tell_ready(session: ServerSession) -> None:
 
 
 async def wait_for(watched: param.Parameterized, name: str, condition: Callable[[Any], bool]) -> None:
-    """Wait until a parameter has a value of which a condition holds."""
+    """Wait until a condition holds for the value of a parameter."""
     changed, loop = asyncio.Event(), asyncio.get_running_loop()
     watcher = watched.param.watch(lambda event: loop.call_soon_threadsafe(changed.set), name)
     async with asyncio.timeout(SECONDS):

@@ -223,7 +223,7 @@ def test_curves_arrive_one_by_one_stop_at_a_click_and_end_with_their_case(begin:
 def test_a_click_on_a_curve_against_a_parameter_opens_its_system(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
-    assert list(curves.against.options) == ["h", "ω1", "ω2", "ε", "Ω"]
+    assert list(curves.against.options) == ["h", "ω₁", "ω₂", "ε", "Ω"]
     curves.against.value = "epsilon"
     curves.button.clicks += 1
     session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
