@@ -128,7 +128,7 @@ def _shares(frame: EscapeMap, palette: Palette) -> str:
     parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in found)
     rest = "" if frame.complete else f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
     words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{percent(share)}") for entry, share in found)
-    return f"<div class='shares' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
+    return f"<div class='share-bar' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
 
 
 def _stage(frame: EscapeMap) -> str:
