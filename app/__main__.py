@@ -1,4 +1,4 @@
-"""Program ``python -m app``: `panel serve` for this folder, with the times of a public server and the options of that command."""
+"""Program ``python -m app``: it runs `panel serve` for this folder, with the timeouts of a public server and the same options."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ KEEP_ALIVE_SECONDS = 20
 
 def serve(options: Sequence[str]) -> None:
     """Serve the page until Ctrl-C or SIGTERM; an invalid setting ends the process with one sentence."""
-    # The hooks of the page report it only after Panel is imported, which takes seconds.
+    # The hooks of the page would report an invalid setting only after Panel is imported, which takes seconds.
     try:
         read_settings(os.environ)
     except ValueError as error:
@@ -33,7 +33,7 @@ def serve(options: Sequence[str]) -> None:
 
 
 def serve_arguments() -> list[str]:
-    """The command of Panel that serves this folder."""
+    """Return the command of Panel that serves this folder."""
     return [
         "serve",
         str(Path(__file__).parent),

@@ -37,7 +37,7 @@ from app.state.system_review import review_catalogue_entry
 from engine import CASES
 from engine.integrator.jit.disk_cache import compile_in
 
-# Before any process is forked. While this file runs, `sys.argv` has the arguments of the application only.
+# This runs before any process is forked. While this file runs, `sys.argv` contains the arguments of the application only.
 if asks_for_several_processes(sys.orig_argv):
     refuse_to_start(SEVERAL_PROCESSES)
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
@@ -51,7 +51,7 @@ def on_server_loaded(server_context: Any) -> None:
     state.sessions = lambda: context.sessions
     state.metrics.registry.register(StateCollector(state))
     set_up_logs(state.settings.log, LogRecordCounter(state.metrics), [logging.getLogger(), logging.getLogger("panel")])
-    # A test validates the page; at run time Bokeh would warn of every closed section.
+    # A test validates the page; at run time Bokeh would warn about every closed section.
     bokeh_settings.perform_document_validation = False
     if state.settings.bokeh_patches:
         batch_patches()
@@ -64,7 +64,7 @@ def on_server_loaded(server_context: Any) -> None:
     threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
     compile_in(state.compiler)
     start_warmup(state)
-    # Import the page and review the cases of the paper before the first request, which would wait for both.
+    # The page is imported and the cases of the paper are reviewed before the first request, which would have to wait for both.
     import_module("app.session.page")
     for case in CASES:
         review_catalogue_entry(case)
@@ -76,23 +76,23 @@ def on_server_unloaded(server_context: Any) -> None:
 
 
 def on_session_created(session_context: Any) -> None:
-    """Count the session."""
+    """Count a session that begins."""
     process_state().metrics.sessions_created.inc()
 
 
 def on_session_destroyed(session_context: Any) -> None:
-    """Count the end of the session."""
+    """Count a session that ends."""
     process_state().metrics.sessions_destroyed.inc()
 
 
 def process_request(request: Any) -> dict[str, Any]:
-    """Refuse the request when the server is full or stopping; adds nothing to the session's token."""
+    """Refuse the request when the server is full or stopping; the session's token gets no further entries."""
     admit(request)
     return {}
 
 
 def _start_state() -> ProcessState:
-    """The state of the process; an invalid setting ends the process with one sentence and exit code 2."""
+    """Return the state of the process; an invalid setting ends the process with one sentence and exit code 2."""
     try:
         return process_state()
     except ValueError as error:
@@ -100,7 +100,7 @@ def _start_state() -> ProcessState:
 
 
 def _measure_load(state: ProcessState, watch: LoopWatch) -> None:
-    # The log of a server that stops ends with that it does.
+    # The last line in the log of a server that stops says that it stops.
     if not state.stopping.is_set():
         watch.tick()
     state.adapt_to_load()

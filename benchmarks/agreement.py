@@ -1,4 +1,4 @@
-"""Pixels of the browser beside those of the server: random views of systems of the catalogue, down to 1e-6 of the plane.
+"""Comparison of the browser's pixels with the server's: random views of systems of the catalogue, down to 1e-6 of the plane.
 
 Needs Node.js. Run: uv run python -m benchmarks.agreement
 """
@@ -54,7 +54,7 @@ def main() -> None:
 
 
 def report(name: str, spec: MapSpec, fate: np.ndarray, time: np.ndarray) -> None:
-    """One line: all pixels, the robust ones, and the times of those that escape in both."""
+    """Return one line: all pixels, the robust ones, and the times of those that escape in both."""
     escape_map, window = compute_map(spec), spec.find_window()
     expected = expected_fate(escape_map).ravel()
     same = fate == expected

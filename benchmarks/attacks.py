@@ -1,4 +1,4 @@
-"""What a visitor does in `benchmarks.hostile`: one entry of `ATTACKS` for each way to keep the server busy."""
+"""The actions of attackers in `benchmarks.hostile`: one entry of `ATTACKS` for each way to keep the server busy."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from tests.fuzz.random_formulas import random_link
 _WORST_MAP = "?case=III&h=0.3&plane=x_px&t_max=1000000&resolution=900&judge=yes&trust=yes&manifolds=yes&origins=yes"
 _REQUEST_PAUSE = 0.05
 _SLOW_PAGES = 10
-# Of each attack, if all follow one another.
+# Number of actions of each attack if all follow one another.
 _TURN_SECONDS = 15.0
 
 Attack = Callable[[SimulatedSession, random.Random], AsyncIterator[None]]
-"""The actions of a visitor; each step is one action, and the pause after it."""
+"""The actions of an attacker; each step is one action and the pause after it."""
 
 
 async def do_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
@@ -96,7 +96,7 @@ async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncIterat
 
 
 async def flip_choices(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
-    """Resolution and colours, as fast as messages are accepted."""
+    """Resolution and colours, changed as fast as messages are accepted."""
     for resolution, palette in itertools.cycle(itertools.product((112, 224, 450, 900), ("paper", "safe"))):
         visitor.follow_link(f"?case=III&h=0.3&resolution={resolution}&palette={palette}")
         await asyncio.sleep(0.005)

@@ -1,4 +1,4 @@
-"""What the browser computes by itself: frames per second and delay of drags, the orbit under the cursor, memory of the page.
+"""Measurements of the engine in the browser: frames per second and delays of drags, orbit under the cursor, memory of the page.
 
 Run alone on the machine: uv run python -m benchmarks.drag --memory 10
 """
@@ -66,7 +66,7 @@ def report_drags(browser: Browser, address: str) -> None:
 
 
 def report_hover(browser: Browser, address: str) -> None:
-    """Time that the orbit under the cursor takes, on the thread of the page."""
+    """Time for the orbit under the cursor, on the thread of the page."""
     explorer = ready_page(browser, address, "III", 0.45)
     points = [explorer.point("basins", 0.5 * (2 * k / HOVERS - 1), 0.2) for k in range(HOVERS)]
     times = explorer.page.evaluate("points => window.bench.hover(points)", points)

@@ -3,7 +3,7 @@
 Run: uv run python -m benchmarks.formulas --count 20000
      uv run python -m benchmarks.formulas --count 20000 --proxy
 
-Options as of `benchmarks.hostile`, whose table it prints; there is no other visitor.
+Options are the same as of `benchmarks.hostile`, whose table is printed; there is no other visitor.
 """
 
 from __future__ import annotations
@@ -32,23 +32,23 @@ from benchmarks.simulated_sessions import Record, SimulatedSession
 from tests.fuzz.random_formulas import random_link
 
 FIRST_ADDRESS = 1000
-"""Number of the first address of pages that are opened for one formula: a proxy limits the pages of an address."""
+"""Number of the first address of pages that are opened for one formula, because a proxy limits the pages of an address."""
 
 REOPEN_SECONDS = 1.0
-"""Until a page that was closed is opened again."""
+"""Time until a page that was closed is opened again."""
 
 PROGRESS = 1000
 """Number of formulas after which a line says how many have been sent."""
 
 
 async def open_page(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
-    """A page of another address, with its connection, until its formula is reviewed."""
+    """A page from another address, with its connection, until its formula is reviewed."""
     await other.open_formula(formula_link(choice))
     await other.close()
 
 
 async def request_page(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
-    """A page of another address without a connection."""
+    """A page from another address without a connection."""
     await other.fetch(urljoin("/app", formula_link(choice)))
 
 
@@ -65,11 +65,11 @@ async def type_formula(visitor: SimulatedSession, other: SimulatedSession, choic
 Way = Callable[[SimulatedSession, SimulatedSession, random.Random], Awaitable[None]]
 
 WAYS: dict[Way, int] = {open_page: 4, request_page: 6, follow_link: 45, type_formula: 45}
-"""How a formula reaches the server, and how often; a page takes the server as long as five formulas in an open one."""
+"""How a formula reaches the server, and how often; a new page costs the server as much as five formulas in an open one."""
 
 
 async def send_formulas(places: Sequence[Place], visitors: int, count: int, seed: int) -> tuple[Record, Record, int]:
-    """Send formulas by visitors of each place; returns no waits of other visitors, those of these, and the number of formulas."""
+    """Send formulas by visitors of each place; return no waits of others, the waits of these, and the number of formulas."""
     numbers, record = iter(range(count)), Record()
     senders = [(place, seed + number) for number, place in enumerate([*places] * visitors)]
     await asyncio.gather(*(_send(place, address, numbers, record) for place, address in senders))

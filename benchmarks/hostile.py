@@ -1,4 +1,4 @@
-"""Waits of one visitor while another one keeps the server as busy as the page allows, in several ways.
+"""Waits of one visitor while another visitor keeps the server as busy as the page allows, in several ways.
 
 Run: uv run python -m benchmarks.hostile --seconds 60
      uv run python -m benchmarks.hostile --seconds 60 --processes 2
@@ -39,26 +39,26 @@ LONGEST_WAIT_SECONDS = 3.0
 """Longest permitted time to the first frame of the other visitor's map, and to the answer of ``/liveness``."""
 
 LONGEST_REVIEW_SECONDS = 20.0
-"""Longest permitted time until the page says what it thinks of a formula."""
+"""Longest permitted time until the page shows the review of a formula."""
 
 LONGEST_TURN_MILLISECONDS = 100.0
-"""Longest permitted processor time of a turn of the event loop."""
+"""Longest permitted processor time of one iteration of the event loop."""
 
 MOST_LINES = 3.0
-"""Most lines in the log for each formula."""
+"""Largest number of log lines for each formula."""
 
 MOST_LIMITED_MEGABYTES = 1024.0 + 300.0
-"""Most memory of the process for typed formulas: its limit, and what it has when it starts."""
+"""Largest memory of the process for typed formulas: its limit, and its memory at the start."""
 
 REST_SECONDS = 5.0
-"""Between two attacks."""
+"""Pause between two attacks."""
 
 PROBE_SECONDS = 0.25
-"""Between two requests of ``/liveness``."""
+"""Pause between two requests of ``/liveness``."""
 
 
 class Place(NamedTuple):
-    """Where a page is found: its address, and options of requests that reach one process."""
+    """The address of a page, and options of requests that reach one process."""
 
     address: str
     options: Options = NO_OPTIONS
@@ -66,14 +66,14 @@ class Place(NamedTuple):
 
 @dataclass
 class Effect:
-    """What an attack does to the other visitors and to the processes.
+    """The effects of an attack on the other visitors and on the processes.
 
     Attributes
     ----------
     record
         The waits of the other visitors.
     attackers
-        Those of the attackers.
+        The waits of the attackers.
     liveness
         Seconds until each answer of ``/liveness``.
     megabytes
@@ -81,9 +81,9 @@ class Effect:
     actions
         Number of the attacker's actions.
     lines
-        Number of lines that the attack has added to the logs, apart from those on late turns of the event loop.
+        Number of lines that the attack has added to the logs, without those on late iterations of the event loop.
     turn
-        Longest processor time of a late turn of the event loop, in milliseconds, and its cause.
+        Longest processor time of a late iteration of the event loop, in milliseconds, and its cause.
     limited_megabytes
         Largest resident memory of the process for typed formulas.
     """
@@ -102,7 +102,7 @@ class Effect:
 async def visiting(
     place: Place, seed: int, record: Record, actions: Mapping[str, int] = MappingProxyType(ACTIONS)
 ) -> AsyncIterator[SimulatedSession]:
-    """A session with its page open, of a visitor with an address of its own behind the proxy."""
+    """A session with an open page, of a visitor with an individual address behind the proxy."""
     session = new_session(place, seed, record, actions)
     await session.open()
     while not session.is_open:
@@ -117,13 +117,13 @@ async def visiting(
 def new_session(
     place: Place, seed: int, record: Record, actions: Mapping[str, int] = MappingProxyType(ACTIONS)
 ) -> SimulatedSession:
-    """A session that is not open yet, of a visitor with an address of its own behind the proxy."""
+    """A session that is not open yet, of a visitor with an individual address behind the proxy."""
     headers = place.options.get("headers", {}) | visitor_headers(ADDRESS_HEADER, seed)
     return SimulatedSession(place.address, seed, record, {**place.options, "headers": headers}, actions)
 
 
 async def observe(servers: Sequence[Server], run: Awaitable[tuple[Record, Record, int]]) -> Effect:
-    """The effect of an attack, which is awaited: waits of other visitors, those of the attackers, and number of their actions."""
+    """The awaited result of an attack: waits of other visitors, waits of the attackers, and number of the attackers' actions."""
     before, liveness, limited = largest_memory(servers), list[float](), [0.0]
     lines = [len(server.log_lines()) for server in servers]
     for server in servers:
@@ -159,7 +159,7 @@ def largest_memory(servers: Sequence[Server]) -> float:
 
 
 async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) -> tuple[Record, Record, int]:
-    """The waits of one visitor of each process while another one attacks it, those of the other one, and his or her actions."""
+    """Return waits of one visitor of each process during an attack, waits of the attackers, and the number of their actions."""
     record, attackers, actions = Record(), Record(), 0
 
     async def run_attack(place: Place, number: int) -> None:
@@ -218,7 +218,7 @@ async def _find_places(proxy: Proxy, servers: Sequence[Server]) -> list[Place]:
 
 
 def waits(record: Record) -> list[float]:
-    """All waits, those in vain included."""
+    """All waits, including those in vain."""
     return [*(wait for times in record.waits.values() for wait in times), *record.replaced, *record.opening, *record.reviews]
 
 
@@ -286,7 +286,7 @@ def running(processes: int, *, proxy: bool) -> Iterator[tuple[list[Server], list
 
 
 def end_with(servers: Sequence[Server], problems: Sequence[str]) -> int:
-    """Print the problems and those in the logs; returns the exit code."""
+    """Print the problems and those in the logs; return the exit code."""
     found = [*problems, *list(dict.fromkeys(line for server in servers for line in server.error_lines()))[:5]]
     print("\nPassed." if not found else "\nFailed: " + "; ".join(found) + ".")
     return 1 if found else 0

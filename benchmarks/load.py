@@ -4,7 +4,7 @@ Run: uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 300
      uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 150 --busy-cores 1
      uv run python -m benchmarks.load --sessions 6 --seconds 30
 
-Visitors whom a full server refuses try again as their page does. Waits count while a visitor is in.
+Visitors whom a full server refuses try again as their page does. Waits are counted while a visitor has a page.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from benchmarks.simulated_sessions import Record, SimulatedSession
 from engine.foundations.cache_files import CACHE_VARIABLE
 
 LONG_WAIT_SECONDS = 2.0
-"""Waits for the first frame of a map that take longer are counted."""
+"""Waits for the first frame of a map that are longer than this are counted."""
 
 LONGEST_WAIT_SECONDS = 3.0
 """Longest permitted time to the first frame of a map."""
@@ -50,7 +50,7 @@ SERVER_OPTIONS = (
 CACHE_SENTENCE = "Kernel cache: empty when the first process started, shared by all."
 START_SECONDS = 240.0
 WARM_SESSIONS = 6
-"""The memory of a page is counted from this session on: the first ones load what all of them share."""
+"""The memory of a page is counted from this session on, because the first ones load what all share."""
 _ROOT = Path(__file__).parents[1]
 # Refused pages are counted by the visitors.
 _ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^\s*Traceback|Task exception was never retrieved")
@@ -85,13 +85,13 @@ class Server:
         return self.log.read_text().splitlines()
 
     def count_lines(self, first_line: int) -> int:
-        """Number of lines of the log from one on, apart from those on late turns of the event loop."""
+        """Number of lines of the log from a line on, without those on late iterations of the event loop."""
         return sum(_LATE not in line for line in self.log_lines()[first_line:])
 
     def longest_turn(self, first_line: int) -> tuple[float, str]:
-        """Longest processor time of a late turn of the event loop in the log from a line on, in milliseconds, and its cause.
+        """Longest processor time of a late iteration of the event loop in the log from a line on, in milliseconds, and its cause.
 
-        The time of garbage collections is left out, which grows with the number of pages.
+        The time of garbage collections is left out, because it grows with the number of pages.
         """
         found = _TURN.findall("\n".join(self.log_lines()[first_line:]))
         return max(((float(own) - float(collected), cause) for own, collected, cause in found), default=(0.0, ""))
@@ -113,7 +113,7 @@ class Server:
     def limited_megabytes(self) -> float:
         """Peak of the resident memory of the process for typed formulas, as long as it runs."""
         with suppress(psutil.Error):
-            # Not the one that begins, which is a copy of the server yet.
+            # A process that is just beginning is not counted, because it is still a copy of the server.
             children = [child for child in psutil.Process(self.process).children() if "loky" in " ".join(child.cmdline())]
             return max((peak_megabytes(child.pid) for child in children), default=0.0)
         return 0.0
@@ -136,7 +136,7 @@ class Server:
 
 @contextmanager
 def busy_cores(count: int) -> Iterator[None]:
-    """Run as many other programs, each of which occupies a core."""
+    """Run this many other programs, each of which occupies a core."""
     programs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
     try:
         yield
@@ -153,7 +153,7 @@ def shared_by(processes: int) -> dict[str, str]:
 
 @contextmanager
 def served(log: Path, **environment: str) -> Iterator[Server]:
-    """Run the app on a free port, with more environment variables; its kernels are compiled when this begins."""
+    """Run the app on a free port, with additional environment variables; its kernels are compiled when this begins."""
     with started(log, **environment) as (server, process):
         wait_until_ready(server, process)
         yield server
@@ -161,9 +161,9 @@ def served(log: Path, **environment: str) -> Iterator[Server]:
 
 @contextmanager
 def started(log: Path, **environment: str) -> Iterator[tuple[Server, subprocess.Popen[bytes]]]:
-    """Start the app on a free port, with more environment variables; it does not answer yet when this begins.
+    """Start the app on a free port, with additional environment variables; it does not answer yet when this begins.
 
-    Compiled kernels are stored beside the log, so that the user's kernel cache, which may be filled, changes no measurement.
+    Compiled kernels are stored beside the log, so that the user's kernel cache does not affect the measurement.
     """
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -202,7 +202,7 @@ class Outcome:
     open_sessions
         Sessions on the server before the first action.
     refused
-        Visitors who were refused then, and those of them who were never admitted.
+        Visitors who were refused before the first action, and the number of them who were never admitted.
     remaining_sessions
         Sessions on the server after all were closed.
     busy_cores
@@ -310,7 +310,7 @@ def report(servers: Sequence[Server], record: Record, outcome: Outcome) -> None:
 
 
 def all_waits(record: Record) -> list[float]:
-    """All waits for maps, those in vain included."""
+    """All waits for maps, including those in vain."""
     return [*(wait for times in record.waits.values() for wait in times), *record.replaced]
 
 

@@ -24,7 +24,7 @@ MAPS = (
 
 
 def time_map(spec: MapSpec) -> tuple[float, float]:
-    """Seconds to the first frame and to the whole map."""
+    """Seconds to the first frame and to the complete map."""
     frames: list[float] = []
 
     def record(_frame: EscapeMap) -> None:

@@ -1,6 +1,6 @@
 """The page in headless Chromium: opening, latency of the server's pixels, bytes of an update, server memory.
 
-What the browser computes by itself is measured by `benchmarks.drag`. Run: uv run python -m benchmarks.page
+The engine in the browser is measured by `benchmarks.drag`. Run: uv run python -m benchmarks.page
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ WATCH = """() => {
 
 
 def wait_for_map(explorer: ExplorerPage) -> tuple[float, float]:
-    """Wait for the complete map; ms from the start of the action to its first and to its last frame."""
+    """Wait for the complete map; return the ms from the start of the action to its first and to its last frame."""
     explorer.page.wait_for_function("() => window.painted.whole !== undefined")
     painted = explorer.page.evaluate("() => window.painted")
     time.sleep(0.5)
@@ -92,7 +92,7 @@ TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnima
 
 
 def report_opening(browser: Browser, address: str) -> None:
-    """Navigation to the first map, first with an empty browser cache and then with a full one; the server's answer alone."""
+    """Navigation to the first map, with an empty browser cache and then with a full one; also the server's answer alone."""
     context = browser.new_context(viewport={"width": 1600, "height": 1000})
     openings = []
     for _ in range(OPENINGS):
@@ -140,7 +140,7 @@ def open_once(page: Page, address: str) -> Opening:
 
 
 def open_fresh_server(browser: Browser) -> str:
-    """How long the first visitor of a server waits whose kernels are in the cache, and are being loaded."""
+    """Wait of the first visitor of a server whose kernels are in the cache and are still being loaded."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()
         with started_app(Path(folder) / "log", *PANEL) as running:
@@ -182,7 +182,7 @@ def report_latency(browser: Browser, address: str) -> None:
 
 
 def measure(explorer: ExplorerPage, action: Callable[[ExplorerPage, float], None], share: float) -> tuple[float, float]:
-    """Latency of one action, as in `wait_for_map`; after a box zoom return to the whole plane."""
+    """Latency of one action, as in `wait_for_map`; after a box zoom the view returns to the whole plane."""
     action(explorer, share)
     times = wait_for_map(explorer)
     if action is zoom_box:

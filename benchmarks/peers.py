@@ -1,6 +1,6 @@
-"""Orbits classified per second on one core, beside heyoka with events, SciPy's DOP853 and a compiled Runge-Kutta loop.
+"""Orbits classified per second on one core, compared with heyoka with events, SciPy's DOP853 and a compiled Runge-Kutta loop.
 
-All classify starts of the same map to the same t_max, the slower ones a random sample.
+All classify starts of the same map to the same t_max; the slower ones classify a random sample.
 
 Run: uv run python -m benchmarks.peers
 """

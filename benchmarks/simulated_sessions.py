@@ -36,7 +36,7 @@ ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
 """Actions and their weights."""
 
 ALL_ACTIONS = {"slider": 50, "case": 10, "plane": 10, "click": 10, "type": 10, "open": 10}
-"""With formulas that are typed and pages that are opened again."""
+"""Actions with formulas that are typed and pages that are opened again."""
 
 _OF_MAPS = ("slider", "case", "plane")
 
@@ -48,13 +48,13 @@ class Record:
     Attributes
     ----------
     opening
-        From the request of a page to its first map.
+        Time from the request of a page to its first map.
     waits
-        By action, from the action to the first frame of its map.
+        By action, time from the action to the first frame of its map.
     replaced
         Time waited in vain for a map before the next action replaced it.
     reviews
-        From a formula, in a link or typed, to what the page says of it.
+        Time from a formula, in a link or typed, to its review on the page.
     clicks, orbit_plots, refused
         Counts; `refused` are pages that a full server, or a proxy with a limit, has not opened.
     errors
@@ -72,23 +72,23 @@ class Record:
 
 
 def visitor_headers(name: str, number: int) -> dict[str, str]:
-    """The header of a proxy that gives a visitor an address of his or her own."""
+    """Return the header with which a proxy gives a visitor an individual address."""
     return {name: str(IPv4Address("10.0.0.0") + number)}
 
 
 class SimulatedSession:
-    """One session with random actions, of a visitor with an address of his or her own.
+    """One session with random actions, of a visitor with an individual address.
 
     Parameters
     ----------
     address
-        Of the page.
+        Address of the page.
     seed
-        Of the actions; also the number of the visitor's address.
+        Seed of the actions, and number of the visitor's address.
     record
-        Takes the measurements.
+        Receives the measurements.
     options
-        Of all requests.
+        Options of all requests.
     actions
         Actions and their weights.
     """
@@ -113,7 +113,7 @@ class SimulatedSession:
         self._parameters: dict[str, str] = {}
         self._accepted = True
         self._opened = asyncio.Event()
-        # The pane that says that a formula is reviewed, and when it says something else.
+        # The pane that says that a formula is being reviewed, and the event that its text has changed.
         self._reviewing: str | None = None
         self._reviewed = asyncio.Event()
         self._closing = False
@@ -184,7 +184,7 @@ class SimulatedSession:
         return True
 
     async def run(self, end: float) -> None:
-        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map; not without a page."""
+        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map; without a page do nothing."""
         while self.is_open:
             pause = self._random.uniform(*PAUSE_SECONDS)
             if time.perf_counter() + pause > end:
@@ -265,13 +265,13 @@ class SimulatedSession:
 
     async def _act_slider(self) -> None:
         while self._awaited is not None and self._awaited[0] == "case" and not self._accepted:
-            # The slider has the range of the old case yet.
+            # The slider still has the range of the old case.
             await asyncio.sleep(POLL_SECONDS)
             self._check_timeout()
         low, high = CHEAP_ENERGIES[self._case]
-        # Between the steps of the slider, so that hardly any map is cached.
+        # Energies between the steps of the slider, so that hardly any map is cached.
         stop = round(self._random.uniform(low, high), 6)
-        # The browser computes what is shown during a drag.
+        # During a drag, the browser computes the pictures.
         await asyncio.sleep(DRAG_SECONDS)
         self._await_map("slider", h=repr(stop))
         self._give("EnergySlider", stop)
@@ -289,7 +289,7 @@ class SimulatedSession:
         self._open_channel.set(self._models["Plane"], active=planes.index(self._plane))
 
     async def _act_type(self) -> None:
-        # It has no exits, so that the maps do not follow it.
+        # The formula has no exits, so that the maps do not follow it.
         factors = (self._random.uniform(0.5, 2.0) for _ in range(2))
         await self.type_formula("{:.6f} x² + {:.6f} y²".format(*factors))
 

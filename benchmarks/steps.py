@@ -40,7 +40,7 @@ def bounded_starts(case: str) -> np.ndarray:
 def measure(case: str, order: int, tolerance: float) -> tuple[float, float, float]:
     """Million steps per second, million time units per second, worst relative energy error.
 
-    Runs in a new process with its own kernel cache, because the order is compiled into the kernels.
+    The function runs in a new process with its own kernel cache, because the order is compiled into the kernels.
     """
     with tempfile.TemporaryDirectory() as cache, ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as process:
         return process.submit(_measure, case, order, tolerance, cache).result()

@@ -1,4 +1,4 @@
-"""Integration speed on one core beside heyoka's batch mode: the same bounded orbits of each potential of the catalogue.
+"""Integration speed on one core compared with heyoka's batch mode: the same bounded orbits of each potential of the catalogue.
 
 The engine runs with refill, exit and crossing tests; heyoka without events, in the faster of its batches, with the tolerance
 1e-13, and with the loosest one whose energy error is at most 1e-11, or that of the engine if that is larger. Times are those of
@@ -28,7 +28,7 @@ from engine.integrator.source.recurrence import TOLERANCE
 from engine.systems.compiled import kernels_of
 from tests.peers.taylor_heyoka import equations
 
-# Energies at which many orbits are bounded; that of other potentials is this part of their escape energy.
+# Energies at which many orbits are bounded; for other potentials, this part of the escape energy.
 ENERGIES = {
     "Copenhagen": -2.2,
     "Earth-Moon": -1.12,
@@ -40,18 +40,18 @@ ENERGIES = {
 }
 BELOW_ESCAPE = 0.96
 ORBITS, REPEATS = 64, 3
-# In exact units of time, see `Well`; the short time is that of the comparison of states.
+# Durations in exact units of time, see `Well`; the short one is for the comparison of states.
 DURATION, SHORT = 1e4, 20.0
-# Bounded orbits stay further away from a body than this many of its radii.
+# Bounded orbits stay farther from a body than this many of its radii.
 KEPT_APART = 20.0
 PERMITTED_ERROR, USUAL_TOLERANCE = 1e-11, 1e-13
-# One for each order of heyoka, from which its step follows: 13 to 20 without 19.
+# One tolerance for each order of heyoka, which determines its step: 13 to 20 without 19.
 TOLERANCES = (5e-11, 1e-11, 1e-12, 1e-13, 2e-14, 2e-15, 2.2e-16)
 WIDE_BATCH = 8
 
 
 class Run(NamedTuple):
-    """States (n, 4) and their times (n,) after an integration, and the seconds of the processor that it took."""
+    """States (n, 4) and their times (n,) after an integration, and the processor time in seconds."""
 
     states: np.ndarray
     times: np.ndarray
@@ -86,7 +86,7 @@ def pose(name: str) -> Problem:
 
 
 def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
-    """(ORBITS, 4) starts that do not end."""
+    """Return (ORBITS, 4) starts of orbits that do not end."""
     wide = [type(c)(c.x, c.y, KEPT_APART * c.radius, c.name) for c in potential.centres]
     kept_apart, t_max = potential.with_outcomes(wide, potential.escape_radius), DURATION * potential.well.exact_time_unit
     found = np.empty((0, 4))
@@ -99,7 +99,7 @@ def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
 
 
 def by_engine(problem: Problem) -> Integrate:
-    """The engine, with refill and tests of exits and crossings; its states are those at the start of the last step."""
+    """Integrate with the engine, with refill and tests of exits and crossings; return states at the start of the last step."""
     curves, kernels = closed_exits(problem.potential)[None], kernels_of(problem.potential)
     gates = exit_gates(curves)
 
@@ -146,13 +146,13 @@ def state_error(problem: Problem, integrate: Integrate) -> float:
 
 
 def fastest_batch(problem: Problem) -> int:
-    """The batch with which heyoka is faster."""
+    """Return the batch with which heyoka is faster."""
     runs = {n: by_heyoka(problem, USUAL_TOLERANCE, n) for n in (hy.recommended_simd_size(), WIDE_BATCH)}
     return min(runs, key=lambda n: runs[n](problem.starts, problem.duration / 10.0).seconds)
 
 
 def loosest(problem: Problem, batch: int, permitted: float) -> tuple[float, Integrate]:
-    """The loosest tolerance with which heyoka's error is permitted, or its tightest."""
+    """Return the loosest tolerance with which heyoka's error is permitted, or its tightest."""
     for tolerance in TOLERANCES:
         integrate = by_heyoka(problem, tolerance, batch)
         if problem.energy_error(integrate(problem.starts, problem.duration).states) <= permitted:

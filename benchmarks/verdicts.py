@@ -1,7 +1,7 @@
-"""How many verdicts on single orbits, and on pixels of maps, turn out wrong later, in ten chaotic seas with their islands.
+"""Number of verdicts on single orbits, and on pixels of maps, that later turn out wrong, in ten chaotic seas with their islands.
 
 Starts are uniform on the energy surface; those that are bounded until t = 1000 are judged at several times, and again at 1e5. An
-orbit is taken as chaotic if its SALI falls to 1e-7 by then or it escapes. Maps of (x, px) are judged at the same times.
+orbit counts as chaotic if its SALI falls to 1e-7 by then or it escapes. Maps of (x, px) are judged at the same times.
 
 Run: uv run python -m benchmarks.verdicts [orbits per sea, by default 200] [seed]
 """
@@ -41,7 +41,7 @@ SEAS = (
 TIMES = (1e3, 2e3, 4e3, 1e4, 2e4, 5e4, 1e5)
 WRONG = ((Verdict.REGULAR, True), (Verdict.CHAOTIC, False))
 SIDE = 48
-# Starts drawn for one that is bounded until the first time.
+# Number of starts that are drawn for one that is bounded until the first time.
 DRAWN = 30
 
 
@@ -52,14 +52,14 @@ def bounded_starts(potential: Potential, energy: float, count: int, seed: int) -
 
 
 def shortened(orbit: Orbit, t_end: float) -> Orbit:
-    """The orbit until a time at which it is bounded."""
+    """Return the orbit until a time at which it is bounded."""
     count = int(np.searchsorted(orbit.t, t_end * (1.0 + 1e-12), side="right"))
     names = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
     return replace(orbit, fate=int(Fate.BOUNDED), **{name: getattr(orbit, name)[:count] for name in names})
 
 
 def count_verdicts(potential: Potential, energy: float, count: int, seed: int) -> Counter[tuple[float, Verdict | None, bool]]:
-    """The number of orbits by time, verdict then, and whether they are chaotic."""
+    """Return the number of orbits by time, verdict at that time, and whether they are chaotic."""
     counts: Counter[tuple[float, Verdict | None, bool]] = Counter()
     for state in bounded_starts(potential, energy, count, seed):
         orbit = integrate_orbit(potential, state, TIMES[-1])

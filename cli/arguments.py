@@ -1,6 +1,6 @@
-"""Words of the command line as values of requests: the system, the slice, the energy, the start and others.
+"""Values that commands read from words: the system, the slice, the energy, the start and others.
 
-A function that takes several words is in `READERS`: its parameters are options of each command with a parameter of its type.
+`READERS` lists functions that make a value from several options: a command with a parameter of that type has these options.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ def find_system(case: Case) -> System:
     Parameters
     ----------
     case
-        Potential: I, II or III as in Zotos (2014), another name that `potential` lists, or a formula in x and y; optionally with
-        parameters, as in III@omega_1=1.1,epsilon=0.5; letters of a formula are parameters, too: 0.5(x^2+y^2)-a x y^2@a=1.5.
+        Potential: I, II or III as in Zotos (2014), a name listed by `potential`, or a formula in x and y; parameters follow @, as
+        in III@omega_1=1.1,epsilon=0.5; letters of a formula are also parameters: 0.5(x^2+y^2)-a x y^2@a=1.5.
     """
     name, _, parameters = case.partition("@")
     chosen = _read_parameters(case, name, parameters) if parameters else {}
@@ -114,8 +114,8 @@ def find_plane(
     plane
         Key of a plane, or two axes.
     fix
-        Value of another coordinate, 0 by default, or py=- for the momentum that the energy decides, and its sign; repeat for
-        several.
+        Value of another coordinate, 0 by default; py=- sets the momentum that the energy determines, and its sign; can be
+        repeated.
     """
     return None if plane is None else read_slice(plane, ",".join(fix or ()), system)
 
@@ -128,7 +128,7 @@ type OneEnergy = float
 
 
 def find_energy(system: System, energy: float | None = None, jacobi: float | None = None) -> GivenEnergy:
-    """Return the energy that is given itself or by the Jacobi constant; ValueError for both.
+    """Return the energy, given directly or by the Jacobi constant; ValueError if both are given.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def find_energy(system: System, energy: float | None = None, jacobi: float | Non
     energy
         h, dimensionless.
     jacobi
-        Jacobi constant C instead of h, in a rotating frame: C = −2h about its axis, the barycentre, without μ(1 − μ).
+        Jacobi constant C instead of h in a rotating frame: C = −2h about the rotation axis (the barycentre), without μ(1 − μ).
     """
     if jacobi is None:
         return energy
@@ -159,7 +159,7 @@ def choose_energy(
     energy: GivenEnergy = None,
     energies: Annotated[tuple[float, float] | None, typer.Option(metavar="LOW HIGH")] = None,
 ) -> Energy:
-    """Return the energy of a map, or the range of an axis h; ValueError if the option for the slice is missing.
+    """Return the energy of a map, or the range of an axis h; ValueError if the option that the slice needs is missing.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def read_resolution(text: str) -> tuple[int, int]:
 def space_values(
     low: float | None, high: float | None, count: int | None, listed: Sequence[float] | None = None
 ) -> tuple[float, ...]:
-    """Return the values of a sweep, either evenly spaced including both ends or as listed; ValueError otherwise.
+    """Return the values of a sweep, evenly spaced including both ends, or as listed; ValueError for anything else.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def space_values(
     count
         Number of evenly spaced values.
     listed
-        An energy; repeat for several, instead of --low, --high and --count.
+        One energy, instead of --low, --high and --count; can be repeated.
     """
     span = (low, high, count)
     if listed and not any(one is not None for one in span):
@@ -236,13 +236,13 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Palette: find_palette,
     LayerOptions: read_layers,
 }
-"""Functions that make a value of a type of words; a parameter of theirs that has one of these types is made first."""
+"""Functions that make a value from options; the values of their own parameters of these types are made first."""
 
 OPTION_TYPES: Mapping[Any, Any] = {
     GivenWindow | None: Annotated[tuple[float, float, float, float] | None, typer.Option(metavar="X0 X1 Y0 Y1")],
     tuple[int, int]: Annotated[str, typer.Option(metavar="N or NxM", parser=read_resolution)],
 }
-"""Types of options for those of parameters that are given by one option."""
+"""Types of the options that are read from a single word."""
 
 
 def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
@@ -261,7 +261,7 @@ def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
 
 
 def _letters(formula: str) -> tuple[str, ...]:
-    """Return the letters of a formula; none for text that is no formula, which is refused later."""
+    """Return the letters of a formula; empty for text that is not a formula, which is refused later."""
     try:
         return formula_letters(formula)
     except ValueError:

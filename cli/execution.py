@@ -1,4 +1,4 @@
-"""Where and how a command computes: threads or a cluster, cancellation by Ctrl-C and progress bars."""
+"""How a command computes: with threads or a cluster, cancelled by Ctrl-C, with progress bars."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RunContext:
-    """How the computations of one run are executed, with its progress bars.
+    """The execution of the computations of one run, and its progress bars.
 
     Attributes
     ----------
     execution
-        Cancelled by Ctrl-C.
+        Execution that Ctrl-C cancels.
     progress
         Progress bars, disabled unless stderr is a terminal.
     """
@@ -57,16 +57,16 @@ class RunContext:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a command computes.
+    """The place where a command computes.
 
     Attributes
     ----------
     threads
         Number of threads; by default one per core.
     scheduler
-        Compute on the Dask cluster of this scheduler.
+        Address of the Dask scheduler on whose cluster the command computes.
     local_cluster
-        Start a Dask cluster of N workers on this machine.
+        Number of workers of a Dask cluster that is started on this machine.
     """
 
     threads: Annotated[int | None, typer.Option(min=1, metavar="N")] = None
@@ -102,15 +102,15 @@ class Place:
 
 
 THREADS_ONLY = But(without=("scheduler", "local_cluster"))
-"""Marks the place of a command that computes in this process."""
+"""The place of a command that computes in this process."""
 
 
 @contextmanager
 def _cancel_on_ctrl_c(cancel: threading.Event) -> Iterator[None]:
-    """Set `cancel` at the first Ctrl-C; a second one raises KeyboardInterrupt at once."""
+    """Set `cancel` at the first Ctrl-C; the second one raises KeyboardInterrupt at once."""
     in_thread = threading.current_thread() is not threading.main_thread()
     if in_thread or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-        # Signal handlers belong to the main thread, and a shell starts background jobs with SIGINT ignored.
+        # Only the main thread can set signal handlers, and a shell starts background jobs with SIGINT ignored.
         yield
         return
 
@@ -135,7 +135,7 @@ def _cluster_executor(scheduler: str | None, local_workers: int | None) -> Itera
     scheduler
         Address of a running scheduler, ``tcp://host:port``.
     local_workers
-        Without a scheduler, number of worker processes to start on this machine, with one thread each.
+        Number of worker processes to start on this machine if there is no scheduler, with one thread each.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def _connect(scheduler: str | None, local_workers: int | None) -> Client:
 
 @contextmanager
 def describe_losses() -> Iterator[None]:
-    """Replace Dask's errors of a lost scheduler or lost workers by sentences."""
+    """Replace Dask's errors for a lost scheduler or lost workers by sentences."""
     from distributed import KilledWorker
     from distributed.comm.core import CommClosedError
 
@@ -172,7 +172,7 @@ def describe_losses() -> Iterator[None]:
             "several workers died in turn of the same part of the computation; check their memory, then run the command again"
         ) from error
     except (BrokenExecutor, OSError) as error:
-        # Errors of the operating system have a number, and a plain OSError without one is a scheduler that does not answer.
+        # Errors of the operating system have a number; a plain OSError without one means that the scheduler does not answer.
         if isinstance(error, BrokenExecutor | CommClosedError) or (type(error) is OSError and error.errno is None):
             raise ConnectionError("the scheduler of the cluster is lost; start it, then run the same command again") from error
         raise
@@ -180,7 +180,7 @@ def describe_losses() -> Iterator[None]:
 
 @contextmanager
 def _ignore_ctrl_c() -> Iterator[None]:
-    """Make child processes ignore Ctrl-C, which a terminal sends to the whole process group; this process stops them."""
+    """Make child processes ignore Ctrl-C, which a terminal sends to the whole process group; this process ends them."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

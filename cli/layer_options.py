@@ -16,28 +16,28 @@ from plots.layers.table import LAYER_OF, LAYERS
 
 @dataclass(frozen=True)
 class LayerOptions:
-    """The layers that are requested; their options are those of `LAYERS`.
+    """The requested layers; the options are those of `LAYERS`.
 
     Attributes
     ----------
     values
-        Of the options, by their names.
+        Values of the options, by name.
     """
 
     values: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def layers(self) -> list[Layer]:
-        """The layers that are on."""
+        """The layers that are switched on."""
         return [layer for name, layer in LAYERS.items() if self.values.get(name)]
 
     @property
     def pictures(self) -> list[str]:
-        """Pictures of the layers."""
+        """The pictures of these layers."""
         return [layer.picture.name for layer in self.layers if layer.picture is not None]
 
     def with_pictures(self, pictures: Collection[str]) -> LayerOptions:
-        """Return them with the layers that some pictures show."""
+        """Return the layers with those added that some pictures show."""
         needed = {LAYER_OF[picture].name: True for picture in pictures if picture in LAYER_OF}
         return replace(self, values={**self.values, **needed})
 
@@ -50,12 +50,12 @@ class LayerOptions:
 
 
 def read_layers(**values: Any) -> LayerOptions:
-    """Return the layers of some options."""
+    """Return the requested layers and their settings from the values of options."""
     return LayerOptions(values)
 
 
 def _list_options(layers: Iterable[Layer]) -> list[inspect.Parameter]:
-    """Return the options of layers and of their settings, as parameters."""
+    """Return the options of the layers and of their settings, as parameters."""
     options = []
     for layer in layers:
         options.append(_option(layer.name, *_layer_option(layer)))
@@ -68,7 +68,7 @@ def _option(name: str, kind: Any, default: Any) -> inspect.Parameter:
 
 
 def _layer_option(layer: Layer) -> tuple[Any, Any]:
-    """Return the type and the default of what switches a layer on."""
+    """Return the type and the default of the option that switches a layer on."""
     if layer.count is None:
         return Annotated[bool, typer.Option(help=layer.help)], False
     return Annotated[int, typer.Option(help=layer.help, metavar=layer.count.metavar, min=0, max=layer.count.most)], 0

@@ -30,10 +30,10 @@ FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
 
 
 class _Command(TyperCommand):
-    """A command whose arguments may begin with a minus, as formulas do: all options begin with two."""
+    """A command whose arguments may begin with a minus, as formulas do: all its options begin with two."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the words with the arguments at the end, after two minuses."""
+        """Parse the words with the arguments moved to the end, after ``--``."""
         values = {name: _count_values(option) for option in self.params for name in option.opts}
         words, rest, arguments = deque(args), list[str](), list[str]()
         while words and words[0] != "--":
@@ -47,7 +47,7 @@ class _Command(TyperCommand):
         return super().parse_args(ctx, [*rest, "--", *arguments, *list(words)[1:]])
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Return the parameters, as help shows them."""
+        """Return the parameters in the form that the help shows."""
         return _without_types_of_flags(super().get_params(ctx))
 
 
@@ -56,7 +56,7 @@ def _count_values(option: Any) -> int:
 
 
 def _without_types_of_flags(params: list[Any]) -> list[Any]:
-    """Return parameters of which those without a value are shown without the type of one."""
+    """Return the parameters; those without a value are shown without the name of a type."""
     for option in params:
         if _count_values(option) == 0:
             option.metavar = ""
@@ -64,10 +64,10 @@ def _without_types_of_flags(params: list[Any]) -> list[Any]:
 
 
 class _Commands(TyperGroup):
-    """Commands that are known by name and summary, until one of them runs."""
+    """Commands that are known by name and summary; the module of a command is imported when it runs."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Return the parameters, as help shows them."""
+        """Return the parameters in the form that the help shows."""
         return _without_types_of_flags(super().get_params(ctx))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
@@ -121,8 +121,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Returns
     -------
-    Exit code: 0; 2 for invalid arguments; 1 for any other error; 130 after Ctrl-C. An error prints one sentence
-    to stderr and leaves no file half written.
+    Exit code: 0; 2 for invalid arguments; 1 for any other error; 130 after Ctrl-C. After an error one sentence is printed to
+    stderr, and no file is left half written.
     """
     try:
         returned = program(arguments, prog_name=NAME, standalone_mode=False)

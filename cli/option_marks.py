@@ -1,4 +1,4 @@
-"""Marks of the parameters of commands, in ``Annotated``, from which their options are made."""
+"""Marks for parameters of commands, used in ``Annotated``, from which the options are made."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Of:
-    """Marks an option that has the help and, unless given, the default of a parameter of a request or a function.
+    """Marks an option with the help of a parameter of a request or function, and its default unless one is given.
 
     Attributes
     ----------
     owner
         The request or the function.
     name
-        Name of the parameter there, if it is another.
+        Name of the parameter there, if it differs.
     """
 
     owner: Callable[..., Any]
@@ -25,7 +25,7 @@ class Of:
 
 @dataclass(frozen=True)
 class But:
-    """Marks a request of a command without options for some of its parameters, or with other defaults."""
+    """Marks a request for which a command lacks the options of some parameters, or has other defaults."""
 
     without: tuple[str, ...] = ()
     defaults: Mapping[str, Any] = field(default_factory=dict)

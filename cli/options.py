@@ -1,4 +1,4 @@
-"""Options from requests: names, types and defaults of the parameters of a function or dataclass, with help from its docstring."""
+"""Options made from a function or dataclass: names, types and defaults of its parameters, with help from its docstring."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from cli.option_marks import But, Of
 MISSING = inspect.Parameter.empty
 
 NAMES = {"use_evidence": ("--evidence/--no-evidence",)}
-"""Names of the options of parameters that are not named after them."""
+"""Names of options that differ from the names of their parameters."""
 
 
 def with_options(function: Callable[..., None]) -> Callable[..., None]:
-    """Return the function that Typer turns into a command: its parameters are options, of which the requests are built."""
+    """Return the function that Typer turns into a command: its parameters are the options from which the requests are made."""
 
     def run(**values: Any) -> None:
         _build(function, values)
@@ -34,7 +34,7 @@ def with_options(function: Callable[..., None]) -> Callable[..., None]:
 
 
 def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """Return the options, by name, that a function or a request is called with."""
+    """Return the options, by name, with which a function or a request is called."""
     options: dict[str, inspect.Parameter] = {}
     for parameter in _parameters(make):
         kind, marks = _split(parameter.annotation)
@@ -62,7 +62,7 @@ def _build(make: Callable[..., Any], values: Mapping[str, Any]) -> Any:
 
 
 def _find_reader(kind: Any) -> Callable[..., Any] | None:
-    """Return what makes a value of several options, or None for a type of one option."""
+    """Return the function that makes a value from several options; None for a type that needs one option."""
     if kind in READERS:
         return READERS[kind]
     return kind if isinstance(kind, type) and is_dataclass(kind) else None
@@ -76,20 +76,20 @@ def _make_option(make: Callable[..., Any], parameter: inspect.Parameter) -> insp
     default = parameter.default
     if default is MISSING and of.owner is not make:
         default = inspect.signature(of.owner).parameters[source].default
-    # Typer's own class of options or arguments, with what only the command line has, such as a name for the value.
+    # Typer's own class of options or arguments, with properties that only the command line has, such as a name for the value.
     info = copy(next((mark for mark in marks if isinstance(mark, ParameterInfo)), typer.Option()))
     info.help = info.help or _describe(of.owner, source)
-    # Typer keeps the first name that is given as the default.
+    # Typer treats the first name as the default value.
     if isinstance(info, OptionInfo) and info.default is ...:
         info.param_decls = _name(parameter.name, default)
     if isinstance(default, tuple):
-        # The resolution, which is given as one word.
+        # The resolution is given as one word.
         default = "x".join(map(str, default))
     return inspect.Parameter(parameter.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, info])
 
 
 def _name(parameter: str, default: Any) -> tuple[str, ...]:
-    """Return the names of an option; a flag that is set by default can be unset."""
+    """Return the names of an option; a flag that is on by default has a name to switch it off."""
     if parameter in NAMES:
         return NAMES[parameter]
     name = parameter.replace("_", "-")

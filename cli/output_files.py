@@ -23,14 +23,14 @@ def add_ending(stem: Path, ending: str) -> Path:
 
 
 def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -> tuple[Path, Sequence[str]]:
-    """Return stem and ending of a file name with one of some endings; of a name without an ending, the name and the defaults.
+    """Return stem and ending of a file name. A name without an ending is the stem, and the default endings are returned.
 
-    An ending begins with a letter, so that ``map-0.19`` has none.
+    An ending begins with a letter: ``map-0.19`` has none.
 
     Raises
     ------
     ValueError
-        If the ending is another one.
+        If the ending is not one of the legal ones.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -
 def name_files(
     output: Path | None, endings: Collection[str], default: Sequence[str], stem: Path | None = None
 ) -> dict[str, Path]:
-    """Return the output files by ending, as `split_ending`; without an output those of a stem, or none."""
+    """Return the output files by ending, as `split_ending` does; without --output those of a stem, or none."""
     if output is not None:
         stem, default = split_ending(output, endings, default)
     return {} if stem is None else {ending: add_ending(stem, ending) for ending in default}
@@ -70,7 +70,7 @@ def reserve_output(output: Path | None) -> Iterator[None]:
     ValueError
         If its folder does not exist.
     BlockingIOError
-        If another process writes it; one sentence that names the process.
+        If another process is writing it; one sentence that names the process.
     """
     if output is None:
         yield
@@ -82,7 +82,7 @@ def reserve_output(output: Path | None) -> Iterator[None]:
 
 
 Stem = Annotated[Path | None, typer.Option(metavar="STEM"), Of(reserve_output)]
-"""Type of an option for the names of output files."""
+"""Type of the option for the names of output files."""
 
 
 def write_files(contents: Mapping[Path, Content]) -> list[str]:
@@ -90,12 +90,12 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
 
     Returns
     -------
-    The paths, as given.
+    The paths, unchanged.
 
     Raises
     ------
     OSError
-        If a file cannot be written; those written before it stay.
+        If a file cannot be written; the files written before remain.
     """
     for path, content in contents.items():
         _write(path, content.encode() if isinstance(content, str) else content)
@@ -103,7 +103,7 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
 
 
 def _write(path: Path, content: bytes) -> None:
-    # In the same folder: replacing is atomic only within one file system.
+    # A temporary file is in the same folder, because replacing is atomic only within one file system.
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with part.open("xb") as file:

@@ -17,31 +17,31 @@ from rich.table import Table as RichTable
 
 from cli.option_marks import Of
 
-# Wider than any table, of which nothing is cut; a terminal wraps its lines.
+# Wider than any table, so that nothing is cut; a terminal wraps the lines.
 _WIDTH = 10_000
 
 
 @dataclass(frozen=True)
 class Table:
-    """Names of columns, and cells by row; all columns but the first are right-aligned."""
+    """Table: names of columns, and cells by row. All columns but the first are right-aligned."""
 
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
 
 
 def print_result(as_json: bool, answer: Mapping[str, Any], *parts: Table | str, files: Sequence[str] | None = None) -> None:
-    """Print the answer as one JSON object, in which NaN and infinity become null, or else the tables and sentences.
+    """Print the answer as one JSON object, in which NaN and infinity become null, or print the tables and sentences.
 
     Parameters
     ----------
     as_json
         Print JSON instead of tables and sentences; missing numbers are null.
     answer
-        Contents of the object.
+        Content of the object.
     parts
         Tables and sentences.
     files
-        Written files; None for commands that write none.
+        Written files; None for commands that do not write files.
     """
     console = Console(width=_WIDTH)
     if as_json:
@@ -56,7 +56,7 @@ def print_result(as_json: bool, answer: Mapping[str, Any], *parts: Table | str, 
 
 
 AsJson = Annotated[bool, typer.Option("--json"), Of(print_result)]
-"""Type of an option that chooses JSON."""
+"""Type of the option that chooses JSON."""
 
 
 def list_rows(columns: Mapping[str, np.ndarray]) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Classes of the results that functions of the library return, for annotations and `isinstance`."""
+"""Classes of the results that the functions of the library return, for annotations and `isinstance`."""
 
 import typing
 

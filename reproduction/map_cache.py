@@ -1,4 +1,4 @@
-"""Cache of the maps and analyses that figures and tables need; each is computed once, on first use."""
+"""Cache of the maps and analyses that figures and tables need; each is computed once, when it is first used."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from reproduction.quality import Quality
 
 
 class MapCache:
-    """Complete maps of one quality, stored without the state of their orbits, and analyses of them.
+    """Complete maps of one quality, stored without the state of their orbits, and analyses of these maps.
 
     All methods raise `concurrent.futures.CancelledError` when the execution is cancelled.
 
@@ -56,32 +56,32 @@ class MapCache:
         self._kept: dict[Hashable, Any] = {}
 
     def map(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
-        """Map of a case of `engine.CASES`; other parameters as in `engine.MapSpec`."""
+        """Return a map of a case of `engine.CASES`; other parameters are as in `engine.MapSpec`."""
         return self._stored(self._spec(case, plane, energy, window))
 
     def curves(self, case: str, plane: Slice) -> Sweep:
-        """Shares at the energies of `curve_energies`, and the largest energy error; new maps are not stored."""
+        """Return shares at the energies of `curve_energies`, and the largest energy error; new maps are not stored."""
         return self._once(("curves", case, plane), lambda: self._sweep(case, plane))
 
     def regularity(self, frame: EscapeMap) -> RegularityMap:
-        """Classification of the bounded orbits of a map as regular or chaotic."""
+        """Classify the bounded orbits of a map as regular or chaotic."""
         return self._once(("regularity", frame.spec), lambda: self._judge(frame))
 
     def super_sticky(self) -> SuperStickySearch:
-        """Continuation of the chaotic bounded orbits of case III at h = 0.26 on (x, px)."""
+        """Continue the chaotic bounded orbits of case III at h = 0.26 on (x, px)."""
         return self._search(STICKY_CASE, STICKY_ENERGY, self.quality.search_resolution)
 
     def late_escapes(self, case: str, energy: float) -> SuperStickySearch:
-        """Continuation of the chaotic bounded orbits of case I or II on (x, px), from fewer starts."""
+        """Continue the chaotic bounded orbits of case I or II on (x, px), with fewer starts."""
         return self._search(case, energy, self.quality.classified_resolution)
 
     def exponent(self, case: str, plane: Slice, energy: float) -> UncertaintyExponent:
-        """Uncertainty exponent of the basins of a case."""
+        """Return the uncertainty exponent of the basins of a case."""
         spec, work = self._spec(case, plane, energy), self.quality.exponent_work
         return self._once(("exponent", spec), lambda: compute_uncertainty_exponent(spec, work=work, execution=self.execution))
 
     def _once[Found](self, key: Hashable, compute: Callable[[], Found]) -> Found:
-        """What is kept under a key; it is computed at the first call."""
+        """Return the value that is stored under a key; the first call computes it."""
         if key not in self._kept:
             self._kept[key] = compute()
         found: Found = self._kept[key]
@@ -96,7 +96,7 @@ class MapCache:
         )
 
     def _sweep(self, case: str, plane: Slice) -> Sweep:
-        """A sweep that takes the maps that are stored."""
+        """A sweep that uses the stored maps."""
         energies, side, t_max = curve_energies(case, self.quality.curve_points), self.quality.resolution, self.quality.t_max
         spec = SweepSpec(CASES[case], plane, energies, (side, side), t_max=t_max, measures=("shares", "accuracy"))
         return compute_sweep(

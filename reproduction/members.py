@@ -1,4 +1,4 @@
-"""Members of the reproduction, the figures and the tables, and their files."""
+"""Members of the reproduction (the figures and the tables) and their files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CAPTIONS = {
 
 
 def choose_members(names: Sequence[str]) -> list[str]:
-    """Select members by name, each once and in order; all if there are no names.
+    """Select members by name, each once and in order, or all members if there are no names.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def choose_members(names: Sequence[str]) -> list[str]:
 
 
 def make_files(name: str, cache: MapCache) -> dict[str, str | bytes]:
-    """Content of the files of a member by file name; may take minutes.
+    """Return the content of the files of a member, by file name; this may take minutes.
 
     Raises
     ------

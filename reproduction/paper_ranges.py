@@ -9,12 +9,12 @@ from engine.systems.catalogue.table import PAPER_ENERGIES
 from reproduction.analyses.published_fits import PAPER_FITS
 
 CHANNEL_ENERGIES = {"I": 0.15, "II": 0.2, "III": 0.3}
-"""Energies of the figures with an orbit through each channel."""
+"""Energies of the figures that show an orbit through each exit."""
 
 STICKY_CASE, STICKY_ENERGY = "III", 0.26
 """Case and energy of the paper's regular, chaotic and super-sticky orbits, on (x, px)."""
 
-# Rounded, so that equal energies are equal bit for bit: maps are looked up by their energy.
+# The energies are rounded, because maps are looked up by energy: equal energies must be equal bit for bit.
 _DECIMALS = 6
 
 

@@ -16,19 +16,19 @@ class Quality:
     name
         Name on the command line.
     resolution
-        Columns and rows of every map; even, as an odd number puts a column of starts on the symmetry line x = 0 of III, where
-        orbits on the y axis never escape.
+        Columns and rows of every map. The number is even: an odd number puts a column of starts on the symmetry line x = 0 of
+        III, where orbits on the y axis never escape.
     t_max
         Integration time of orbits, dimensionless.
     curve_points
         Number of energies of curves against h.
     search_resolution, search_t_max
-        Columns and rows of the map of III whose chaotic bounded orbits are continued, and until which time.
+        Columns and rows of the map of III whose chaotic bounded orbits are continued, and the end time of the continuation.
     classified_resolution
         Columns and rows of the maps of I and II whose chaotic bounded orbits are continued; a classification takes ten times as
-        long as the map.
+        long as a map.
     exponent_work
-        Limit of the work for each uncertainty exponent, as `work` of `engine.compute_uncertainty_exponent`.
+        Limit of the work for each uncertainty exponent: `work` of `engine.compute_uncertainty_exponent`.
     """
 
     name: str
@@ -51,4 +51,4 @@ QUICK = Quality(
     "quick", resolution=74, t_max=1e5, curve_points=19, search_resolution=44, search_t_max=4e6, classified_resolution=24,
     exponent_work=1.5e7,
 )  # fmt: skip
-"""One ninth of the starts."""
+"""A quality with one ninth of the starts."""

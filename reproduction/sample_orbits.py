@@ -1,4 +1,4 @@
-"""Selection of one orbit through each channel of a map."""
+"""Selection of one orbit through each exit of a map."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ SHOWN_CROSSINGS = 3
 
 
 def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float, float]]:
-    """Find a start for each channel through which an orbit of a map escapes.
+    """Find a start for each exit through which an orbit of a map escapes.
 
     Parameters
     ----------
@@ -21,8 +21,8 @@ def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float,
     Returns
     -------
     dict
-        By channel, (x, y, px, py) of the orbit with the fewest crossings, but at least `SHOWN_CROSSINGS` if there is one (else
-        with the most crossings); among these the first to escape, then the lowest and leftmost pixel.
+        (x, y, px, py) of an orbit by exit: the one with the fewest crossings, but at least `SHOWN_CROSSINGS`, or the one with the
+        most crossings if all have fewer. Of several, the first to escape is chosen, then the lowest and leftmost pixel.
     """
     found: dict[int, tuple[float, float, float, float]] = {}
     for channel in range(1, frame.spec.potential.channels + 1):

@@ -25,7 +25,7 @@ sys.dont_write_bytecode = False
 os.environ.setdefault("ESCAPE_EXPLORER_CORES_PER_PAGE", "0.001")
 
 TIMEOUT_MS = 120_000
-"""Much more than any step takes, on a busy machine, too."""
+"""Much longer than any step takes, even on a busy machine."""
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=15, database=None)

@@ -13,8 +13,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-SECONDS = 240
-"""Longest run of a child, on a busy machine with kernels to be compiled."""
+from tests.waiting import SECONDS
 
 
 @dataclass(frozen=True)

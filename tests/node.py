@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from engine.integrator.portable_kernels import kernel_module
+from tests.waiting import SECONDS
 
 SCRIPTS = Path(__file__).parent / "app" / "browser"
 
@@ -30,6 +31,6 @@ def run_node(script: str, data: dict[str, Any], folder: Path) -> Any:
             data[name] = str(folder / name)
     (folder / "input.json").write_text(json.dumps(data))
     command = ["node", str(SCRIPTS / script), str(folder / "input.json")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=False)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)

@@ -11,6 +11,8 @@ from typing import Any
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
+from tests.waiting import SECONDS
+
 Options = Mapping[str, Any]
 """Options of Tornado's `HTTPRequest` for the page and its WebSocket, such as headers."""
 
@@ -28,7 +30,7 @@ class Channel:
     @classmethod
     async def open(cls, address: str, options: Options = NO_OPTIONS) -> Channel:
         """Fetch the page and connect with its token."""
-        page = await AsyncHTTPClient().fetch(address, request_timeout=60.0, **options)
+        page = await AsyncHTTPClient().fetch(address, request_timeout=SECONDS, **options)
         return await cls.connect(address.partition("?")[0], page.body.decode(), options)
 
     @classmethod

@@ -12,7 +12,7 @@ from engine import Execution, Plane, Potential, Slice
 from engine.slices.default_window import default_window
 from engine.slices.portable_system import PortableSystem, make_portable_system
 
-# Energies at which default windows are tabulated: below the escape energy, where they change slowly, and above it.
+# Energies at which default windows are tabulated: below the escape energy, where windows change slowly, and above it.
 _ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13
 
 
@@ -23,9 +23,9 @@ class BrowserSystem:
     Attributes
     ----------
     key
-        Different for each system.
+        Key that is different for each system.
     portable
-        What integrates its orbits.
+        Data from which the browser integrates the system's orbits.
     windows
         {key of a plane: {"energies": […], "windows": [[x_low, x_high, ordinate_low, ordinate_high], …]}}, the default windows.
     """
@@ -40,7 +40,7 @@ class BrowserSystem:
         return self.portable.nbytes + 4096
 
     def to_dict(self) -> dict[str, Any]:
-        """The system as `System` in modules/engine/system.js describes it, with its module and its windows."""
+        """Return the system in the form of `System` in modules/engine/system.js, with its module and its windows."""
         return {**self.portable.to_dict(), "key": self.key, "module": self.portable.module, "windows": self.windows}
 
 
@@ -58,7 +58,7 @@ def make_browser_system(potential: Potential, low: float, high: float, *, execut
 
 
 def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, float], execution: Execution) -> dict[str, Any]:
-    """Default windows from the lowest to the highest energy that have one."""
+    """Return default windows from the lowest to the highest energy that has one."""
     windows: dict[float, list[float]] = {}
     for energy in _energies(potential, *ends).tolist():
         execution.raise_if_cancelled()
@@ -73,7 +73,7 @@ def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, flo
 
 
 def _energies(potential: Potential, low: float, high: float) -> np.ndarray:
-    """Energies at which windows are tabulated, rising; with an escape radius there is no escape energy."""
+    """Return energies at which windows are tabulated, rising; with an escape radius there is no escape energy."""
     if potential.escape_radius is not None:
         return np.linspace(low, high, _ENERGIES_BELOW + _ENERGIES_ABOVE)
     escape = min(max(potential.escape_energy, low), high)

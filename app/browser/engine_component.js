@@ -1,7 +1,7 @@
 // @ts-check
-/** Loads the modules, which the server serves as files, when the page is at rest after the first pixels. */
+/** Loads the modules, which the server serves as files, when the page is idle after the first pixels. */
 
-/** Longest wait for rest, in ms. */
+/** Longest wait for an idle page, in ms. */
 const PATIENCE = 2000
 
 /** @param {{model: any, el: HTMLElement}} component */

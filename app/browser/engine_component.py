@@ -1,4 +1,4 @@
-"""The engine in the visitor's browser: it shows pictures while the energy or the window moves, and the orbit under the cursor."""
+"""The engine in the visitor's browser: it shows previews while the energy or the window moves, and the orbit under the cursor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.browser.module_files import ADDRESS
 
 
 class EngineComponent(JSComponent):
-    """The browser side; it sends {energy} when the energy has been played, and {playing}."""
+    """The browser's part. It sends {energy} when the animation of the energy has ended, and {playing}."""
 
     address = param.String(doc="of the first module")
     system = param.Dict(default={}, doc="see `BrowserSystem.to_dict`")
@@ -27,7 +27,7 @@ class EngineComponent(JSComponent):
 
 
 class BrowserEngine(param.Parameterized):
-    """Sends the engine in the browser the system and the view of the page.
+    """Sends the system and the view of the page to the engine in the browser.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class BrowserEngine(param.Parameterized):
         return self._component
 
     def show_system(self, system: BrowserSystem) -> None:
-        """Send a system, which the page shows or will show."""
+        """Send a system that the page shows or is about to show."""
         self._component.system = system.to_dict()
 
     def show_view(self, view: dict[str, Any]) -> None:
@@ -67,7 +67,7 @@ class BrowserEngine(param.Parameterized):
             self._component.command = {"name": "stop", "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected.
+        # Messages come from a browser: unexpected ones are ignored.
         match message:
             case {"energy": float() | int() as energy} if self.playing and isfinite(energy):
                 self.playing = False

@@ -1,21 +1,28 @@
-"""Reads JavaScript modules for components, and for Bokeh's callbacks, which are bodies of functions."""
+"""Reads JavaScript modules for components, and for callbacks of Bokeh, which contain only the body of a function."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-_IMPORT = re.compile(r'^import .* from "\./(.+)"\n', re.MULTILINE)
+_IMPORT = re.compile(r'^import .* from "(\.\.?/.+)"\n', re.MULTILINE)
 
 
 def component_code(module: Path) -> str:
-    """The text of a module together with the modules of its folder that it imports, because a component is one text."""
+    """Return the text of a module and of the modules that it imports, because a component has one text."""
     source = module.read_text(encoding="utf-8")
-    imported = (module.with_name(name).read_text(encoding="utf-8").replace("export ", "") for name in _IMPORT.findall(source))
-    return "\n".join([*imported, _IMPORT.sub("", source)])
+    return "\n".join([*map(_functions, _imported(module, source)), _IMPORT.sub("", source)])
 
 
 def callback_code(module: Path, call: str) -> str:
-    """The functions of a module, and a call of one of them, such as ``label(tick, base)``."""
+    """Return the functions of a module and of those that it imports, and a call of one, such as ``label(tick, base)``."""
     source = module.read_text(encoding="utf-8")
-    return f"{source.replace('export function', 'function')}\nreturn {call}"
+    return "\n".join([*map(_functions, [*_imported(module, source), source]), f"return {call}"])
+
+
+def _imported(module: Path, source: str) -> list[str]:
+    return [(module.parent / name).read_text(encoding="utf-8") for name in _IMPORT.findall(source)]
+
+
+def _functions(source: str) -> str:
+    return _IMPORT.sub("", source).replace("export ", "")

@@ -1,6 +1,6 @@
 """The modules of the engine in the browser, and the kernels, as files.
 
-Their address contains a hash of all that they depend on, so that browsers keep them.
+Their address contains a hash of everything on which they depend, so that browsers can keep them.
 """
 
 from __future__ import annotations
@@ -17,9 +17,12 @@ from engine.integrator.portable_kernels import kernel_module, module_digest
 
 MODULES = Path(__file__).parent / "modules"
 
+NUMBERS = MODULES / "numbers.js"
+"""The functions that write numbers, also for callbacks of Bokeh and for components."""
+
 
 def _digest() -> str:
-    """A hash of all modules and of what the kernels are made of."""
+    """Return a hash of all modules and of the sources of the kernels."""
     digest = hashlib.sha256(module_digest().encode())
     for path in sorted(MODULES.rglob("*.js")):
         digest.update(path.name.encode() + path.read_bytes())
@@ -33,11 +36,11 @@ ADDRESS = f"{_FOLDER}/main.js"
 
 
 WATCH_ADDRESS = f"{_FOLDER}/gestures/watch.js"
-"""Address of the player of many orbits, which the page loads when it is asked for."""
+"""Address of the player of many orbits, which the page loads when the player is first shown."""
 
 
 KERNELS_ADDRESS = f"{_FOLDER}/kernels.wasm"
-"""Address of the kernels, beside the modules."""
+"""Address of the kernels, which is beside that of the modules."""
 
 
 class ModuleHandler(StaticFileHandler):

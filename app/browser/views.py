@@ -12,12 +12,12 @@ from plots.pictures.image_columns import pixel_coding
 
 
 def describe_view(state: ViewState) -> dict[str, Any]:
-    """The view as `ServerView` in modules/gestures/preview.js describes it."""
+    """Return the view in the form of `ServerView` in modules/gestures/preview.js."""
     outcomes = state.potential.outcomes_at(state.energy)
     return {
         "system": system_key(state.potential),
         "plane": ";".join(filter(None, write_slice(state.plane))),
-        # The potentials along a parameter are known to the server only.
+        # Only the server knows the potentials along a parameter.
         "slice": state.plane.to_dict(state.potential.units) if state.plane.parameter is None else None,
         "energy": state.energy,
         "home": state.window is None,

@@ -15,13 +15,13 @@ from engine.results import DivergentStart
 
 
 class DivergentStartRequests:
-    """Search of one session; the start found is added to the view state, and `notify(sentence)` reports progress."""
+    """Search of one session; the start that is found is added to the view state, and `notify(sentence)` reports progress."""
 
     def __init__(self, state: ViewState, jobs: JobSubmitter, notify: Callable[[str], None], locked: Locked) -> None:
         self._state, self._notify = state, notify
         self._searched: Start | None = None
         self._request = LatestRequest(jobs, self._on_result, notify, locked)
-        # A start is only compared with others of the same system, plane, energy and t_max.
+        # A start is compared only with others of the same system, plane, energy and t_max.
         state.param.watch(lambda *events: self._request.cancel(), ["system", "plane", "energy", "t_max"])
 
     def search(self) -> None:

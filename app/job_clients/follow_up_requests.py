@@ -1,4 +1,4 @@
-"""Follow-up analyses: requested for each complete map while the view state asks for them."""
+"""Follow-up analyses, which are requested for each complete map while the view state asks for them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class FollowUp:
 
 
 class FollowUpRequests:
-    """Follow-up analyses of one session; `fail(sentence)` reports errors, under the session's lock like `show`."""
+    """Follow-up analyses of one session; `fail(sentence)` reports errors. Like `show`, it is called under the session's lock."""
 
     def __init__(
         self, state: ViewState, jobs: JobSubmitter, follow_ups: Sequence[FollowUp], fail: Callable[[str], None], locked: Locked
@@ -46,7 +46,7 @@ class FollowUpRequests:
                 state.param.watch(partial(self._update, follow_up, request), list(follow_up.watched))
 
     def follow(self, frame: EscapeMap | None) -> None:
-        """Analyse this complete map; None cancels the analyses of the last one."""
+        """Analyse this complete map; None cancels the analyses of the previous map."""
         self._frame = frame
         for follow_up, request in self._requests:
             request.cancel()
@@ -60,6 +60,6 @@ class FollowUpRequests:
             request.submit(job)
 
     def _show(self, follow_up: FollowUp, result: Any) -> None:
-        # Requests are cancelled together with their map.
+        # The requests are cancelled together with their map.
         assert self._frame is not None
         follow_up.show(self._frame, result)

@@ -1,4 +1,4 @@
-"""One request at a time: a new request replaces the last one, whose results are dropped."""
+"""One request at a time: a new request replaces the previous one, whose results are dropped."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from engine.jobs.job import Job
 from engine.jobs.subscription import Subscription
 
 Locked = Callable[[Callable[..., None]], Callable[..., None]]
-"""Wraps a function: any thread may call the result, which returns at once and runs the function under the session's lock."""
+"""Wraps a function so that any thread may call it: the call returns at once, and the function runs under the session's lock."""
 
 
 class LatestRequest:
-    """Requests results of jobs; calls `show(result)` and, for errors, `fail(sentence)`, under the lock of the session."""
+    """Requests results of jobs and calls, under the lock of the session, `show(result)` or, for errors, `fail(sentence)`."""
 
     def __init__(self, jobs: JobSubmitter, show: Callable[[Any], None], fail: Callable[[str], None], locked: Locked) -> None:
         self._jobs, self._show, self._fail = jobs, show, fail
@@ -43,7 +43,7 @@ class LatestRequest:
         if job != self._wanted:
             return
         if isinstance(result, Exception):
-            # Allow the same request again.
+            # The same request may be made again.
             self._wanted = None
             self._fail(sentence(result))
         else:

@@ -1,4 +1,4 @@
-"""Requests the map of the view state and passes its frames to a listener; computes nothing itself."""
+"""Requests for the map of the view state; the frames are passed to a listener."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from plots.pictures.image_columns import draw_over, map_columns
 
 
 class MapListener(Protocol):
-    """Shows the progress of a map."""
+    """Receives the progress of a map."""
 
     def map_requested(self, *, compiling: bool = False) -> None:
-        """A map was requested; `compiling`: its integrator is being compiled first."""
+        """A map was requested. `compiling` says whether its integrator must be compiled first."""
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        """A frame has arrived; the last one is complete."""
+        """A frame has arrived; the last frame is complete."""
 
     def map_stopped(self) -> None:
         """The user has cancelled the map."""
@@ -49,11 +49,11 @@ class MapRequests:
     listener
         Receives frames and errors, under the session's lock.
     locked
-        Runs callbacks under the session's lock; it may drop all calls but the latest.
+        Runs callbacks under the session's lock; of several waiting calls it may run the latest only.
     is_crowded
-        Whether the server is crowded; then frames between the first and the last are skipped.
+        Whether the server is crowded. If so, frames between the first and the last are skipped.
     prepare
-        Called with the map of a frame before it is delivered, on the thread of its job: computes what the listener needs.
+        Called with the map of a frame before it is delivered, on the thread of the job; it computes what the listener needs.
     """
 
     def __init__(
@@ -68,12 +68,12 @@ class MapRequests:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._subscription: Subscription | None = None
         self._is_whole = False
-        # Each request has its generation; results of earlier generations are dropped.
+        # Each request has a generation; results of earlier generations are dropped.
         self._generation = 0
         self._generation_lock = threading.RLock()
-        # Generation of which a frame has been delivered.
+        # The latest generation of which a frame has been delivered.
         self._delivered = -1
-        # What was delivered last: a map and its columns.
+        # The map that was delivered last, and its columns.
         self._painted: tuple[MapSpec, dict[str, list[Any]]] | None = None
         self._is_crowded, self._prepare = is_crowded, prepare
         self._continue = locked(self._on_compiled)
@@ -101,7 +101,7 @@ class MapRequests:
             self._request_compiled(generation, spec)
 
     def _request_compiled(self, generation: int, spec: MapSpec) -> None:
-        """Request the frames; along a parameter of a typed formula, first the potentials, which take as long as their reviews."""
+        """Request the frames; along a parameter of a typed formula, first request the potentials, which take time to review."""
         members = members_job(spec.plane.parameter)
         if members is None:
             self._request_frames(generation, spec)
@@ -120,9 +120,9 @@ class MapRequests:
         self._subscription = self._jobs.request(job, on_result, on_error)
 
     def _deliver_frame(self, generation: int, frame: EscapeMap) -> None:
-        """Deliver a frame, of a crowded server only the first and the last one; none of an energy without an interior."""
+        """Deliver a frame. A crowded server delivers only the first and the last one; an energy without an interior has none."""
         try:
-            # Slow, and needed by the ranges of the maps, whose smallest window depends on it.
+            # This is slow, and the ranges of the maps need it: the smallest window depends on it.
             replace(frame.spec, window=None).find_window()
             self._prepare(frame.spec)
         except ValueError as error:
@@ -144,7 +144,7 @@ class MapRequests:
             return self._generation
 
     def _deliver(self, callback: Callable[..., None], generation: int, *arguments: Any) -> None:
-        """Pass on a result of the current generation; the session keeps one call, which a late one would replace."""
+        """Pass on a result of the current generation. The session keeps one call only, which a late call would replace."""
         with self._generation_lock:
             if generation == self._generation:
                 callback(generation, *arguments)
@@ -157,7 +157,7 @@ class MapRequests:
             self._subscription = None
 
     def stop_map(self) -> None:
-        """Cancel the map for the user and drop late frames; no effect on a complete map."""
+        """Cancel the map for the user and drop late frames; a complete map is not affected."""
         if self._is_whole:
             return
         self.cancel_map()

@@ -1,4 +1,4 @@
-"""Orbits of the chosen starts: requested, received, or refused with a message."""
+"""Orbits of the chosen starts: requests, results, and messages for starts that are refused."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 @dataclass(frozen=True)
 class ChosenOrbit:
-    """A start with its orbit, or with the reason why it has none; both are missing while the orbit is computed.
+    """A start with its orbit, or with the reason why there is no orbit. Both are missing while the orbit is computed.
 
-    The Birkhoff digits follow later, for bounded orbits.
+    The Birkhoff digits of bounded orbits follow later.
     """
 
     start: Start
@@ -39,33 +39,33 @@ class ChosenOrbit:
 
     @property
     def verdict(self) -> OrbitVerdict | None:
-        """The verdict on the orbit, as far as known."""
+        """The verdict on the orbit, as far as it is known."""
         return judge_orbit(self.orbit, self.digits) if self.orbit is not None else None
 
     def headline(self) -> str:
-        """The verdict without its reasons, or why there is none."""
+        """The verdict without its reasons, or the reason why there is none."""
         return self.verdict.headline() if self.verdict is not None else self.problem or "Integrating …"
 
     def describe(self) -> str:
-        """The verdict, or why there is none, in one sentence."""
+        """The verdict, or the reason why there is none, in one sentence."""
         return self.verdict.describe() if self.verdict is not None else self.problem or "Integrating …"
 
 
 class OrbitRequests:
-    """Orbits of one session, and the Birkhoff digits of the bounded ones, which need more than the history of an orbit.
+    """Orbits of one session, and the Birkhoff digits of the bounded orbits; digits need more than the history of an orbit.
 
     Parameters
     ----------
     state
-        View state, whose starts are followed.
+        View state, which contains the starts.
     jobs
         Computes orbits and digits.
     show
-        Called with the orbits after changes, under the session's lock.
+        Called with the orbits after each change, under the session's lock.
     notify
         Called with the reason why digits could not be computed.
     latest
-        As for `RequestedResults`.
+        As in `RequestedResults`.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class OrbitRequests:
         state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
 
     def follow(self) -> None:
-        """Request the orbits of new starts and cancel those of removed ones."""
+        """Request the orbits of new starts, and cancel those of removed starts."""
         self._orbits.follow([job for job in map(self._state.orbit_job, self._state.starts) if job is not None])
         self._update()
 
@@ -128,7 +128,7 @@ def _digits_job(job: Job[Orbit]) -> Job[BirkhoffDigits]:
 
 
 def _with_sentence(job: Job[Any], result: Any) -> Any:
-    """A result, or a sentence in place of an error."""
+    """Return a result, or a sentence in place of an error."""
     return sentence(result) if isinstance(result, Exception) else result
 
 

@@ -1,4 +1,4 @@
-"""Results of several jobs at a time: those that are wanted are requested, and those that are not any more are cancelled."""
+"""Results of several jobs at a time: wanted results are requested, and requests that are no longer wanted are cancelled."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from engine.jobs.subscription import Subscription
 
 
 class RequestedResults:
-    """Results by their jobs, in `found`.
+    """Results by job, in `found`.
 
     Parameters
     ----------
     jobs
-        Computes them.
+        Computes the results.
     convert
-        Called in the thread of a result with its job and it, or the error; what it returns is found.
+        Called on the thread of a result with its job and the result or error; its return value is stored in `found`.
     on_arrival
-        Called with what has arrived, under the lock of the session.
+        Called with the results that have arrived, under the lock of the session.
     latest
-        Wraps a function so that of the calls that wait only the latest runs: results that arrive together are taken once.
+        Wraps a function so that only the latest of its waiting calls runs: results that arrive together are handled once.
     """
 
     def __init__(
@@ -37,12 +37,12 @@ class RequestedResults:
         self._jobs, self._convert, self._on_arrival = jobs, convert, on_arrival
         self.found: dict[Job[Any], Any] = {}
         self._subscriptions: dict[Job[Any], Subscription | None] = {}
-        # Results that are not taken yet; threads append to it.
+        # Results that are not handled yet; threads append to it.
         self._arrived: deque[tuple[Job[Any], Any]] = deque()
         self._take_arrived = latest(self._take)
 
     def follow(self, wanted: Collection[Job[Any]]) -> None:
-        """Request the results of new jobs, and cancel those that are not wanted any more."""
+        """Request the results of new jobs, and cancel those that are no longer wanted."""
         for job in [job for job in self._subscriptions if job not in wanted]:
             subscription = self._subscriptions.pop(job)
             if subscription is not None:

@@ -1,4 +1,4 @@
-"""Separation of the chosen orbit and the one before it, requested once both are computed."""
+"""Separation of the chosen orbit and the orbit before it, requested once both are computed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Pair = tuple[int, int]
 
 
 class SeparationRequests:
-    """Separation of one session; `show(pair, separation)` receives it, None and None if there is none."""
+    """Separation of one session. `show(pair, separation)` receives it, or None and None if there is none."""
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class SeparationRequests:
         self._request.cancel()
 
     def _pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
-        """Indices of the chosen orbit and of the one before it in ascending order; None unless both are computed."""
+        """Return the indices of the chosen orbit and of the one before it in ascending order; None unless both are computed."""
         chosen = self._state.chosen
         pair = (chosen - 1, chosen) if chosen > 0 else (0, 1)
         computed = pair[1] < len(orbits) and all(orbits[place].orbit is not None for place in pair)

@@ -1,4 +1,4 @@
-"""The results that the page shows, which statistics, tables, files and figures follow."""
+"""The results that the page shows; statistics, tables, files and figures use them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from plots.layers.map_analyses import NO_ANALYSES
 
 
 class ShownResults(param.Parameterized):
-    """What is computed for the view of one session; None and empty for what is not."""
+    """The results for the view of one session; None or empty for results that are not computed."""
 
     frame = param.Parameter(default=None, doc="the `engine.EscapeMap` in view, finished or not; None before its first frame")
     analyses = param.Parameter(default=NO_ANALYSES, doc="the `MapAnalyses` of the map")

@@ -1,7 +1,7 @@
-"""How many pages the processors have room for: the one rule from which work is put off and further pages are refused.
+"""The number of pages for which the processors suffice. This one rule postpones work and refuses new pages.
 
-A page is reserved the processor time that an acting visitor takes, from its opening on, so that a server does not fill up while
-its visitors are still reading. What other programs leave of the processors is measured, as is the use of the event loop.
+From its opening on, a page reserves the processor time that an active visitor uses, so that a server does not fill up while its
+visitors are still reading. Two values are measured: the processor time that other programs leave, and the use of the event loop.
 """
 
 from __future__ import annotations
@@ -18,68 +18,68 @@ from app.runtime.fair_share import FairShare
 from engine.foundations.execution import count_cores
 
 FULL = 0.8
-"""Share of the processors, and of the event loop, that pages may take in all: beyond it, further ones are refused."""
+"""Largest share of the processors, and of the event loop, for all pages together. Above it, new pages are refused."""
 
 CROWDED = 0.5
-"""Share from which work that can wait is put off, so that those who are in wait for nothing else."""
+"""Above this share, work that can wait is postponed, so that visitors of open pages do not wait for it."""
 
 OF_ONE_VISITOR = 0.5
-"""Largest part of the room that the pages of one visitor take from others."""
+"""Largest part of the capacity that the pages of one visitor take from other visitors."""
 
 MOST_CORES, LEAST_CORES = 1.0, 0.2
-"""Processors that a process uses: at most one, as its threads share the interpreter lock, and at least what the system gives it
-beside programs that keep all of them busy."""
+"""Processors that a process uses: at most one, because its threads share the interpreter lock, and at least the
+part that the system gives it when other programs keep all processors busy."""
 
 WINDOW_SECONDS = 20
-"""The use of the processors is a mean over this time."""
+"""The use of the processors is averaged over this time."""
 
 ACTING_SECONDS = 300.0
 """A page counts in full for this time after the visitor's last action."""
 
 IDLE_WEIGHT = 0.1
-"""How much of a page an idle one counts."""
+"""The fraction of a page that an idle page counts as."""
 
 CONNECTION_SECONDS = 15.0
-"""A page without a connection counts for this time after its last action: it is being opened or reconnected."""
+"""A page without a connection counts for this time after its last action, because it may be opening or reconnecting."""
 
 
 class ProcessorTimes(NamedTuple):
     """Processor times so far, in seconds, at a time of a monotonic clock.
 
-    Programs of low priority are left out, as they give way: so do the computations of this program.
+    Programs of low priority are left out because they give way; the computations of this program also have low priority.
     """
 
     now: float
     all_programs: float
-    """Of all programs on the processors that this process may use."""
+    """Time of all programs on the processors that this process may use."""
     own: float
-    """Of this process, and of those that compute for it."""
+    """Time of this process, and of the processes that compute for it."""
     loop: float
-    """Of its event loop."""
+    """Time of its event loop."""
 
 
 class Capacity:
-    """Measures what the processors have left, and says whether there is room.
+    """Measures the free processor time, and decides whether there is capacity for more.
 
     Parameters
     ----------
     cores_per_page
-        Processors that an acting visitor takes.
+        Processors that an active visitor uses.
     processes
         Number of server processes that share the processors; the others are assumed to be as busy as this one.
     measure
         Returns the present times; called on the thread of the event loop.
     clock
-        The clock of the times.
+        Monotonic clock in seconds.
     cores
         Number of processors.
 
     Attributes
     ----------
     cores
-        Number of processors for this process, apart from those that other programs take.
+        Number of processors available to this process, without the part that other programs use.
     loop
-        Share of its time that the event loop is busy.
+        Share of the time for which the event loop is busy.
     """
 
     def __init__(
@@ -96,7 +96,7 @@ class Capacity:
         self.cores, self.loop = self._share_of(0.0), 0.0
 
     def update(self) -> bool:
-        """Measure, if the last time was a second ago; returns whether it was."""
+        """Measure if the last measurement was at least a second ago; return whether this was the case."""
         if self._clock() < self._times[-1].now + 1.0:
             return False
         times = self._measure()
@@ -109,7 +109,7 @@ class Capacity:
         return True
 
     def is_crowded(self, pages: Mapping[str, float]) -> bool:
-        """Whether work that can wait should be put off, given the number of pages by visitor."""
+        """Whether work that can wait should be postponed, given the number of pages by visitor."""
         return self.taken(pages) > CROWDED
 
     def has_room(self, pages: Mapping[str, float], visitor: str = "") -> bool:
@@ -119,7 +119,7 @@ class Capacity:
         return self.taken(counted | {visitor: counted.get(visitor, 0.0) + 1.0}) <= FULL
 
     def taken(self, pages: Mapping[str, float]) -> float:
-        """The share of the processors that the pages may take by their number, or that of the event loop if it is larger."""
+        """Share of the processors that this number of pages may use, or the busy share of the event loop if that is larger."""
         return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop)
 
     def _share_of(self, others: float) -> float:
@@ -127,7 +127,7 @@ class Capacity:
 
 
 def count_page(share: FairShare, *, connected: bool) -> float:
-    """How much of a page counts: less of one that is idle, nothing of one that was left."""
+    """The fraction of a page that counts: less for an idle page, 0 for a page that was left."""
     idle = share.idle_seconds()
     if not connected:
         return float(idle < CONNECTION_SECONDS)
@@ -135,14 +135,14 @@ def count_page(share: FairShare, *, connected: bool) -> float:
 
 
 def processor_times(low: float, elsewhere: float) -> ProcessorTimes:
-    """The present times.
+    """Return the present times.
 
     Parameters
     ----------
     low
         Processor time that this process has used with low priority, in seconds.
     elsewhere
-        That which others have used for it.
+        Processor time that other processes have used for this one, in seconds.
     """
     usable = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
     processors = [each for number, each in enumerate(psutil.cpu_times(percpu=True)) if usable is None or number in usable]

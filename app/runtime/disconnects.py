@@ -1,4 +1,4 @@
-"""Cancel the jobs of a page soon after its last connection closes, long before its session expires."""
+"""Cancels the jobs of a page soon after its last connection is closed, long before its session expires."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class DisconnectMonitor:
         self._connected: WeakSet[Any] = WeakSet()
 
     def check(self) -> None:
-        """Call the callbacks of documents that were connected and are not any more."""
+        """Call the callbacks of documents that have lost their last connection."""
         for session in list(self._sessions()):
             if session.connection_count:
                 self._connected.add(session)

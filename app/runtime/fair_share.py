@@ -1,6 +1,6 @@
-"""The share of the event loop's time that one page may take: beyond it, its messages wait.
+"""The share of the event loop's time that one page may use. Above it, the page's messages wait.
 
-One thread serves all pages of a process, so that a page which keeps it busy delays the others, whatever it asks for.
+One thread serves all pages of a process, so a page that keeps the thread busy delays all others.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from functools import partial
 from typing import Any
 
 SHARE = 0.5
-"""Largest share of the thread's time that a page takes in the long run; drags with 30 messages per second take 0.2."""
+"""Largest share of the thread's time that a page uses in the long run; drags with 30 messages per second use 0.2."""
 
 BURST_SECONDS = 3.0
-"""Time that a page may take at once after a pause, and most that it has to make up for."""
+"""Time that a page may use at once after a pause, and limit of the time that it can be in arrears."""
 
 
 class FairShare:
-    """Counts the processor time that the messages and callbacks of a page take on the event loop.
+    """Counts the processor time that the messages and callbacks of a page use on the event loop.
 
     Parameters
     ----------
     clock
         Seconds of a monotonic clock.
     busy_clock
-        Processor time of the event loop's thread: time in which it waits for the interpreter lock, as beside a compilation, is
-        not that of the page.
+        Processor time of the event loop's thread. Time in which the thread waits for the interpreter lock, for example during a
+        compilation, does not count.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic, busy_clock: Callable[[], float] = time.thread_time) -> None:
@@ -44,7 +44,7 @@ class FairShare:
             self._acted = now
 
     def idle_seconds(self) -> float:
-        """Time since the page last took time of the event loop, or since it was opened."""
+        """Time since the page last used the event loop, or since it was opened."""
         return self._clock() - self._acted
 
     def wait_seconds(self) -> float:
@@ -54,7 +54,7 @@ class FairShare:
 
     @types.coroutine
     def count[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
-        """Await a coroutine and count the processor time of its steps, without that of others which run while it waits."""
+        """Await a coroutine and count the processor time of its steps, without that of other code that runs while it waits."""
         step: Callable[[], Any] = partial(coroutine.send, None)
         while True:
             begin = self._busy_clock()

@@ -41,14 +41,14 @@ def not_ready_reason(state: ProcessState) -> str | None:
 def refusal_reason(state: ProcessState, network: str) -> str | None:
     """Return a sentence that says why no session can be created; None when one can.
 
-    Weaker than readiness: sessions are created while the integrators are compiled, and wait on the page.
+    This is weaker than readiness: while the integrators are compiled, sessions are created and wait on the page.
 
     Parameters
     ----------
     state
         The state of the process.
     network
-        Whoever asks for the session, as in `ProcessState.sockets`.
+        The network that asks for the session, as in `ProcessState.sockets`.
     """
     if state.stopping.is_set():
         return "The server is stopping."
@@ -65,7 +65,7 @@ def _full_reason(state: ProcessState, network: str = "") -> str | None:
 
 
 def _is_alone(state: ProcessState, network: str) -> bool:
-    """Whether a visitor disturbs nobody: on this machine, or with one page at most, which is perhaps being reloaded."""
+    """Whether a visitor does not disturb others: on this machine, or with at most one page, which may be reloading."""
     return (network != "" and is_near(network)) or state.sockets.total() <= min(state.sockets[network], 1)
 
 
@@ -76,7 +76,7 @@ class StateCollector(Collector):
         self._state = state
 
     def describe(self) -> list[Metric]:
-        """Return nothing, so that registration does not collect."""
+        """Return nothing, because the values are not needed at registration."""
         return []
 
     def collect(self) -> Iterator[Metric]:

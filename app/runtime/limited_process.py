@@ -1,4 +1,4 @@
-"""Processes for what visitors type: their time and memory are limited, and the server goes on when they end."""
+"""Processes for formulas that visitors type: time and memory are limited, and the server continues when such a process ends."""
 
 from __future__ import annotations
 
@@ -16,43 +16,43 @@ from queue import LifoQueue
 from loky import ProcessPoolExecutor
 
 SECONDS = 5
-"""Processor time of a review."""
+"""Limit of the processor time of a review."""
 
 COMPILATION_SECONDS = 60
-"""Processor time of the compilation of one kernel; those of the largest formulas take 10 s."""
+"""Limit of the processor time for compiling one kernel; kernels of the largest formulas need 10 s."""
 
 PROCESSES = 2
-"""Number of processes: while one is busy with a formula of one address, another address waits for nothing."""
+"""Number of processes: while one is busy with the formula of one address, other addresses do not wait."""
 
 IDLE_SECONDS = 300
-"""A process without a call for so long ends; it has 100 MB."""
+"""A process ends after this time without a call, because it uses 100 MB."""
 
 MEMORY = 2**30
-"""Memory of the process beside that which it has when it starts, in bytes."""
+"""Memory that the process may use in addition to its memory at the start, in bytes."""
 
-# How often the process looks whether the server is still there, in seconds.
+# Interval at which the process checks whether the server still exists, in seconds.
 _WATCH_SECONDS = 2.0
-# A call on a busy machine takes at most this many times its processor time.
-_PATIENCE = 4
-# How often a call looks whether anyone still waits for it; if not, it ends after that many seconds.
+# On a busy machine a call takes at most this many times its processor time, in addition to the start of its process.
+_PATIENCE, _START_SECONDS = 4, 60.0
+# Interval at which a call checks whether anyone still waits for it, and the time until it ends if nobody does, in seconds.
 _POLL_SECONDS, _ABANDONED_SECONDS = 0.1, 1.0
 
 
 class LimitError(ValueError):
-    """A call needs more time or memory than it may have."""
+    """A call needs more time or memory than is allowed."""
 
 
 class LimitedProcess:
-    """A process that makes one call at a time; it starts with the first call, and again after it has ended.
+    """A process that makes one call at a time. It starts with the first call, and again after it has ended.
 
-    It ends when a call exceeds a limit, after `IDLE_SECONDS` without a call, and with the process that made it.
+    It ends when a call exceeds a limit, after `IDLE_SECONDS` without a call, or when the process that made it ends.
 
     Parameters
     ----------
     seconds
-        Processor time of a call, a whole number from 1.
+        Limit of the processor time of a call, a whole number from 1.
     memory
-        Memory of the process beside that which it has when it starts, in bytes.
+        Memory that the process may use in addition to its memory at the start, in bytes.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class LimitedProcess:
         self.stopped, self.computed = 0, 0.0
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
-        """The result of a function, which can be pickled with it.
+        """Return the result of a function; function and result are pickled.
 
         Parameters
         ----------
@@ -118,18 +118,18 @@ class LimitedProcess:
         )
 
     def _wait[Result](self, future: Future[Result], cancel: threading.Event) -> Result:
-        """The result, unless it takes too long, or is cancelled."""
+        """Return the result unless the call takes too long or is cancelled."""
         begun = time.monotonic()
         while not wait([future], _POLL_SECONDS).done:
             seconds = time.monotonic() - begun
             if cancel.is_set() and seconds > _ABANDONED_SECONDS:
                 raise CancelledError
-            if seconds > _PATIENCE * self._seconds:
+            if seconds > _START_SECONDS + _PATIENCE * self._seconds:
                 raise FutureTimeoutError
         return future.result()
 
     def _submit[Result](self, call: Callable[[], Result]) -> Future[Result]:
-        """Start a call, in a new process if there is none or if it has ended between two calls."""
+        """Start a call, in a new process if there is none or the last one has ended."""
         if self._executor is not None:
             with suppress(BrokenExecutor):
                 waiting: Future[Result] = self._executor.submit(call)
@@ -151,7 +151,7 @@ class LimitedProcesses:
             self._free.put(process)
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
-        """The result of a function in a process that is free, as by `LimitedProcess`."""
+        """Return the result of a function in a free process, as `LimitedProcess` does."""
         process = self._free.get()
         try:
             return process(function, cancel)
@@ -175,9 +175,9 @@ class LimitedProcesses:
 
 
 def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple[Result, float]:
-    """The result of a function, and its processor time; the system ends the process when it has used these seconds."""
+    """Return the result of a function and its processor time; the system ends the process when the time limit is used up."""
     begun = time.process_time()
-    # Not on Windows, where the caller's patience is the only limit.
+    # Windows has no such limit; there only the caller's waiting time is limited.
     with suppress(ImportError):
         import resource
 
@@ -188,7 +188,7 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple
 
 
 def _begin(memory: int, server: int) -> None:
-    """Prepare the process for its calls."""
+    """Prepare the process for calls."""
     threading.Thread(target=_end_with, args=(server,), daemon=True).start()
     _limit_memory(memory)
 

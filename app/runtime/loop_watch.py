@@ -1,6 +1,6 @@
 """The delay of the event loop: while it is high, work is postponed, and its causes are logged.
 
-A callback ticks on the loop; while its tick is overdue, a thread looks at the stack of the loop's thread.
+A callback runs periodically on the loop; while a run is overdue, a thread reads the stack of the loop's thread.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ TICK_SECONDS = 0.02
 HIGH_SECONDS = 0.05
 """Delay of a tick above which the load is high."""
 
-# Factor by which a delay decays per tick, 0.7 in 0.1 s: the load is normal again half a second after a peak.
+# Factor by which a delay decays per tick, 0.7 in 0.1 s: half a second after a peak the load is normal again.
 _DECAY = 0.7 ** (TICK_SECONDS / 0.1)
 
 LONGEST_SECONDS = 2.0
-"""A high load is reported as normal for one tick after this time, so that postponed work is delayed but never starved."""
+"""After this time a high load is reported as normal for one tick, so that postponed work is delayed but not blocked."""
 
 
 class LoadMonitor:
@@ -58,7 +58,7 @@ class LoadMonitor:
         return late
 
     def overdue_seconds(self) -> float:
-        """Time since the next tick was due, negative before; for other threads."""
+        """Time since the next tick was due, negative before; other threads may call this."""
         return self._clock() - self._due if self._due is not None else 0.0
 
     def is_high(self) -> bool:
@@ -67,15 +67,16 @@ class LoadMonitor:
 
 
 SLOW_SECONDS = 0.05
-"""A turn of the event loop that takes longer is logged and counted."""
+"""An iteration of the event loop that takes longer than this is logged and counted."""
 
-# A slow turn may begin up to one interval before the tick that it delays, so the delay is shorter than the turn by up to that.
+# The measured delay is shorter than the slow iteration by up to one interval, because the iteration may begin before the tick is
+# due.
 _REPORTED = SLOW_SECONDS - TICK_SECONDS
 _SAMPLE_SECONDS = 0.5 * TICK_SECONDS
 _APP = Path(__file__).parents[1]
 # Modules of the app that only pass calls on.
 _PLUMBING = ("runtime", "server", "browser/bokeh_patches")
-# Modules outside the app that run the loop; a stack of nothing else is a loop that waits for events or for a processor.
+# Modules outside the app that run the loop; if a stack contains nothing else, the loop waits for events or for a processor.
 _LOOP = (
     "asyncio",
     "selectors",
@@ -88,16 +89,16 @@ _LOOP = (
 )
 
 WAITING = "none: the thread waited for the interpreter lock or a processor"
-"""Cause of a delay in which the loop ran no callback when it was looked at."""
+"""Cause of a delay during which the loop ran no callback."""
 
 log = logging.getLogger(f"bokeh.{__name__}")
 
 
 class LoopWatch:
-    """Logs and counts the turns of the event loop that take longer than `SLOW_SECONDS`; create it on the loop's thread.
+    """Logs and counts iterations of the event loop that take longer than `SLOW_SECONDS`; create it on the loop's thread.
 
-    The length of a turn is known to within `TICK_SECONDS`, so some turns that are shorter than `SLOW_SECONDS` by less than this
-    are reported as well.
+    The length of an iteration is known only to within `TICK_SECONDS`, so some iterations that are shorter than `SLOW_SECONDS` by
+    less than this are reported as well.
 
     Parameters
     ----------
@@ -106,7 +107,7 @@ class LoopWatch:
     delays
         Counts the delays by cause, in seconds.
     processor_time
-        Of the thread that calls it, in seconds.
+        Processor time of the calling thread, in seconds.
     """
 
     def __init__(self, load: LoadMonitor, delays: Histogram, processor_time: Callable[[], float] = time.thread_time) -> None:
@@ -117,7 +118,7 @@ class LoopWatch:
         self._collecting, self._collected = 0.0, 0.0
 
     def on_collection(self, phase: str, info: dict[str, int]) -> None:
-        """Measure the garbage collections on the loop's thread, which any allocation may start; one of `gc.callbacks`."""
+        """Measure garbage collections on the loop's thread, which any allocation may start; one of `gc.callbacks`."""
         if threading.get_ident() != self._thread:
             return
         if phase == "start":
@@ -134,14 +135,14 @@ class LoopWatch:
         if late > _REPORTED:
             cause = Counter(samples).most_common(1)[0][0] if samples else WAITING
             self._delays.labels(cause).observe(late)
-            # Other threads and processes also delay the loop, so the message gives the loop's own processor time as well.
+            # Other threads and processes also delay the loop, so the message contains the loop's own processor time as well.
             log.info(
                 "event loop %.0f ms late, %.0f ms of its own, with %.0f ms of garbage collection; cause: %s",
                 *(1000.0 * seconds for seconds in (late, busy, collected)), cause,
             )  # fmt: skip
 
     def watch(self, stopping: threading.Event) -> None:
-        """Look at the loop's stack whenever its tick is overdue, until the server stops; runs on a thread of its own."""
+        """Read the loop's stack whenever its tick is overdue, until the server stops; runs on a thread of its own."""
         while not stopping.wait(_SAMPLE_SECONDS):
             frame = sys._current_frames().get(self._thread) if self._load.overdue_seconds() > _SAMPLE_SECONDS else None
             if frame is not None:
@@ -149,7 +150,7 @@ class LoopWatch:
 
 
 def find_cause(innermost: FrameType) -> str:
-    """The outermost function of the app on a stack, apart from those that pass calls on; else the outermost of a library."""
+    """Return the outermost function of the app on a stack that does not only pass calls on, or the outermost of a library."""
     frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
     own = [place for place in map(_place_in_app, frames) if place is not None]
     theirs = [place for place in map(_place_in_library, frames) if place is not None]

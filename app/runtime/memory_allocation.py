@@ -1,4 +1,4 @@
-"""Settings of glibc's memory allocation for a server of many threads: memory of large arrays is given back."""
+"""Settings of glibc's memory allocation for a server with many threads: the memory of large arrays is returned to the system."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from typing import NamedTuple
 
 class _Option(NamedTuple):
     variable: str
-    """Environment variable that sets it for any program."""
+    """Environment variable that sets the option for any program."""
     parameter: int
-    """Its number in ``malloc.h``."""
+    """Number of the option in ``malloc.h``."""
     value: int
 
 
 _OPTIONS = (
-    # By default eight arenas per core, each of which keeps what its threads have freed.
+    # By default there are eight arenas per core, each of which keeps the memory that its threads have freed.
     _Option("MALLOC_ARENA_MAX", -8, 2),
-    # Bytes from which an array has memory of its own; those of a map with 224 × 224 pixels have more. By default this number
-    # grows to 32 MiB.
+    # Size in bytes from which an array has its own memory mapping; arrays of a map with 224 × 224 pixels are larger. By default
+    # this number grows to 32 MiB.
     _Option("MALLOC_MMAP_THRESHOLD_", -3, 2**17),
 )
 
 
 def reduce_fragmentation() -> None:
-    """Set the options whose environment variables are not set; call before threads start. No effect without glibc."""
+    """Set the options whose environment variables are not set; call before threads start. Without glibc this has no effect."""
     if platform.libc_ver()[0] != "glibc":
         return
     library = ctypes.CDLL(None)

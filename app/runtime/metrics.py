@@ -8,14 +8,14 @@ from prometheus_client import CollectorRegistry, Counter, Histogram
 
 NAMESPACE = "escape_explorer"
 
-# Seconds; from an immediate answer to waiting for a compilation.
+# Upper bounds in seconds: from an immediate answer to waiting for a compilation.
 _FIRST_FRAME_BUCKETS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 
 _DELAY_BUCKETS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
 
 class ServerMetrics:
-    """Counters of a process, in a registry of their own."""
+    """Counters of a process, in their own registry."""
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()

@@ -33,7 +33,7 @@ class ProcessState:
     settings
         Settings of the process.
     sessions
-        Returns the open Bokeh sessions; none until the server sets it.
+        Returns the open Bokeh sessions; empty until the server sets it.
     sockets
         Number of open WebSockets by address.
     making_page
@@ -41,13 +41,13 @@ class ProcessState:
     jobs
         Background jobs of all sessions.
     limited
-        The processes for what visitors type.
+        Processes that handle what visitors type.
     compiler
-        The process that compiles.
+        Process that compiles kernels.
     load
         Delay of the event loop.
     capacity
-        How many pages the processors have room for.
+        Number of pages for which the processors suffice.
     metrics
         Prometheus metrics.
     kernels_ready
@@ -86,7 +86,7 @@ class ProcessState:
         self.capacity = Capacity(self.settings.cores_per_page, self.settings.processes, self._processor_times)
 
     def fair_share(self, document: Document) -> FairShare:
-        """The share of a document's page, whatever the number of its connections."""
+        """Return the share of a document's page, for all of its connections."""
         return self._shares.setdefault(document, FairShare())
 
     def _processor_times(self) -> ProcessorTimes:
@@ -101,7 +101,7 @@ class ProcessState:
         return pages
 
     def adapt_to_load(self) -> None:
-        """Put off work that can wait if there is too much; call after each tick of `load` on the event loop."""
+        """Postpone work that can wait if there is too much; call after each tick of `load` on the event loop."""
         if self.capacity.update():
             self._is_crowded = self.capacity.is_crowded(self.pages())
         self.jobs.pause_background(self.load.is_high())
@@ -129,7 +129,7 @@ def process_state() -> ProcessState:
 
 
 def start_process_state(settings: Settings) -> ProcessState:
-    """Start a new state of this process, in place of an earlier one; sessions that are open keep theirs."""
+    """Start a new state of this process, in place of an earlier one; open sessions keep the earlier one."""
     with _lock:
         return _start(settings)
 

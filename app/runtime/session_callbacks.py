@@ -1,4 +1,4 @@
-"""Callbacks that worker threads may call and that run on the event loop under the lock of a session.
+"""Callbacks that worker threads may call; they run on the event loop under the lock of a session.
 
 Bokeh's ``Document.locked_callback`` is not used: it schedules its calls through events of the document. While a
 callback holds these events back (``pn.io.hold``), Panel and Bokeh copy the list of held events and then replace it; an
@@ -69,7 +69,7 @@ class _LockedCallback:
 
     def __call__(self, *args: Any, **kwargs: Any) -> None:
         self._calls.append(partial(self._function, *args, **kwargs))
-        # The loop is closed when the server has stopped.
+        # The loop is closed after the server has stopped.
         with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(self._start)
 
@@ -84,7 +84,7 @@ class _LockedCallback:
             except Exception:
                 log.exception("the changes of a callback could not be sent")
                 self._calls.clear()
-            # Each call has a turn of the loop.
+            # Each call runs in its own iteration of the loop.
             await asyncio.sleep(0)
 
     def _open_session(self) -> SessionContext | None:
@@ -96,8 +96,8 @@ class _LockedCallback:
         if self._calls:
             call = self._calls.popleft()
             try:
-                # Panel may hold back changes of widgets until the socket is free. Other changes must not overtake them, because
-                # they may concern models that the held changes add.
+                # Panel may hold back changes of widgets until the socket is free. Other changes must not be sent before them,
+                # because they may concern models that the held changes add.
                 with set_curdoc(document), pn.io.hold(document):
                     call()
             except Exception:

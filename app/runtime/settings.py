@@ -47,7 +47,7 @@ def _in_range[Number: (int, float)](value: Number, low: Number, high: Number) ->
 
 def _parse_origins(text: str) -> tuple[str, ...]:
     origins = tuple(text.split())
-    # Reject separators of directives and headers, which could inject another one.
+    # Separators of directives and headers are rejected, because they could inject another one.
     if not all(origin.isascii() and origin.isprintable() and not set(origin) & set(";,'\"") for origin in origins):
         raise ValueError
     return origins
@@ -79,9 +79,9 @@ class Settings:
     pages_per_address
         Maximum number of sessions, and of WebSockets, of one address (IPv6: of one network).
     most_connections
-        Maximum number of open connections besides WebSockets; further ones are closed.
+        Maximum number of open connections besides WebSockets; additional ones are closed.
     compiled_operations
-        Maximum number of compiled operations of the integrators of all potentials but those of the catalogue; code is never
+        Maximum number of compiled operations of the integrators of all potentials outside the catalogue; compiled code is never
         unloaded.
     cache_bytes
         Size limit of the result cache, in bytes; a complete map of 224 × 224 pixels takes 1.4 MB.
@@ -94,11 +94,11 @@ class Settings:
     processes
         Number of server processes that share the processors of the machine.
     cores_per_page
-        Processors that an acting visitor takes (`app.runtime.capacity`).
+        Processors that an active visitor uses (see `app.runtime.capacity`).
     frame_ancestors
-        Origins that may embed the page in a frame; empty for none.
+        Origins that may embed the page in a frame; empty if no origin may.
     bokeh_patches
-        Whether two functions of Bokeh are replaced by faster ones (`app.browser.bokeh_patches`).
+        Whether two functions of Bokeh are replaced by faster ones (see `app.browser.bokeh_patches`).
     """
 
     largest_resolution: int = _setting(1024, _integer(16, 4096))

@@ -14,12 +14,13 @@ from app.runtime.health import refusal_reason
 from app.runtime.process_state import process_state
 from app.runtime.settings import variable_name
 from app.runtime.visitors import network_of, visitor_of
+from app.server.session_tokens import may_begin_session
 
 LONGEST_LINK = 8192
-"""Most characters of the address of a page."""
+"""Largest length of the address of a page, in characters."""
 
 RETRY_SECONDS = 10
-"""Time after which a refused page is asked for again, in seconds."""
+"""Interval at which the browser asks again for a refused page, in seconds."""
 
 RETRIED = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
 """Statuses of refused pages that may be served later."""
@@ -45,7 +46,7 @@ def admit(request: Any) -> None:
 
 
 def refusal_page(sentence: str) -> str:
-    """Return a page that says why a page is refused, and asks for it again after `RETRY_SECONDS`."""
+    """Return a page that says why a page is refused, and asks for the page again after `RETRY_SECONDS`."""
     head = (
         f"<meta charset=utf-8><meta name=viewport content='width=device-width'><meta http-equiv=refresh content={RETRY_SECONDS}>"
     )
@@ -53,17 +54,30 @@ def refusal_page(sentence: str) -> str:
     return f"<!doctype html><html lang=en><head>{head}<title>Escape Explorer</title></head><body>{body}</body></html>"
 
 
-def check_session(token: str, application_context: Any, address: str) -> None:
-    """Return for WebSockets of open sessions, and for others, such as those that reconnect after a pause, while there is room.
+def check_session(token: str, application_context: Any, address: str, application: Any) -> None:
+    """Return for WebSockets of open sessions. For those of recent pages, return while there is room.
+
+    Parameters
+    ----------
+    token
+        Signed by this server.
+    application_context
+        Bokeh's, with the open sessions.
+    address
+        Of the visitor.
+    application
+        The server's web application, with the time within which a token may begin a session.
 
     Raises
     ------
     bokeh.protocol.exceptions.ProtocolError
-        When the server is full or stopping, with the reason.
+        When the session has ended and the token is old, or when the server is full or stopping, with the reason.
     """
     session = get_session_id(token)
     if any(each.id == session for each in application_context.sessions):
         return
+    if not may_begin_session(application, token):
+        raise ProtocolError(f"The session has ended, and its page is older than {application.session_token_expiration} s.")
     reason = refusal_reason(process_state(), network_of(address))
     if reason is not None:
         raise ProtocolError(reason)

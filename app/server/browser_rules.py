@@ -1,6 +1,6 @@
-"""What a browser may set on the server: the values of widgets, the ranges and sizes of plots, and the events of models.
+"""The changes that a browser may make on the server: values of widgets, ranges and sizes of plots, and events of models.
 
-Bokeh checks the types of properties only, while it applies a message, and Panel checks values in a callback; both answer an
+While Bokeh applies a message, it checks only the types of properties, and Panel checks values in a callback; both answer an
 invalid value with a traceback in the log. Here a message is checked as a whole before Bokeh gets it.
 """
 
@@ -37,10 +37,10 @@ from panel.models.layout import Card, Column
 from panel.models.widgets import Player
 
 LONGEST_TEXT = 4000
-"""Most characters of any text in a message."""
+"""Largest length of any text in a message, in characters."""
 
 MOST_VALUES = 2000
-"""Most values in a message, nested ones included."""
+"""Largest number of values in a message, including nested ones."""
 
 _LARGEST_NUMBER = 1e15
 _DEEPEST = 12
@@ -49,11 +49,11 @@ Check = Callable[[Model, Any], bool]
 
 
 class RefusedMessageError(ValueError):
-    """A message that no page sends; one sentence with what is wrong."""
+    """A message that no page sends; one sentence says what is wrong."""
 
 
 class OutdatedMessageError(RefusedMessageError):
-    """A message about a model that the server has removed meanwhile."""
+    """A message about a model that the server has removed in the meantime."""
 
 
 def find_choices(content: Any, document: Document) -> list[tuple[Model, str]]:
@@ -71,12 +71,12 @@ def check_patch(content: Any, document: Document) -> None:
     content
         The message's content, parsed from JSON.
     document
-        The document that it would change.
+        The document that the message would change.
 
     Raises
     ------
     RefusedMessageError
-        When the page cannot have sent it.
+        If the page cannot have sent the message.
     """
     if not isinstance(content, dict) or content.keys() != {"events"} or not isinstance(content["events"], list):
         raise RefusedMessageError("a patch must have a list of events")
@@ -100,7 +100,7 @@ def check_patch(content: Any, document: Document) -> None:
 
 
 def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
-    """The value in Python. Events of unknown classes or with other fields than theirs raise errors of all kinds."""
+    """Return the event as a Python object. Unknown classes and wrong fields raise errors of various types."""
     try:
         return decoder.decode(value)
     except UnknownReferenceError as error:
@@ -112,7 +112,7 @@ def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
 
 
 def _check_range(changed: Range1d, **values: float) -> None:
-    """The ends of a range may change one after the other, but not their order."""
+    """The ends of a range may change one after the other, but their order must not change."""
     ends = {"start": changed.start, "end": changed.end} | values
     if (ends["end"] - ends["start"]) * (changed.end - changed.start) <= 0.0:
         raise RefusedMessageError(f"a range from {ends['start']} to {ends['end']}")
@@ -144,7 +144,7 @@ _NUMBERS = ("x", "y", "sx", "sy", "x0", "x1", "y0", "y1")
 
 
 def _check_values(events: Any, known: Container[str]) -> None:
-    """Only few and small numbers, texts, references, lists, maps and events are accepted."""
+    """Accept only few and small numbers, texts, references, lists, maps and events."""
     for number, (depth, each) in enumerate(_walk(events, 0, known)):
         if number == MOST_VALUES or depth > _DEEPEST:
             raise RefusedMessageError("a patch with too many values")
@@ -153,9 +153,9 @@ def _check_values(events: Any, known: Container[str]) -> None:
 
 
 def _walk(value: Any, depth: int, known: Container[str]) -> Iterator[tuple[int, Any]]:
-    """All values with their depths, except the attributes of known models, which Bokeh ignores.
+    """Yield all values with their depths, except the attributes of known models, which Bokeh ignores.
 
-    A browser sends all attributes of a model that the server has added, not only its id, when it refers to it first.
+    When a browser first refers to a model that the server has added, it sends all attributes of the model and not only its id.
     """
     if isinstance(value, dict) and value.get("type") == "object" and isinstance(value.get("id"), str) and value["id"] in known:
         return
@@ -171,7 +171,7 @@ def _walk(value: Any, depth: int, known: Container[str]) -> Iterator[tuple[int, 
 
 def _is_plain(value: Any) -> bool:
     if isinstance(value, str):
-        # A lone surrogate cannot be written anywhere.
+        # A lone surrogate cannot be encoded.
         return len(value) <= LONGEST_TEXT and not any("\ud800" <= c <= "\udfff" for c in value)
     if isinstance(value, int | float):
         return _is_real(value)
@@ -179,7 +179,7 @@ def _is_plain(value: Any) -> bool:
 
 
 def _is_real(value: Any) -> bool:
-    # False for NaN.
+    # This is False for NaN.
     return isinstance(value, int | float) and abs(value) <= _LARGEST_NUMBER
 
 
@@ -188,7 +188,7 @@ def _quote(value: Any) -> str:
 
 
 def _is_between(value: Any, low: Any, high: Any) -> bool:
-    """Whether a value is a number within limits, each of which may be missing."""
+    """Whether a value is a number within limits; each limit may be missing."""
     return _is_real(value) and not isinstance(value, bool) and (low is None or low <= value) and (high is None or value <= high)
 
 
@@ -229,7 +229,7 @@ def _is_number(_: Any, value: Any) -> bool:
 
 
 def _is_position(_: Any, value: Any) -> bool:
-    """Also NaN, for a pointer outside a plot."""
+    """Accept NaN as well, for a pointer outside a plot."""
     return value is None or isinstance(value, int | float)
 
 
@@ -242,7 +242,7 @@ def _is_list_of_positions(_: Any, value: Any) -> bool:
 
 
 def _is_data(model: DataModel, name: str, value: Any) -> bool:
-    """Whether the parameter of a component that a property belongs to permits a value."""
+    """Whether a value is legal for the parameter of a component to which a property belongs."""
     # Panel has no public way from a data model to its component.
     owners = (each for each in param.concrete_descendents(JSComponent).values() if each._data_model is type(model))
     parameter = next((owner.param[name] for owner in owners if name in owner.param), None)
@@ -261,7 +261,7 @@ _CHOICES = (CheckboxGroup, RadioGroup, Select)
 
 
 class _DataProperties(dict[str, Check]):
-    """The properties of a component with parameters that are numbers, texts or maps."""
+    """Return the properties of a component whose parameters are numbers, texts or maps."""
 
     def __contains__(self, name: object) -> bool:
         return name not in ("name", "tags")
@@ -288,4 +288,4 @@ _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
     Selection: {"indices": _is_list_of_positions, "line_indices": _is_list_of_positions},
     DataModel: _DataProperties(),
 }
-"""The properties that a browser can change, and tests of their values, by class; they also hold for its subclasses."""
+"""The properties that a browser can change, and tests of their values, by class; they also apply to subclasses."""

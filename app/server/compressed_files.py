@@ -1,4 +1,4 @@
-"""Static files, compressed for browsers that accept that: the scripts of Bokeh and Panel are four times as small."""
+"""Static files, compressed for browsers that accept it: the scripts of Bokeh and Panel shrink to a quarter."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from pathlib import Path
 from tornado.ioloop import IOLoop
 from tornado.web import StaticFileHandler
 
-# Other files are compressed already.
+# Other types of files are compressed already.
 _SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map"})
-# Together these files have some megabytes when compressed.
+# Compressed, these files take some megabytes together.
 _KEPT_FILES = 64
 
 
 class CompressedFiles(StaticFileHandler):
-    """Answers with a file in compressed form; a mixin for other handlers of static files."""
+    """Answers with a compressed file; a mixin for other handlers of static files."""
 
     async def get(self, path: str, include_body: bool = True) -> None:
-        """Answer as the other handler does, but for what can be compressed."""
+        """Answer as the other handler does, but with a compressed file where possible."""
         accepts = "gzip" in self.request.headers.get("Accept-Encoding", "") and "Range" not in self.request.headers
         if not accepts or Path(path).suffix not in _SUFFIXES:
             await super().get(path, include_body)
@@ -36,7 +36,7 @@ class CompressedFiles(StaticFileHandler):
             self.set_status(304)
             return
         changed = Path(absolute_path).stat().st_mtime_ns
-        # A new version is compressed once, in up to 0.1 s.
+        # A new version is compressed once, which takes up to 0.1 s.
         content = await IOLoop.current().run_in_executor(None, _compressed, absolute_path, changed)
         self.set_header("Content-Encoding", "gzip")
         self.set_header("Content-Length", len(content))
@@ -46,5 +46,5 @@ class CompressedFiles(StaticFileHandler):
 
 @functools.lru_cache(maxsize=_KEPT_FILES)
 def _compressed(path: str, _changed: int) -> bytes:
-    """A file, compressed; `_changed` is the time of its last change."""
+    """Return a file, compressed; `_changed` is the time of its last change."""
     return gzip.compress(Path(path).read_bytes())

@@ -25,7 +25,7 @@ class _Uncached(SecurityHeaders):
 
 
 class Liveness(_Uncached):
-    """200 while the process answers; the same answer as ``panel serve --liveness``."""
+    """Answers 200 while the process responds; the answer is the same as of ``panel serve --liveness``."""
 
     def get(self) -> None:
         """Answer with JSON."""
@@ -33,7 +33,7 @@ class Liveness(_Uncached):
 
 
 class Readiness(_Uncached):
-    """200 when the server takes more visitors, otherwise 503 with the reason."""
+    """Answers 200 when the server accepts more visitors, otherwise 503 with the reason."""
 
     def get(self) -> None:
         """Answer with JSON."""
@@ -44,7 +44,7 @@ class Readiness(_Uncached):
 
 
 class Metrics(_Uncached):
-    """Metrics for Prometheus."""
+    """Answers with metrics for Prometheus."""
 
     def get(self) -> None:
         """Answer with the Prometheus text format."""
@@ -53,7 +53,7 @@ class Metrics(_Uncached):
 
 
 class Status(_Uncached):
-    """The same metrics for people."""
+    """Answers with the same metrics as a page for people."""
 
     def get(self) -> None:
         """Answer with HTML."""
@@ -62,7 +62,7 @@ class Status(_Uncached):
 
 
 class NotFound(SecurityHeaders):
-    """404 for every path without a handler."""
+    """Answers 404 for every path without a handler."""
 
     def prepare(self) -> None:
         """Refuse the request."""
@@ -75,7 +75,7 @@ ROUTES: list[tuple[str, type[SecurityHeaders]]] = [
     ("/metrics", Metrics),
     ("/status", Status),
 ]
-"""Paths and handlers, in the form of a ``panel serve --plugins`` module."""
+"""Return paths and handlers in the form of a ``panel serve --plugins`` module."""
 
 
 def status_page(sentence: str, registry: CollectorRegistry) -> str:
@@ -100,7 +100,7 @@ def _samples(registry: CollectorRegistry) -> list[tuple[str, float]]:
 
 
 def _label(documentation: str, sample: Any) -> str:
-    """The documentation of a metric, with the sample's labels in parentheses."""
+    """Return the documentation of a metric, with the sample's labels in parentheses."""
     labels = [label for label in sample.labels.values() if label]
     if sample.name.endswith("_count"):
         labels.append("count")

@@ -1,7 +1,7 @@
 """Tornado's HTTP server with limits, and with the routes of this server only.
 
-`Configurable.configure` of Tornado replaces the class of all HTTP servers of the process. It is the only public way to the web
-application and to the options of the HTTP server of ``panel serve``.
+`Configurable.configure` of Tornado replaces the class of all HTTP servers of the process. No other public interface gives access
+to the web application and to the options of the HTTP server of ``panel serve``.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tornado.iostream import IOStream
 from app.runtime.process_state import process_state
 from app.runtime.visitors import network_of
 from app.server.admission import LONGEST_LINK
-from app.server.routes import refuse_other_hosts, refuse_other_routes
+from app.server.routes import lead_to_page, refuse_other_hosts, refuse_other_routes
 
 LIMITS: Mapping[str, int] = {
     # Seconds until the next request of a connection, and until the end of its headers.
@@ -26,21 +26,21 @@ LIMITS: Mapping[str, int] = {
     "body_timeout": 10,
     # There are no uploads.
     "max_body_size": 64 * 1024,
-    # The request of a WebSocket has the link, its token, which can be longer, and cookies.
+    # The request of a WebSocket contains the link, its token, which can be longer than the link, and cookies.
     "max_header_size": 4 * LONGEST_LINK,
 }
 """Options of the HTTP server, in seconds and bytes."""
 
 UNTRUSTED = ("X-Real-Ip", "X-Scheme")
-"""Headers that Tornado prefers to ``X-Forwarded-For`` and ``X-Forwarded-Proto`` with ``--use-xheaders``; proxies that set
-those may pass these on from clients."""
+"""Headers that Tornado prefers to ``X-Forwarded-For`` and ``X-Forwarded-Proto`` with ``--use-xheaders``. A proxy
+that sets the latter may pass on the former from clients."""
 
 CONNECTIONS_PER_PAGE = 6
-"""Most connections that a browser opens to a host besides WebSockets."""
+"""Largest number of connections that a browser opens to a host besides WebSockets."""
 
 
 class LimitedHTTPServer(HTTPServer):
-    """HTTP server that closes connections beyond the limits at once, and mounts no routes but its own.
+    """HTTP server that closes connections beyond the limits at once, and adds no routes but its own.
 
     WebSockets are counted elsewhere. Behind a proxy (``--use-xheaders``) all connections come from one address, and only their
     total number is limited.
@@ -53,6 +53,7 @@ class LimitedHTTPServer(HTTPServer):
         if isinstance(self.request_callback, BokehTornado):
             refuse_other_routes(self.request_callback)
             refuse_other_hosts(self.request_callback)
+            lead_to_page(self.request_callback)
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
         """Serve a new connection, or close it."""
@@ -69,7 +70,7 @@ class LimitedHTTPServer(HTTPServer):
         return _WithoutUntrusted(super().start_request(server_conn, request_conn))
 
     def on_close(self, server_conn: Any) -> None:
-        """Forget a connection that is closed or has become a WebSocket."""
+        """Stop counting a connection that is closed or has become a WebSocket."""
         super().on_close(server_conn)
         self._open -= Counter([_network(server_conn.context.address)])
 
@@ -80,7 +81,7 @@ class LimitedHTTPServer(HTTPServer):
 
 
 class _WithoutUntrusted(HTTPMessageDelegate):
-    """Removes the headers in `UNTRUSTED` before another delegate gets a request."""
+    """Removes the headers in `UNTRUSTED` before another delegate receives a request."""
 
     def __init__(self, delegate: HTTPMessageDelegate) -> None:
         self._delegate = delegate

@@ -14,10 +14,10 @@ from tornado.websocket import WebSocketClosedError
 from app.runtime.settings import LogFormat
 
 LONGEST_MESSAGE = 400
-"""Most characters of a message, most of which may come from a visitor, as the address of a request."""
+"""Largest length of a message, in characters. Most of a message may come from a visitor, for example the address of a request."""
 
 _SESSION_CHARACTERS = 8
-# A shortened message keeps this many characters of its end, which names the visitor.
+# A shortened message keeps this many characters at its end, which contains the visitor's address.
 _LAST_CHARACTERS = 60
 _TRACEBACK_INDENT = "    "
 
@@ -33,14 +33,14 @@ def short_session_id() -> str | None:
 
 
 def add_session_id(record: logging.LogRecord) -> bool:
-    """Add the current session to a record; a filter that passes all records."""
+    """Add the current session to a record. This filter passes all records."""
     if session := short_session_id():
         record.session = session
     return True
 
 
 def shorten_message(record: logging.LogRecord) -> bool:
-    """Leave out the middle of a message that is too long; a filter that passes all records."""
+    """Shorten a message that is too long by omitting its middle. This filter passes all records."""
     message = record.getMessage()
     if len(message) > LONGEST_MESSAGE:
         first = message[: LONGEST_MESSAGE - _LAST_CHARACTERS - 3]
@@ -64,7 +64,7 @@ def escape_control_characters(text: str) -> str:
 
 
 class TextFormatter(logging.Formatter):
-    """Writes time, level, logger, session and message in one line; traceback lines are indented."""
+    """Writes time, level, logger, session and message on one line; traceback lines are indented."""
 
     def format(self, record: logging.LogRecord) -> str:
         """Format a record."""
@@ -78,7 +78,7 @@ class TextFormatter(logging.Formatter):
 
 
 class JsonLineFormatter(JsonFormatter):
-    """Writes a JSON object in one line: time (UTC), level, logger, message, session, exception and traceback."""
+    """Writes a JSON object on one line: time (UTC), level, logger, message, session, exception and traceback."""
 
     def __init__(self) -> None:
         names = {"levelname": "level", "name": "logger", "exc_info": "traceback"}

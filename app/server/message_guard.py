@@ -1,4 +1,4 @@
-"""Messages of one WebSocket, checked before Bokeh gets them: their form, size and number, and what they change."""
+"""Checks of the messages of one WebSocket before Bokeh gets them: their form, size and number, and what they change."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ LARGEST_FRAGMENT = 4 * 2**20
 """Size limit of a part of a message, in bytes. Most have less than 2 kB; models that the server has added are sent whole."""
 
 MOST_BUFFERS = 64
-"""Most binary parts of a message: the arrays of such a model."""
+"""Largest number of binary parts of a message: the arrays of such a model."""
 
 MESSAGES_PER_SECOND, MOST_AT_ONCE = 400.0, 4000
-"""Rate limit of the messages of a connection: fast drags on a screen with 144 frames per second have 300 per second."""
+"""Rate limit of the messages of a connection; fast drags on a screen with 144 frames per second send 300 per second."""
 
 REFUSED_COUNTS = 40
-"""How many messages a refused one counts as, since it costs a line in the log. The page itself sends none."""
+"""Number of messages that a refused one counts as, because it causes a line in the log. The page itself sends none."""
 
 BYTES_PER_MESSAGE = 16 * 1024
-"""A part of a message counts as one more message for each of these."""
+"""A part of a message counts as one additional message for each of these bytes."""
 
 # Header, metadata and content, then a header and a payload for each buffer.
 _PARTS, _PARTS_OF_BUFFER = 3, 2
@@ -37,7 +37,7 @@ class UnacceptableConnectionError(Exception):
 
 
 class MessageGuard:
-    """Collects the parts of messages and lets through what a page sends.
+    """Collects the parts of messages, and passes on the messages that a page sends.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class MessageGuard:
     Attributes
     ----------
     choices
-        What `find_choices` finds in the last message.
+        Result of `find_choices` for the last message.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -68,9 +68,9 @@ class MessageGuard:
         Raises
         ------
         RefusedMessageError
-            When the message must be ignored.
+            If the message must be ignored.
         UnacceptableConnectionError
-            When the connection must be closed because of invalid parts, too many messages or refusals.
+            If the connection must be closed because of invalid parts, too many messages or refusals.
         """
         is_payload = len(self._parts) > _PARTS and (len(self._parts) - _PARTS) % _PARTS_OF_BUFFER
         if isinstance(part, str) == bool(is_payload):
@@ -93,7 +93,7 @@ class MessageGuard:
         return parts
 
     def _count(self, messages: float) -> None:
-        """Fill the reserve by the time since the last message, and take from it."""
+        """Refill the reserve by the time since the last message, and take from it."""
         now = self._clock()
         self._left = min(self._left + MESSAGES_PER_SECOND * (now - self._last), MOST_AT_ONCE) - messages
         self._last = now

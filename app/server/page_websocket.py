@@ -1,4 +1,4 @@
-"""The WebSocket of a page: admits it, checks its messages, and closes it alone when it misbehaves."""
+"""The WebSocket of a page: it admits the page, checks its messages, and closes only this connection when they break the rules."""
 
 from __future__ import annotations
 
@@ -39,21 +39,21 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     """WebSocket of a page; sends small messages at once.
 
     A Bokeh message consists of a dozen WebSocket messages. By default, TCP delays all but the first until the client has
-    acknowledged it: one round trip, and up to 40 ms more (Nagle's algorithm with delayed acknowledgements, RFC 1122,
-    4.2.3.2 and 4.2.3.4).
+    acknowledged it: by one round trip, and up to 40 ms more (Nagle's algorithm with delayed acknowledgements, RFC 1122, 4.2.3.2
+    and 4.2.3.4).
 
-    Messages that no page sends are ignored, with one line in the log; floods and giant messages close the connection. Neither
-    reaches Bokeh. While the page takes more than its share of the event loop's time, its messages wait, and it says so; no more
-    of them are then read from the socket.
+    Messages that no page sends are ignored, with one line in the log. Too many or too large messages close the connection.
+    Neither kind reaches Bokeh. While the page uses more than its share of the event loop's time, its messages wait, a notice on
+    the page says so, and no more messages are read from the socket.
     """
 
-    # Tornado closes the connection when a part of a message is longer.
+    # Tornado closes the connection when a part of a message is longer than this.
     max_message_size = LARGEST_FRAGMENT
 
     _is_counted = False
 
     async def prepare(self) -> None:
-        """Refuse tokens that this server has not signed, before Bokeh or a login of Panel inflates them."""
+        """Refuse tokens that this server has not signed, before Bokeh or a login of Panel decompresses them."""
         if brings_own_token(self.application, self.request):
             await WSHandler.prepare(self)
             return
@@ -71,7 +71,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             address = str(self.request.remote_ip)
             count_socket(address)
             self._is_counted = True
-            check_session(self._token, self.application_context, address)
+            check_session(self._token, self.application_context, address, self.application)
             return super().open(*args, **kwargs)
         except Exception as error:
             return self._refuse_connection(error)
@@ -82,14 +82,15 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         except ProtocolError as error:
             self._refuse_connection(error)
         if self._is_over and self._open_session() is not None:
-            # Closed before Bokeh made the connection, which it would keep with its session for ever.
+            # The socket was closed before Bokeh made the connection, which Bokeh would otherwise keep with its session for ever.
             super().on_close()
 
     async def send_message(self, message: Message[Any]) -> None:
-        """Write all parts of a message at once, then wait until the socket has taken them.
+        """Write all parts of a message at once, then wait until the socket has accepted them.
 
-        Bokeh waits after each part and locks the socket meanwhile. While it is locked, Panel postpones its changes, and some of
-        them until the next change: ``panel.io.document._dispatch_msgs`` ends the postponement although changes were added.
+        Bokeh waits after each part and locks the socket while it waits. While the socket is locked, Panel postpones its changes,
+        and some of them until the next change: ``panel.io.document._dispatch_msgs`` ends the postponement although changes were
+        added.
         """
         await super().send_message(message)
         writes, self._writes = self._writes, []
@@ -102,7 +103,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         self._writes.append(WebSocketHandler.write_message(self, message, binary))
 
     async def on_message(self, message: str | bytes) -> None:
-        """Hand a message on to Bokeh if a page can have sent it, when the page has its share of time left."""
+        """Pass a message to Bokeh if a page can have sent it, when the page has its share of time left."""
         session = self._open_session()
         if session is not None:
             document = session.document
@@ -112,7 +113,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             self._refuse_connection(UnacceptableConnectionError("a message before the session is open"))
 
     async def _wait_for_share(self, session: Any, document: Document) -> None:
-        """Wait until the page may take more time; at once if there is no other page."""
+        """Wait until the page may use more time; return at once if there is no other page."""
         while (seconds := process_state().fair_share(document).wait_seconds()) and self._has_others() and not self._closed:
             process_state().metrics.messages_delayed.inc()
             if time.monotonic() >= self._told + PASSING_SECONDS:
@@ -139,7 +140,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
                 await session.with_document_locked(_send_again, document, self._guard.choices)
 
     def on_close(self) -> None:
-        """Tell Bokeh, unless it has given up the connection before."""
+        """Tell Bokeh that the connection is closed, unless Bokeh has already dropped it."""
         if self._is_counted:
             forget_socket(str(self.request.remote_ip))
         if self.connection is None or self._open_session() is not None:
@@ -147,11 +148,11 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         self._closed = self._is_over = True
 
     def _open_session(self) -> Any:
-        """The session; None before it is open and after Bokeh has given up the connection."""
+        """The session; None before it is open and after Bokeh has dropped the connection."""
         try:
             return None if self.connection is None else self.connection.session
         except AssertionError:
-            # Bokeh has no other sign of it.
+            # Bokeh has no other sign of this.
             return None
 
     def _refuse_connection(self, error: Exception) -> None:
@@ -161,7 +162,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
 
 
 async def _send_again(document: Document, choices: Sequence[tuple[Model, str]]) -> None:
-    """Send choices of the browser back, as it may have got an older choice of the server since it made them."""
+    """Send choices of the browser back: since it made them, it may have received an older choice from the server."""
     with set_curdoc(document), pn.io.hold(document):
         for model, name in choices:
             if model.document is document:

@@ -1,12 +1,12 @@
 """The routes that the page and the operator need, their handlers, and the hosts; all others are refused.
 
-Bokeh and Panel mount more: ``autoload.js`` creates sessions, and ``components`` imports the module that the address names.
+Bokeh and Panel add more routes: ``autoload.js`` creates sessions, and ``components`` imports the module that the address names.
 
 The handlers are installed in ``bokeh.server.urls``, from which Bokeh builds its web application. Bokeh documents both lists
 (https://docs.bokeh.org/en/latest/docs/reference/server/urls.html); Panel puts its own handlers there as well. They are the only
 public way to reach the handlers of ``panel serve`` without a command line option: lifecycle hooks get no reference to the web
-application, which already exists when they run. Not covered, because Bokeh and Panel add them elsewhere: the redirect from ``/``,
-``/favicon.ico``, ``/app/static`` and Panel's login pages.
+application, which already exists when they run. Not covered, because Bokeh and Panel add them elsewhere: ``/favicon.ico``,
+``/app/static`` and Panel's login pages.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 from bokeh.server.tornado import BokehTornado
 from bokeh.settings import settings as bokeh_settings
 from panel.io.server import DocHandler, RootHandler, WSHandler
-from tornado.web import Finish, HTTPError, StaticFileHandler
+from tornado.web import Finish, HTTPError, RedirectHandler, StaticFileHandler
 
 from app.browser.module_files import ROUTES as MODULES
 from app.runtime.process_state import process_state
@@ -29,7 +29,7 @@ from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
 from app.server.session_tokens import issue_token, use_token
 
-# Tornado fails to look for a file with a null character in its name.
+# Tornado fails when it looks for a file with a null character in its name.
 _FILES = "/static/(?!.*%00).*"
 
 OF_PAGE = ("", "/ws", _FILES)
@@ -54,12 +54,25 @@ def served_routes(application: BokehTornado) -> list[str]:
 
 def refuse_other_routes(application: BokehTornado) -> None:
     """Answer all other paths with status 404."""
-    # Tornado asks handlers that were added later first.
+    # Tornado tries handlers that were added later first.
     application.add_handlers(".*", [(f"(?!(?:{'|'.join(served_routes(application))})$).*", NotFound)])
 
 
+class ToPage(SecurityHeaders, RedirectHandler):
+    """Redirects from the root to the page, with the query of the link."""
+
+
+def lead_to_page(application: BokehTornado) -> None:
+    """Answer the root with the page of the server's only application; Bokeh's own redirect drops the query."""
+    paths = list(application.app_paths)
+    if len(paths) == 1:
+        # Relative, as a proxy may have removed a part of the path.
+        target = {"url": f".{paths[0]}", "permanent": False}
+        application.add_handlers(".*", [(f"{application.prefix}/", ToPage, target)])
+
+
 class OtherHost(SecurityHeaders):
-    """421 for requests to a host that this server does not have."""
+    """Answers 421 to requests for a host that this server does not have."""
 
     def prepare(self) -> None:
         """Refuse the request."""
@@ -70,14 +83,14 @@ def accepted_hosts(application: BokehTornado) -> str:
     """The pattern of hosts without their ports: loopback, and those whose pages may open a WebSocket."""
     origins = bokeh_settings.allowed_ws_origin() or application.websocket_origins
     names = {origin.lower().rsplit(":", 1)[0] for origin in origins}
-    # In these origins "*" alone stands for any host, and otherwise for a part of one.
+    # In these origins a lone "*" stands for any host, and any other "*" for a part of one.
     return "|".join(".*" if name == "*" else re.escape(name).replace(r"\*", "[^.]*") for name in sorted({*LOOPBACK, *names}))
 
 
 def refuse_other_hosts(application: BokehTornado) -> None:
-    """Answer requests to other hosts with status 421, as from a page elsewhere whose name was given the address of this server.
+    """Answer requests to other hosts with status 421. A foreign page could make its host name point to this server.
 
-    Probes and the collector of metrics may use any host: what they read has no data of visitors.
+    Probes and the collector of metrics may use any host, because their answers contain no data of visitors.
     """
     operated = "|".join(application.prefix + path for path, _ in ROUTES)
     application.add_handlers(f"(?!(?:{accepted_hosts(application)})$).*", [(f"(?!(?:{operated})$).*", OtherHost)])
@@ -107,7 +120,7 @@ class PageHandler(SecurityHeaders, DocHandler):
         super().on_connection_close()
 
     def write_error(self, status_code: int, **kwargs: Any) -> None:
-        """Answer with the reason, and let browsers ask again for a page that may be served later."""
+        """Answer with the reason; browsers ask again for a page that may be served later."""
         error = kwargs.get("exc_info", (None, None))[1]
         if status_code not in RETRIED or not isinstance(error, HTTPError):
             super().write_error(status_code, **kwargs)
@@ -116,7 +129,7 @@ class PageHandler(SecurityHeaders, DocHandler):
         self.finish(refusal_page(error.reason or ""))
 
     def write(self, chunk: Any) -> None:
-        """Write a response; a page gets the nonce and the matching policy."""
+        """Write a response; a page contains the nonce and the matching policy."""
         if isinstance(chunk, str):
             nonce = new_nonce()
             self.set_security_headers(nonce)
@@ -125,7 +138,7 @@ class PageHandler(SecurityHeaders, DocHandler):
 
 
 def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) -> None:
-    """Add security headers to the handlers in the lists, and append the server's own endpoints; a second call does nothing.
+    """Add security headers to the handlers in the lists, and append the server's own endpoints; a second call has no effect.
 
     Parameters
     ----------
@@ -140,7 +153,7 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
 
 
 def _secured(handler: type) -> type:
-    """The same handler with security headers; files are compressed."""
+    """Return the same handler with security headers; files are compressed."""
     # Bokeh recognises the root handler by identity.
     if handler is RootHandler or issubclass(handler, SecurityHeaders):
         return handler

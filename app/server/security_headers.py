@@ -1,9 +1,9 @@
 """Security headers of responses.
 
-The Content-Security-Policy allows scripts from this server, and inline scripts of the served page by a nonce, so that
-injected scripts do not run; workers from this server alone; and WebAssembly (``wasm-unsafe-eval``), which the engine in the
-browser is. Bokeh and Panel need three exceptions: ``unsafe-eval``, as both create functions from text; ``blob:``, from which
-Panel imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run time.
+The Content-Security-Policy allows scripts from this server, inline scripts of the served page with a nonce (so that injected
+scripts do not run), workers from this server only, and WebAssembly (``wasm-unsafe-eval``), which the engine in the browser needs.
+Bokeh and Panel need three exceptions: ``unsafe-eval``, because both create functions from text; ``blob:``, from which Panel
+imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run time.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _SCRIPT = re.compile(r"<script(?=[\s>])", re.IGNORECASE)
 
 
 class SecurityHeaders(RequestHandler):
-    """Adds the headers to every response of a handler, error pages included; a mixin for other handlers."""
+    """Adds the headers to every response of a handler, including error pages; a mixin for other handlers."""
 
     def set_default_headers(self) -> None:
         """Set the headers and hide the name and version of the server software."""
@@ -49,7 +49,7 @@ def content_policy(frame_ancestors: tuple[str, ...], nonce: str | None = None) -
     Parameters
     ----------
     frame_ancestors
-        Origins that may embed the page in a frame; empty for none.
+        Origins that may embed the page in a frame; empty if no origin may.
     nonce
         Nonce of inline scripts; None to allow no inline scripts.
     """
@@ -70,7 +70,7 @@ def content_policy(frame_ancestors: tuple[str, ...], nonce: str | None = None) -
 
 
 def security_headers(frame_ancestors: tuple[str, ...], nonce: str | None = None) -> dict[str, str]:
-    """Return the headers of a response; parameters as in `content_policy`."""
+    """Return the headers of a response; for the parameters see `content_policy`."""
     headers = {
         "Content-Security-Policy": content_policy(frame_ancestors, nonce),
         "X-Content-Type-Options": "nosniff",

@@ -1,28 +1,46 @@
-"""Tokens of sessions, signed by this server: the page gets one, and the page's WebSocket must bring it back.
+"""Signed tokens of sessions: the page receives a token, and its WebSocket must send it back.
 
-A token has a compressed part. Bokeh signs tokens only when both of its settings are set before it is imported, and inflates
-those that are not signed, whatever their size. Here all are signed, with Bokeh's key or with a key of this server, and a token
-is inflated only when its signature is valid.
+A token has a compressed part. Bokeh signs tokens only if both of its settings are set before it is imported, and decompresses
+unsigned tokens of any size. This server signs all tokens, with Bokeh's key or with its own, and decompresses a token only if its
+signature is valid.
+
+Bokeh lets tokens expire by the wall clock, which may be set, and refuses expired tokens of sessions that are still open. This
+server measures the age of a token on the monotonic clock of the machine, and refuses an old token only if its session has ended.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+import time
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from bokeh.server.tornado import BokehTornado
-from bokeh.util.token import check_token_signature, generate_jwt_token, generate_secret_key, generate_session_id
+from bokeh.util.token import (
+    check_token_signature,
+    generate_jwt_token,
+    generate_secret_key,
+    generate_session_id,
+    get_token_payload,
+)
 from tornado.httputil import HTTPServerRequest
 
 from app.state.permalink import PARAMETERS
 
-_SUBPROTOCOL, _TOKEN, _SESSION_ID = "bokeh", "bokeh-token", "bokeh-session-id"
+_SUBPROTOCOL, _TOKEN, _SESSION_ID, _ISSUED = "bokeh", "bokeh-token", "bokeh-session-id", "issued"
+# Ten years, in seconds: Bokeh's own check never applies.
+_NO_EXPIRATION = 10 * 365 * 24 * 3600
 
-# Made when the server starts, before it forks: the processes of `--num-procs` share it.
+# The key is made when the server starts, before it forks, so that all processes of `--num-procs` share it.
 _own_key = generate_secret_key().encode()
 
 
-def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Mapping[str, Any]) -> str:
+def issue_token(
+    application: BokehTornado,
+    request: HTTPServerRequest,
+    extra: Mapping[str, Any],
+    clock: Callable[[], float] = time.monotonic,
+) -> str:
     """Return a signed token of a new session.
 
     Parameters
@@ -30,10 +48,12 @@ def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Ma
     application
         The server's web application.
     request
-        The request for the page. The token contains the parameters of links, and cookies if there is a login; nothing else of
-        it, as the session needs nothing else.
+        The request for the page. The token contains only its link parameters, and its cookies if there is a login: the session
+        needs nothing else.
     extra
-        More entries of the token's payload.
+        Additional entries of the token's payload.
+    clock
+        Seconds of a monotonic clock.
     """
     arguments = {name: request.arguments[name][:1] for name in PARAMETERS if name in request.arguments}
     has_login = bool(application.auth_provider.endpoints)
@@ -43,27 +63,33 @@ def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Ma
         generate_session_id(key, signed=True),
         key,
         signed=True,
-        extra_payload={"headers": {}, "cookies": cookies, "arguments": arguments, **extra},
-        expiration=application.session_token_expiration,
+        extra_payload={"headers": {}, "cookies": cookies, "arguments": arguments, _ISSUED: clock(), **extra},
+        expiration=_NO_EXPIRATION,
     )
     return token
 
 
+def may_begin_session(application: BokehTornado, token: str, clock: Callable[[], float] = time.monotonic) -> bool:
+    """Whether a token with a valid signature was issued recently, and since this machine started."""
+    age: float = clock() - get_token_payload(token).get(_ISSUED, math.inf)
+    return bool(0.0 <= age < application.session_token_expiration)
+
+
 def use_token(request: HTTPServerRequest, token: str) -> None:
-    """Let Bokeh take the token for the session of a request, instead of a token or an id that the client may have sent."""
+    """Make Bokeh use this token for the session of a request, instead of a token or an id that the client may have sent."""
     request.arguments.pop(_SESSION_ID, None)
     request.arguments[_TOKEN] = [token.encode()]
 
 
 def brings_own_token(application: BokehTornado, request: HTTPServerRequest) -> bool:
-    """Whether the request for a WebSocket has a token with a valid signature; inflates nothing."""
+    """Whether the request for a WebSocket has a token with a valid signature; the token is not decompressed."""
     offered = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
     if len(offered) != 2 or offered[0] != _SUBPROTOCOL:
         return False
     try:
         return bool(check_token_signature(offered[1], _signing_key(application), signed=True))
     except (ValueError, TypeError, KeyError, AttributeError, AssertionError, RecursionError):
-        # Not a token at all.
+        # The value is not a token.
         return False
 
 

@@ -30,8 +30,8 @@ log = logging.getLogger(f"bokeh.{__name__}")
 def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
     """Stop gracefully on SIGTERM and Ctrl-C, whatever the event loop is doing; call on the thread of the loop.
 
-    Replaces the handlers of Bokeh and asyncio, which wait for the event loop. A thread waits for the signals instead: Python
-    writes their numbers to a socket at once. Only a call of C that keeps the interpreter lock delays the thread, as all others.
+    Replaces the handlers of Bokeh and asyncio, which wait for the event loop. Python writes the numbers of signals to a socket at
+    once, and a thread waits for them there. Like all threads, it is delayed only while a C function keeps the interpreter lock.
     """
     loop = asyncio.get_running_loop()
     if os.name != "posix" or threading.current_thread() is not threading.main_thread():
@@ -72,11 +72,11 @@ def finish_shutdown(state: ProcessState) -> None:
 
 
 def _leave_to_thread(number: int, frame: Any) -> None:
-    """Handle a signal of `_SIGNALS`: `_wait_for_signal` does."""
+    """Ignore a signal of `_SIGNALS`, which `_wait_for_signal` handles."""
 
 
 def _wait_for_signal(receiver: socket.socket, stop: Callable[[], None]) -> None:
-    """Call `stop` after the first signal of `_SIGNALS`; others may have handlers of their own."""
+    """Call `stop` after the first signal of `_SIGNALS`; other signals may have their own handlers."""
     while receiver.recv(1)[0] not in _SIGNALS:
         pass
     stop()
@@ -94,7 +94,7 @@ def _notify_pages(state: ProcessState) -> None:
 
 
 def _exit_later() -> None:
-    """End the process after `_LAST_SECONDS`; no file is written here that an exit could truncate."""
+    """End the process after `_LAST_SECONDS`. No file is being written here that could be truncated."""
     timer = threading.Timer(_LAST_SECONDS, os._exit, [0])
     timer.daemon = True
     timer.start()

@@ -1,4 +1,4 @@
-"""Checks before the server starts: what it refuses ends the process with one sentence and exit code 2."""
+"""Checks before the server starts: a violation ends the process with one sentence and exit code 2."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def refuse_to_start(sentence: str) -> NoReturn:
 
 
 def asks_for_several_processes(arguments: Sequence[str]) -> bool:
-    """Whether the arguments of `panel serve` contain ``--num-procs`` with another value than 1; 0 is one process per core."""
+    """Whether the arguments of `panel serve` contain ``--num-procs`` with a value other than 1; 0 means one process per core."""
     parser = argparse.ArgumentParser(add_help=False, exit_on_error=False)
     parser.add_argument("--num-procs", type=int, default=1)
-    # Arguments of the application.
+    # The rest are arguments of the application.
     parser.add_argument("--args", nargs=argparse.REMAINDER)
     try:
         return bool(parser.parse_known_args(arguments)[0].num_procs != 1)
     except argparse.ArgumentError:
-        # `panel serve` reports it.
+        # `panel serve` reports the error.
         return False

@@ -1,4 +1,4 @@
-"""Compile the kernels in the background while the server already answers."""
+"""Compilation of the kernels in the background while the server already answers."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
 
 
 def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
-    """Steps that prepare the three cases for some purposes."""
+    """Return steps that prepare the three cases for some purposes."""
     return {
         f"the kernels of case {name} for {purpose}": partial(_PURPOSES[purpose], potential)
         for purpose in purposes
@@ -65,9 +65,9 @@ STEPS: Mapping[str, Callable[[], object]] = {
 def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] = STEPS) -> threading.Thread:
     """Run the steps in a thread, then set `state.kernels_ready`.
 
-    A failed step ends the thread and sets `state.kernels_failed`. A shutdown ends it before the next step.
+    A failed step ends the thread and sets `state.kernels_failed`. A shutdown ends the thread before the next step.
     """
-    # A daemon thread, because a compilation cannot be cancelled.
+    # The thread is a daemon, because a compilation cannot be cancelled.
     thread = threading.Thread(target=_warm_up, args=(state, steps), name="warmup", daemon=True)
     thread.start()
     return thread
@@ -91,7 +91,7 @@ def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], object]]) -> 
             log.exception("%s could not be prepared", name)
             state.kernels_failed.set()
             return
-    # Modules, compiled code and defaults live as long as the process, so the garbage collector can skip them.
+    # Modules, compiled code and defaults exist as long as the process, so the garbage collector can skip them.
     gc.freeze()
     state.kernels_ready.set()
     log.info("ready")

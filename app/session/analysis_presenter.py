@@ -35,7 +35,7 @@ _SIDES = (112, 112)
 
 
 class AnalysisPresenter:
-    """Analyses that the view state asks for; their results are shown over the maps, and are among those of the session."""
+    """Analyses that the view state asks for; the results are shown over the maps and belong to the results of the session."""
 
     def __init__(self, context: SessionContext, maps: MapsView) -> None:
         state, jobs, locked = context.state, context.jobs, context.locked
@@ -43,7 +43,7 @@ class AnalysisPresenter:
         self._state, self._results, self._maps = state, context.results, maps
         self._spec: MapSpec | None = None
         self._swept: SweepSpec | None = None
-        # Results of the layers that are on, with their maps and jobs, before a part of them is selected.
+        # Results of the layers that are on, each with its map and job, before a part is selected.
         self._found: dict[str, tuple[EscapeMap, Any, Job[Any]]] = {}
         self._notes: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
@@ -74,7 +74,7 @@ class AnalysisPresenter:
         self._mark_computing()
 
     def _begin(self, spec: MapSpec) -> None:
-        """Prepare for a new map: remove the results of another one."""
+        """Prepare for a new map: remove the results of the previous one."""
         if spec == self._spec:
             return
         self._spec = spec
@@ -104,7 +104,7 @@ class AnalysisPresenter:
         self._show_pictures()
 
     def _layer(self, layer: Layer) -> FollowUp:
-        """The analysis of a layer, requested while it is on."""
+        """Return the analysis of a layer, which is requested while the layer is on."""
         return FollowUp(partial(self._layer_job, layer), partial(self._show_result, layer), ("layers", "settings"))
 
     def _layer_job(self, layer: Layer, frame: EscapeMap) -> Job[Any] | None:
@@ -112,7 +112,7 @@ class AnalysisPresenter:
         return layer.job(frame.spec, self._state.settings) if is_shown else None
 
     def _measure_of_map(self, name: str) -> FollowUp:
-        """A measure of the whole view or of the box, requested while the tab is open."""
+        """Return a measure of the whole view or of the box, which is requested while the tab is open."""
         state = self._state
         return FollowUp(
             lambda frame: measure_job(frame.spec, name, state.box) if state.analysis is Analysis.MEASURES else None,
@@ -144,7 +144,7 @@ class AnalysisPresenter:
         self._maps.mark_computing(frozenset(wanted - done))
 
     def _fail(self, sentence: str) -> None:
-        """Show why an analysis has no result; no other one is known to be under way."""
+        """Show why an analysis has no result; no other analysis is known to be running."""
         self._maps.mark_computing(frozenset())
         self._notice.warn(sentence)
 
@@ -161,7 +161,7 @@ class AnalysisPresenter:
             self.note(**{layer.name: sentence for layer in self._layers_on() if (sentence := layer.refusal(spec))})
 
     def note(self, **sentences: str) -> None:
-        """Show a sentence for each of some layers; an empty one removes it."""
+        """Show a sentence for each of these layers; an empty sentence removes the earlier one."""
         self._notes |= sentences
         body = " ".join(escape(sentence) for sentence in self._notes.values() if sentence)
         self.notes.object = with_terms(body)
@@ -172,7 +172,7 @@ class AnalysisPresenter:
         self._mark_computing()
 
     def _select(self) -> None:
-        """Select parts of the results by the settings, and remove those that are no results of these."""
+        """Select parts of the results by the settings, and remove results that were computed with other settings."""
         for name, (frame, _, job) in list(self._found.items()):
             if LAYERS[name].job(frame.spec, self._state.settings) == job:
                 self._show_selected(LAYERS[name])

@@ -1,4 +1,4 @@
-"""Comparison of one session: the map of another view with the pixels of the map in view, and what differs."""
+"""Comparison of one session: another view is computed for the pixels of the map in view, and the differences are shown."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class ComparisonPresenter:
     Parameters
     ----------
     context
-        Of the session.
+        The session.
     maps
-        Show the other map.
+        Shows the other map.
     say
-        Called with what is known of the two views.
+        Called with a text about the two views.
     refuse
-        Called with the reason why the other view, that of a link, cannot be shown; then there is no comparison any more.
+        Called with the reason why the other view, which a link names, cannot be shown; the comparison then ends.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class ComparisonPresenter:
         self._frame: EscapeMap | None = None
         self._other: EscapeMap | None = None
         self._reviewed: SystemReview | None = None
-        # The last preparation of a map, and the last one that is done.
+        # The last preparation of a map, and the last one that is finished.
         self._preparing: Job[None] | None = None
         self._prepared: Job[None] | None = None
         self._review = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
@@ -68,7 +68,7 @@ class ComparisonPresenter:
         state.param.update(compared=state.view, window=window)
 
     def swap_views(self) -> None:
-        """Exchange the view of the controls and the one that it is compared with."""
+        """Exchange the view of the controls and the view with which it is compared."""
         state, other = self._state, self._state.compared
         if other is None:
             return
@@ -76,7 +76,7 @@ class ComparisonPresenter:
         self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.view})
 
     def _follow_map(self, frame: EscapeMap | None) -> None:
-        """Compare a complete map; while there is none, the last one."""
+        """Compare a complete map; while there is none, the last one is compared."""
         if frame is not None:
             self._frame = frame
             self._continue()
@@ -97,7 +97,7 @@ class ComparisonPresenter:
             self._continue()
 
     def _continue(self) -> None:
-        """Request the next of what is missing: the review of the other system, its kernels, its potentials, its map."""
+        """Request the next missing part: the review of the other system, its kernels, its potentials, its map."""
         view = self._state.compared
         if view is None:
             return
@@ -135,7 +135,7 @@ class ComparisonPresenter:
         self._continue()
 
     def _take(self, result: EscapeMap | None) -> None:
-        """Show a map, or go on when it is prepared."""
+        """Show a map, or continue when it is prepared."""
         if result is None:
             self._prepared = self._preparing
             self._continue()

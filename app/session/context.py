@@ -1,4 +1,4 @@
-"""What the presenters of one session share."""
+"""The objects that the presenters of one session share."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from engine.jobs.client import JobSubmitter
 
 @dataclass(frozen=True)
 class SessionContext:
-    """The state of a session, and what its page can do.
+    """The state of a session, and the actions of its page.
 
     Attributes
     ----------
     state
         The view state.
     results
-        What is computed for it.
+        The results for the state.
     jobs
         Computes results.
     notice
         Shows messages.
     locked, latest
-        Wrap functions that change the document; of the calls of the second kind only the latest runs.
+        Wrap functions that change the document. `latest` runs only the latest of several waiting calls.
     copy
-        Called with a text for the clipboard.
+        Called with a text that is copied to the clipboard.
     open_view
-        Called with a system, which is reviewed first, and values of the view state to show with it.
+        Called with a system, which is reviewed first, and with values of the view state that are shown with it.
     """
 
     state: ViewState

@@ -1,4 +1,4 @@
-"""The explorer of one session: makes its presenters and views, and handles keys and other events of the browser."""
+"""The explorer of one session: it makes its presenters and views, and handles keys and other events of the browser."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Explorer:
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
         self._document, self._by_touch = document, False
         callbacks = SessionCallbacks(document)
-        # Panel may run widget callbacks without the session's lock, which changes of bare Bokeh models need.
+        # Panel may run widget callbacks without the session's lock, which changes of plain Bokeh models need.
         self._locked = callbacks.every
         self._client = JobClient(process_state().jobs, account=account_of(document))
         on_disconnect(document, self._client.close)
@@ -147,7 +147,7 @@ class Explorer:
             self.maps.view.set_dark(dark)
 
     def _begin_view(self) -> None:
-        """Show the view of the state, whose later changes everything follows."""
+        """Show the view of the state; from then on everything follows changes of the state."""
         self.preview.show_view()
         self.maps.requests.request_map()
         self.orbits.begin()
@@ -166,7 +166,7 @@ class Explorer:
         ]
 
     def _enlarge(self, name: str) -> None:
-        """Show a picture large, or all side by side if it is large already."""
+        """Show a picture large, or all pictures side by side if it is large already."""
         self.state.focus = "" if name == self.state.focus else name
 
     def _open_view(self, system: System, values: dict[str, Any]) -> None:
@@ -208,7 +208,7 @@ class Explorer:
             self.notice.warn(str(error))
 
     def _escape(self) -> None:
-        """Close the open drawer, or stop the animation, or show all pictures, or else stop the map."""
+        """Close the open drawer; if none is open, stop the animation, or show all pictures, or stop the map."""
         if self.drawers.shown is not None:
             self.drawers.show(None)
         elif self.preview.engine.playing:

@@ -21,7 +21,7 @@ class History:
         return self.entry
 
     def begin_gesture(self) -> None:
-        """Begin or continue a drag or a turn of the wheel, which may change the state several times."""
+        """Begin or continue a drag or a rotation of the wheel, which may change the state several times."""
         if not self._in_gesture:
             self._in_gesture, self._gesture_recorded = True, False
 
@@ -30,6 +30,6 @@ class History:
         self._in_gesture = False
 
     def move_to(self, entry: int) -> None:
-        """Follow the browser to another entry; entries of an earlier page count as the first."""
+        """Follow the browser to another entry; entries of an earlier page count as the first one."""
         self.end_gesture()
         self.entry = entry if 0 <= entry <= self._last else 0

@@ -1,4 +1,4 @@
-"""The page's address: shown at the start and when the browser's history moves, and written when the state changes."""
+"""The page's address: it is shown at the start and when the browser's history moves, and written when the state changes."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ from engine.systems.review.potential_review import SystemReview
 
 
 class LinkPresenter:
-    """The links of one session, and the view state that the first one describes.
+    """The links of one session, and the view state that the first link describes.
 
     Parameters
     ----------
     document
-        The page.
+        The document of the page.
     parameters
-        Those of its address.
+        Parameters of the page's address.
     """
 
     def __init__(self, document: Document, parameters: Mapping[str, str]) -> None:
@@ -50,7 +50,7 @@ class LinkPresenter:
         self._link, self._problems = read_link(parameters)
         self._navigating = False
         self.embedded = parameters.get(EMBED) in PICTURES
-        """Whether the page shows one picture only, in a frame of another page."""
+        """Whether the page shows only one picture, in a frame of another page."""
         self.open_link = OpenLink()
         self.history = History()
         self.view = linked_view(self._link)
@@ -64,14 +64,14 @@ class LinkPresenter:
         progress: ProgressView,
         notice: Notice,
     ) -> None:
-        """Follow the changes of the state, which these parts of the page show."""
+        """Follow the changes of the state; these parts of the page show it."""
         self._potential, self._browser = potential, browser
         self._progress, self._notice = progress, notice
         self.state.param.watch(self._write, list(LINKED))
         self.open_link.show(write_link(self.state))
 
     def begin(self, begin_view: Callable[[], object]) -> None:
-        """Show the view of the first link once its system is reviewed; `begin_view` requests what the state describes."""
+        """Show the view of the first link once its system is reviewed. `begin_view` requests what the state describes."""
         system = self.view.system
         if is_known(system):
             begin_view()
@@ -84,7 +84,7 @@ class LinkPresenter:
         self._review(system, use, self._refuse)
 
     def refuse_comparison(self, problem: str) -> None:
-        """Say why the view of a link with which to compare is refused."""
+        """Show why the view with which a link compares is refused."""
         self._problems.append(refused_comparison(problem))
         self._show_problems()
 
@@ -96,7 +96,7 @@ class LinkPresenter:
         self.open(linked_view(values).system, partial(self._return, values))
 
     def _first_state(self) -> ViewState:
-        """The view of the link, with the first system in place of one that must be reviewed."""
+        """Return the view of the link; a system that must be reviewed is replaced by the first system."""
         if not is_known(self.view.system):
             return ViewState(**without_system(self._link))
         fitting, problems = fit_to_system(self._link, review_catalogue_entry(self.view.system.case))
@@ -119,7 +119,7 @@ class LinkPresenter:
             self._notice.warn(" ".join(self._problems))
 
     def _review(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> None:
-        """Review a system, and say so meanwhile."""
+        """Review a system, and show a message until it is reviewed."""
         if self._potential.open(system, use, refuse):
             self._progress.show_reviewing()
 
@@ -128,12 +128,12 @@ class LinkPresenter:
         self._notice.warn(refused_link(problem))
 
     def _show(self, values: Mapping[str, Any], reviewed: SystemReview) -> list[str]:
-        """Show the values of a link with its system; returns messages for invalid ones."""
+        """Show the values of a link with its system; return messages for invalid values."""
         fitting, problems = fit_to_system(values, reviewed)
         shown = ViewState(**fitting)
         self._navigating = True
         try:
-            # A link can add figures and buttons: Bokeh searches the models of the page once for all of them.
+            # A link can add figures and buttons; held together, Bokeh searches the models of the page only once for all of them.
             with pn.io.hold(), self._document.models.freeze():
                 self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
         finally:
@@ -141,14 +141,14 @@ class LinkPresenter:
         return problems
 
     def _return(self, values: Mapping[str, Any], reviewed: SystemReview) -> None:
-        """Show the values of an entry of the browser's history, and its address as it is understood."""
+        """Show the values of an entry of the browser's history, and write its address in normal form."""
         self._show(values, reviewed)
         self._browser.write_link(write_link(self.state, embedded=self.embedded), self.history.entry)
 
     def _write(self, *events: Any) -> None:
-        """Show the state as the address; a choice among the orbits is not an entry of the browser's history."""
+        """Show the state as the address. The choice among the orbits makes no entry in the browser's history."""
         if not self._navigating:
-            # "Back" of a page would lead through the entries of the frames in it.
+            # The "Back" of a page would also go through the entries of its frames.
             is_entry = not self.embedded and {event.name for event in events} != {"chosen"}
             entry = self.history.record() if is_entry else self.history.entry
             self._browser.write_link(write_link(self.state, embedded=self.embedded), entry)

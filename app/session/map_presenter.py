@@ -1,4 +1,4 @@
-"""The maps of one session: requested, painted, moved to other windows, and clicked."""
+"""The maps of one session: they are requested, painted, moved to other windows, and clicked."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 
 class MapPresenter:
-    """Requests the map of the view state and shows it; moves and clicks go to the view state.
+    """Requests the map of the view state and shows it; moves and clicks change the view state.
 
     Parameters
     ----------
     context
-        Of the session.
+        The session.
     document
-        The page.
+        The document of the page.
     history
-        Of the browser: the moves of one gesture make one entry.
+        History of the browser: the moves of one gesture make one entry.
     alone
-        Whether the page shows one picture only.
+        Whether the page shows only one picture.
     """
 
     def __init__(self, context: SessionContext, document: Document, history: History, *, alone: bool) -> None:
@@ -46,7 +46,7 @@ class MapPresenter:
         self._document, self._history = document, history
         self._countdown: Any = None
         self._requested_at: float | None = None
-        # The start of the last click; None if it was chosen before.
+        # The start that the last click added; None if it was in the list before.
         self._just_added: Start | None = None
         self.view = MapsView(
             MapActions(
@@ -88,7 +88,7 @@ class MapPresenter:
     # Windows, starts and boxes.
 
     def show_window(self, window: Window | None) -> None:
-        """Show another window; where double precision ends, the last one stays."""
+        """Show another window; where double precision ends, the window does not change."""
         try:
             if window is not None:
                 replace(self._state.map_spec(), window=window).find_window()
@@ -106,18 +106,18 @@ class MapPresenter:
             self.view.ranges.finish_report()
 
     def _go_to_window(self, *events: Any) -> None:
-        """Show the window of the state before its map is there, as a late report of an earlier move would count as a new one."""
+        """Show the window of the state before its map is there: a late report of an earlier move would count as a new one."""
         if any(event.name != "window" for event in events):
-            # Another picture brings its window with it.
+            # Another picture comes with its own window.
             return
         try:
             self.view.ranges.go_to(self._state.find_window())
         except ValueError:
-            # The map brings a window that is not known yet.
+            # A window that is not known yet comes with the map.
             return
 
     def _dive(self, x: float, ordinate: float) -> None:
-        """Zoom to a point that is clicked twice; the first click is no choice of an orbit."""
+        """Zoom to a point that is double-clicked; the first click then does not choose an orbit."""
         state = self._state
         if self._just_added in state.starts:
             state.remove_start(state.starts.index(self._just_added))
@@ -130,12 +130,13 @@ class MapPresenter:
         self.add_start(*self.view.snapped(x, ordinate))
 
     def add_start(self, x: float, ordinate: float) -> None:
-        """Add a start, or say why not; a forbidden start takes no place."""
+        """Add a start, or say why this is not possible; a forbidden start is not added."""
         state = self._state
         if state.orbit_job((x, ordinate)) is None:
             self._notice.show(describe_fate(Fate.FORBIDDEN))
             return
-        # The first orbits add figures and buttons: Bokeh searches the models of the page once for all of them.
+        # The first orbits add figures and buttons; held together, Bokeh searches the models of the page only once for all of
+        # them.
         before = state.starts
         with self._document.models.freeze():
             added = state.add_start((x, ordinate))
@@ -150,7 +151,7 @@ class MapPresenter:
         self._state.param.update(box=box, analysis=shown if shown is Analysis.MEASURES else Analysis.STATISTICS)
 
     def _remove_box(self, *events: Any) -> None:
-        """Remove the box of another view, unless a link gives a new one."""
+        """Remove the box of another view, unless a link contains a new one."""
         if all(event.name != "box" for event in events):
             self._state.box = None
 
@@ -159,7 +160,7 @@ class MapPresenter:
     def map_requested(self, *, compiling: bool = False) -> None:
         """A map is requested."""
         if compiling:
-            # The pictures of the former system stay for some seconds.
+            # The pictures of the previous system stay for some seconds.
             self.view.grid.mark_stale(True)
         self._requested_at = time.monotonic()
         self.progress.start()
@@ -167,7 +168,7 @@ class MapPresenter:
         self._notice.clear()
 
     def _count_down(self, compiling: bool) -> None:
-        """Show each second how long the compilation will take, while it is under way."""
+        """Show every second how long the compilation will take, while it runs."""
         if self._countdown is not None:
             self._document.remove_periodic_callback(self._countdown)
             self._countdown = None
@@ -196,7 +197,7 @@ class MapPresenter:
         self.progress.stop()
 
     def map_failed(self, sentence: str) -> None:
-        """Show why there is no map; the last pictures stay, greyed out."""
+        """Show why there is no map; the last pictures stay and are greyed out."""
         self._count_down(False)
         self.progress.fail()
         self.view.grid.mark_stale(True)

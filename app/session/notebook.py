@@ -1,4 +1,4 @@
-"""The page in a notebook: served by this process to a frame in the cell, with the job manager that all sessions share."""
+"""The page in a notebook: this process serves it to a frame in the cell, with the job manager that all sessions share."""
 
 from __future__ import annotations
 
@@ -22,16 +22,15 @@ from engine.systems.system import TYPED
 
 _STARTS_WITHIN = 60.0
 
-# Of the map that stands for the page where this cannot be reached.
+# Resolution of the map that replaces the page where the page cannot be reached.
 _PICTURED, _PICTURED_TIME = (112, 112), 1e3
 
 
 class Explorer:
     """The live page in a notebook cell; show it as the last line of a cell.
 
-    It runs in this process: the page computes with the same threads and cache as later calls of this notebook's explorers. The
-    browser must reach this machine, as with a local JupyterLab; where it cannot, and in a saved notebook, the cell shows a coarse
-    map instead.
+    The page runs in this process and uses the same threads and cache as later calls in the notebook. The browser must reach this
+    machine, as with a local JupyterLab; where it cannot, and in a saved notebook, the cell shows a coarse map instead.
 
     Parameters
     ----------
@@ -39,7 +38,7 @@ class Explorer:
         The map to open: its potential, plane, energy, window and t_max, rounded to the choices of the page; None for the first
         view of the page.
     height
-        Of the frame in the cell, in pixels.
+        Height of the frame in the cell, in pixels.
     """
 
     def __init__(self, spec: MapSpec | None = None, *, height: int = 900) -> None:
@@ -76,7 +75,7 @@ class Explorer:
         self._loop.call_soon_threadsafe(self._loop.stop)
 
     def _repr_html_(self) -> str:
-        # Browsers show what is inside an object where its page cannot be reached, as in a saved notebook.
+        # Browsers show the content of an object if its page cannot be reached, as in a saved notebook.
         picture = compute_map(self._pictured)._repr_html_()
         style = f"width:100%;height:{self.height}px"
         return f"<object type='text/html' data='{html.escape(self.address)}' style='{style}'>{picture}</object>"
@@ -105,7 +104,7 @@ class Explorer:
 
 
 def _view_of(spec: MapSpec) -> ViewState:
-    """The view that shows a map; `t_max` and resolution are the nearest of the page's choices."""
+    """Return the view that shows a map; `t_max` and resolution are the nearest of the page's choices."""
     known = next((name for name, potential in POTENTIALS.items() if potential == spec.potential), TYPED)
     view = ViewState(system=System(known, write_formula(spec.potential) if known == TYPED else ""))
     energy = {} if spec.common_energy is None else {"energy": spec.common_energy}

@@ -1,4 +1,4 @@
-"""The orbits: requested for the starts of the view state, drawn, marked on the maps, judged, and played."""
+"""The orbits: they are requested for the starts of the view state, drawn, marked on the maps, judged, and played."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class OrbitPresenter:
     Parameters
     ----------
     context
-        Of the session.
+        The session.
     marks, well
         Marks on the maps, and the picture of the paths.
     on_start
@@ -58,13 +58,13 @@ class OrbitPresenter:
         self._state, self._results, self._marks, self._well = state, context.results, marks, well
         self._open_view, self._notice = context.open_view, context.notice
         self._by_touch = False
-        # A start that has been tapped, until its orbit is told of.
+        # A start that has been tapped, until a message about its orbit is shown.
         self._tapped: Start | None = None
         self._shown: tuple[ChosenOrbit, ...] = ()
         # The interval of time in view, and the curves restricted to it; None is the whole duration.
         self._interval: Interval | None = None
         self._restricted: list[OrbitCurves | None] = []
-        # What the pictures show: starts with their curves, the place of the chosen one, and the palette.
+        # The content of the pictures: starts with their curves, the place of the chosen one, and the palette.
         self._drawn: Any = None
         self._show_restricted = locked(self._on_restricted)
         actions = OrbitActions(
@@ -76,7 +76,7 @@ class OrbitPresenter:
         )
         self.controls: OrbitControls = OrbitControls(state, actions)
         self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
-        # A server under load skips times instead of falling behind the player.
+        # Under load the server skips times, so that it does not fall behind the player.
         self.playback = Playback(latest(self._set_time))
         self._separation_plot: SeparationPlot = SeparationPlot()
         self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot, latest)
@@ -110,7 +110,7 @@ class OrbitPresenter:
         self._tapped = added[0] if len(added) == 1 and self._by_touch else None
 
     def _tell_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show the verdict and the path of an orbit that has been tapped: on a phone both are out of view."""
+        """Show the verdict and the path of an orbit that has been tapped, because on a phone both are out of view."""
         for one, colour in zip(orbits, PALETTES[self._state.palette].orbits, strict=False):
             if one.start == self._tapped and one.drawing is not None:
                 self._tapped = None
@@ -128,7 +128,7 @@ class OrbitPresenter:
             self.controls.say(REMOVED)
 
     def _open_plane(self) -> None:
-        """Open the section at the energy, or the value of the parameter, of the chosen orbit, with that orbit."""
+        """Open the curves section at the energy, or parameter value, of the chosen orbit, with that orbit."""
         state, start = self._state, self._state.chosen_start
         if start is None:
             return
@@ -141,7 +141,7 @@ class OrbitPresenter:
         )
 
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show the orbits that are known; only the words if their digits alone are new."""
+        """Show the orbits that are known; if only digits are new, update only the texts."""
         state = self._state
         if [one.drawing for one in orbits] != [one.drawing for one in self._shown]:
             self._interval, self._restricted = None, []
@@ -157,8 +157,8 @@ class OrbitPresenter:
                 self._separation.follow(orbits)
             self._tell()
             self._tell_tapped(orbits)
-            # Last: Panel links stylesheets of another host when it changes a text that is not in the document yet.
-            # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
+            # This comes last: Panel links stylesheets of another host when it changes a text that is not in the document yet.
+            # Orbits that are being integrated also count: removing and adding plots takes four times as long as the orbits.
             self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
 
     def _mark(self) -> None:
@@ -184,7 +184,7 @@ class OrbitPresenter:
         self.plots.set_time(t)
 
     def _tell(self) -> None:
-        """Show the results of the orbits in words."""
+        """Show the results of the orbits as text."""
         one = self._shown[self._state.chosen] if self._shown else None
         self.controls.show(self._shown, self._state.chosen)
         self.controls.show_indicators(() if one is None or one.orbit is None else evaluate_indicators(one.orbit, one.digits))

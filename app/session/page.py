@@ -1,4 +1,4 @@
-"""The page: its frame, what other programs show of its address, and where each view of an explorer stands in it."""
+"""The page: its frame, how other programs show its address, and the place of each view of an explorer."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def link_title(view: View) -> str:
 
 
 def link_sentence(view: View) -> str:
-    """What the view shows, in one sentence."""
+    """Describe the view in one sentence."""
     energy = "" if view.known_energy is None else f" at h = {format_number(view.known_energy, 6)}"
     return (
         f"{link_title(view)} on the plane {view.plane.title}{energy}: "
@@ -50,9 +50,9 @@ def link_sentence(view: View) -> str:
 
 
 def _shown_formula(system: System) -> str:
-    """A typed formula without its clauses, which contain names; empty if it is long or has words that no formula has.
+    """Return a typed formula without its clauses, which contain names; empty if it is long or has words that no formula has.
 
-    Other programs show it as a text of this server, whoever wrote the link.
+    Other programs show the result as a text of this server, whoever wrote the link.
     """
     formula = system.formula.partition(";")[0].strip() if system.case == TYPED else ""
     try:
@@ -63,7 +63,7 @@ def _shown_formula(system: System) -> str:
 
 
 class RootColumn(pn.Column):
-    """A part of the page; the template stores the `repr` of its roots, which takes 0.2 s for all that is in them."""
+    """A part of the page. The template stores the `repr` of its roots, which would take 0.2 s for all their content."""
 
     def __repr__(self, depth: int = 0, max_depth: int = 10) -> str:
         return type(self).__name__
@@ -88,7 +88,7 @@ class ExplorerTemplate(pn.Template):
 
 
 def explorer_page(explorer: Explorer) -> ExplorerTemplate:
-    """The page of one explorer, or in a frame of another page that of one picture."""
+    """The page of one explorer; in a frame of another page, the page of one picture."""
     if explorer.links.embedded:
         return ExplorerTemplate(explorer.links.view, picture_alone=_picture_alone(explorer))
     return ExplorerTemplate(
@@ -111,7 +111,7 @@ def _picture_alone(explorer: Explorer) -> pn.viewable.Viewable:
 
 
 def _stage(explorer: Explorer) -> pn.viewable.Viewable:
-    """Status line, maps, legend, and the orbits or the analysis that is chosen; the stylesheet places them."""
+    """Status line, maps, legend, and the chosen orbits or analysis; the stylesheet places them."""
     views = (
         explorer.analysis,
         explorer.drawers,

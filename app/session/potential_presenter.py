@@ -1,4 +1,4 @@
-"""Choice of the potential: reviewed in the background, shown with its properties, and used if it is valid."""
+"""Choice of the potential: it is reviewed in the background, shown with its properties, and used if it is valid."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class _Proposal:
     system
         The system.
     use
-        Called with the review of a valid system.
+        Called with the review if the system is valid.
     refuse
-        Called with the reason if it cannot be used; None if the reason stands beside the text.
+        Called with the reason if the system cannot be used; None if the reason is shown beside the text.
     done
-        Whether the visitor has chosen it; False while he or she is typing or dragging.
+        Whether the choice of the visitor is final; False during typing or dragging.
     """
 
     system: System
@@ -40,16 +40,16 @@ class _Proposal:
 
 
 class PotentialPresenter:
-    """Potential of one session; a valid potential that is chosen, typed or set by a slider goes to the view state.
+    """The potential of one session. A valid potential that is chosen, typed or set by a slider is written to the view state.
 
-    All that is typed or dragged until it is done makes one entry of the history.
+    All changes of one typing or dragging make one entry of the history.
     """
 
     def __init__(self, context: SessionContext, history: History) -> None:
         state = self._state = context.state
         self._history = history
         self._proposal: _Proposal | None = None
-        # The latest one that was taken during a review.
+        # The latest system that was proposed during a review.
         self._next: _Proposal | None = None
         self._last: SystemReview | None = None
         self.panel = PotentialPanel(state.reviewed, context.locked(self._take))
@@ -58,7 +58,7 @@ class PotentialPresenter:
         self.panel.show(state.reviewed)
 
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
-        """Use the system of a link, a preset or the browser's history, or refuse it; returns whether it is under review."""
+        """Use or refuse the system of a link, a preset or the browser's history; return whether it is under review."""
         known = self._known_review(system)
         if known is not None and refusal(known) is None:
             self._drop_opened()
@@ -68,7 +68,7 @@ class PotentialPresenter:
         return True
 
     def _drop_opened(self) -> None:
-        """Cancel the review of an earlier link, but not that of a text that is being typed."""
+        """Cancel the review of an earlier link, but not the review of a text that is being typed."""
         if self._proposal is not None and self._proposal.refuse is not None:
             self._proposal = None
             self._request.cancel()
@@ -78,7 +78,7 @@ class PotentialPresenter:
         self._request.cancel()
 
     def _take(self, system: System, *, done: bool) -> None:
-        """Review a system of the panel after the previous one has been reviewed, so that the maps follow a steady drag."""
+        """Review a system of the panel after the previous review has finished, so that the maps follow a steady drag."""
         proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)
         if self._proposal is None or self._proposal.refuse is not None:
             self._propose(proposal)
@@ -86,7 +86,7 @@ class PotentialPresenter:
             self._next = proposal
 
     def _use_if_ready(self, reviewed: SystemReview) -> None:
-        """Use a system that is being typed unless its integrator must be compiled, because a server can keep only some dozens."""
+        """Use a system that is being typed, unless its integrator must be compiled: a server can keep only some dozens."""
         if is_ready_for_maps(reviewed.potential):
             self._use(reviewed)
         else:
@@ -156,7 +156,7 @@ class PotentialPresenter:
         if reviewed.system.case not in (TYPED, before.system.case):
             return None
         if before.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
-            # Without exits there is no depth.
+            # Without exits the depth is undefined.
             return self._state.energy if energies.low <= self._state.energy <= energies.high else None
         depth = before.escape_energy - before.potential.well.bottom
         multiple = (self._state.energy - before.potential.well.bottom) / depth

@@ -1,4 +1,4 @@
-"""The engine in the visitor's browser: it gets the system and the view of the page, and plays the energy."""
+"""The preview of one session: the engine in the browser gets the system and the view of the page, and plays the energy."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine.jobs.job import Job, Queue
 
 
 class PreviewPresenter:
-    """Sends the engine in the browser what the view state shows; the energy at which an animation ends goes to the state."""
+    """Sends the state of the view to the engine in the browser; the energy at which an animation ends is written to the state."""
 
     def __init__(self, context: SessionContext) -> None:
         self._state = context.state
@@ -42,7 +42,7 @@ class PreviewPresenter:
         self._state.energy = round(energy, self._state.energies.decimals)
 
     def _request_system(self, frame: EscapeMap | None) -> None:
-        """Request the system of a map, once: it needs the compiled kernels."""
+        """Request the system of a map once; it needs the compiled kernels."""
         state = self._state
         if frame is not None and frame.spec.potential == state.potential:
             arguments = state.potential, state.energies.low, state.energies.high

@@ -1,4 +1,4 @@
-"""Many orbits of one session, watched as they leave: the player in the browser follows the view state, and writes to it."""
+"""Many orbits of one session, watched while they leave: the player in the browser follows the view state and writes to it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from engine.sweeps.warmup import is_ready_for_maps
 
 
 class WatchPresenter:
-    """Makes the player when it is first asked for, and requests the decay rate of mixed motion for it."""
+    """Makes the player when it is first needed, and requests the decay rate of mixed motion for it."""
 
     def __init__(self, context: SessionContext) -> None:
         self._state = context.state
@@ -46,7 +46,7 @@ class WatchPresenter:
         self._flux.cancel()
 
     def _request_rate(self) -> None:
-        """Request the decay rate while the player is on the page and the kernels that find it are compiled."""
+        """Request the decay rate while the player is on the page and the kernels that compute it are compiled."""
         state = self._state
         if self._player is None or state.analysis is not Analysis.WATCH:
             return
@@ -67,7 +67,7 @@ class WatchPresenter:
             self._player.param.update(**shown, point=[] if start is None else list(start), box=edges)
 
     def _choose(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected.
+        # Messages come from a browser: unexpected ones are ignored.
         match message:
             case {"where": str(where), "count": int(count), "seed": int(seed), "radius": int() | float() as radius}:
                 try:

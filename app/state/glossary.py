@@ -56,9 +56,9 @@ _BY_LETTERS = {term.lower(): term for term in GLOSSARY}
 
 
 def with_terms(html: str) -> str:
-    """HTML in which each term is explained: where it first stands, it is a button that opens its meaning.
+    """Return HTML in which each term is explained: its first occurrence is a button that opens the explanation.
 
-    The elements of one shadow root must not contain a term in two of such texts.
+    The elements of one shadow root must not contain a term in two such texts.
     """
     found: dict[str, None] = {}
 
@@ -69,7 +69,7 @@ def with_terms(html: str) -> str:
         found[term] = None
         return f"<button type='button' class='term' popovertarget='{_identifier(term)}'>{match[0]}</button>"
 
-    # Every other part is a tag.
+    # Every second part is a tag.
     parts = re.split(r"(<[^>]*>)", html)
     parts[::2] = [_TERM.sub(explain, part) for part in parts[::2]]
     meanings = (f"<span id='{_identifier(term)}' class='help-text' popover>{escape(GLOSSARY[term])}</span>" for term in found)
@@ -77,7 +77,7 @@ def with_terms(html: str) -> str:
 
 
 def glossary_list() -> str:
-    """HTML list of all terms."""
+    """Return an HTML list of all terms."""
     return "".join(
         ["<dl class='terms'>", *(f"<dt>{term}</dt><dd>{escape(text)}</dd>" for term, text in GLOSSARY.items()), "</dl>"]
     )

@@ -13,22 +13,22 @@ from engine import Window
 from plots.pictures.palette import MOST_ORBITS
 from plots.pictures.time_scale import TimeScale
 
-# The lower end of a scale of escape times whose link names the upper end only.
+# The lower end of a scale of escape times if a link contains only the upper end.
 _SHORTEST = 1.0
 
 
 @dataclass(frozen=True)
 class Format:
-    """The text of a value in a link.
+    """The text form of a value in a link.
 
     Attributes
     ----------
     write
-        Returns the text of a value.
+        Returns the text for a value.
     read
-        Returns the value of a text; ValueError or KeyError if there is none.
+        Returns the value for a text; ValueError or KeyError if there is none.
     legal
-        Returns in words which values are legal; the settings of the server limit some.
+        Returns a description of the legal values; the settings of the server limit some of them.
     """
 
     write: Callable[[Any], str]
@@ -38,18 +38,18 @@ class Format:
 
 @dataclass(frozen=True)
 class LinkParameter:
-    """The parameter of a link that has the value of a field.
+    """The link parameter for a field of the view.
 
     Attributes
     ----------
     name
-        In the link.
+        Name in the link.
     form
-        How its value is written and read.
+        Text form of the value.
     of_system
-        Whether its value has no meaning for another system.
+        Whether the value has no meaning for another system.
     always
-        Whether its default value is written, too.
+        Whether the default value is also written.
     """
 
     name: str
@@ -100,7 +100,7 @@ def read_number(text: str) -> float:
 
 
 def listed(choices: Iterable[str]) -> str:
-    """Choices in words."""
+    """Return choices as words."""
     *others, last = choices
     return f"{', '.join(others)} or {last}" if others else last
 

@@ -12,12 +12,12 @@ from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, 
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 
-# One parameter for all letters of a formula, as other names in links are letters, too.
+# All letters of a formula share one link parameter, because other names in links are also letters.
 _CASE, _FORMULA, _LETTERS = "case", "V", "letters"
 
 
 def write_system(system: System) -> dict[str, str]:
-    """A system as parameters of a link."""
+    """Return the link parameters of a system."""
     letters = system.letter_parameters
     parts: dict[str, Any] = {
         _CASE: system.case,
@@ -29,7 +29,7 @@ def write_system(system: System) -> dict[str, str]:
 
 
 def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
-    """The system of the parts that a link names, not reviewed yet, and a message for letters that its formula does not have."""
+    """Return the unreviewed system of the parts in a link, and a message for letters that its formula does not contain."""
     case = parts.get(_CASE, TYPED if _FORMULA in parts else FIRST_VIEW.system.case)
     formula, given = parts.get(_FORMULA, ""), parts.get(_LETTERS, {})
     letters = _letters(case, formula)
@@ -42,7 +42,7 @@ def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
 
 
 def _letters(case: str, formula: str) -> tuple[str, ...]:
-    """The letters of a known system or of a formula; none of one that is not understood."""
+    """Return the letters of a known system or of a formula; empty for a formula that is not understood."""
     if case != TYPED:
         return System(case).entry.adjustable
     try:
@@ -75,4 +75,4 @@ SYSTEM_FORMATS: Mapping[str, Format] = {
         lambda: f"letter:number pairs such as a:1.5,b:-2, from {-LARGEST_VALUE:g} to {LARGEST_VALUE:g}",
     ),
 }
-"""Of the parts of a system, by their names in a link."""
+"""Text forms of the parts of a system, by their names in a link."""

@@ -8,13 +8,13 @@ from functools import partial
 from engine import Window
 
 PAN_SHARE = 0.25
-"""Share of the side of the window by which an arrow key moves it."""
+"""Share of a side of the window by which an arrow key moves it."""
 
 ZOOM_FACTOR = 2.0
 """Factor of a zoom key."""
 
 DIVE_FACTOR = 4.0
-"""Factor of the zoom to a point that is clicked twice."""
+"""Factor of the zoom to a point that is double-clicked."""
 
 DIRECTIONS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowDown": (0, -1), "ArrowUp": (0, 1)}
 """Direction of each arrow key in x and in the ordinate."""
@@ -36,9 +36,9 @@ def zoom(window: Window, factor: float, about: tuple[float, float] | None = None
     window
         The window.
     factor
-        How many times smaller its sides become, dimensionless; below 1 they become larger.
+        Factor by which the sides become smaller, dimensionless; below 1 they become larger.
     about
-        x and ordinate of the point that stays where it is; None for the centre.
+        x and ordinate of the point that does not move; None for the centre.
     """
     x, ordinate = about or (0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high))
     return Window(

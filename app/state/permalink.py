@@ -31,16 +31,16 @@ LONGEST_VALUE = LONGEST_TEXT
 """Maximal length of a value in a link, in characters."""
 
 EMBED = "embed"
-"""Parameter of a page in a frame of another one, which shows one picture only; its value is that of ``focus``."""
+"""Parameter of a page in a frame of another page; only one picture is shown. The value is the same as of ``focus``."""
 
 _FIRST_EMBEDDED = "basins"
 _SHOWN = 40
 _PLANE, _FIX, _ENERGY, _JACOBI = "plane", "fix", "h", "C"
-# Before the names of a view to compare with.
+# Prefix of the names of a view for comparison.
 _COMPARED = "with_"
 _VIEW_NAMES = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
 
-# Of the attributes of the view state that one parameter has each; the last three are choices of the visitor.
+# Attributes of the view state that have one parameter each; the last three are choices of the visitor.
 _LINKED: dict[str, LinkParameter] = {
     **VIEW_PARAMETERS,
     "focus": LinkParameter("focus", name_format(PICTURES)),
@@ -50,7 +50,7 @@ _LINKED: dict[str, LinkParameter] = {
 
 _SETTING_FORMATS = {name: choice_format(setting.choices) for name, setting in SETTINGS.items()}
 
-# Of what is read from one parameter.
+# Text forms of values that are read from one parameter.
 _FORMATS: dict[str, Format] = {
     **SYSTEM_FORMATS,
     _ENERGY: number_format(-LARGEST_NUMBER, LARGEST_NUMBER, "a number, such as 0.25"),
@@ -76,7 +76,7 @@ def write_link(state: ViewState, *, embedded: bool = False) -> str:
     state
         The view.
     embedded
-        Whether the page shows one picture only: the one that is shown large, or else the basins.
+        Whether the page shows only one picture: the one that is shown large, or else the basins.
     """
     written = _write_view(state.view)
     for attribute, parameter in _LINKED.items():
@@ -99,7 +99,7 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
     parameters
         Names and values of the query string. Unknown names are ignored: other sites append their own.
     prefix
-        What the names begin with in messages.
+        Prefix of the names in messages.
 
     Returns
     -------
@@ -125,12 +125,12 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
 
 
 def linked_view(values: Mapping[str, Any]) -> View:
-    """The view of the values of a link, whose system is not reviewed yet; what they do not name is that of the first view."""
+    """Return the view of the values of a link, whose system is not reviewed yet; missing values are those of the first view."""
     return View(**{name: values[name] for name in FIRST_VIEW.values() if name in values})
 
 
 def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The values of a link that have a meaning for any system."""
+    """Return the values of a link that have a meaning for any system."""
     dropped = {"system", "energy", "jacobi", *(name for name, parameter in VIEW_PARAMETERS.items() if parameter.of_system)}
     if linked_view(values).plane.parameter is not None:
         dropped.add("plane")
@@ -138,14 +138,14 @@ def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[dict[str, Any], list[str]]:
-    """The values of a link to show together with its system, and a message for an invalid one.
+    """Return the values of a link that can be shown with its system, and a message for an invalid one.
 
     Parameters
     ----------
     values
         Values of `read_link`.
     reviewed
-        The review of the system of their `linked_view`, which is not refused.
+        The review of the system of their `linked_view`, which was not refused.
     """
     constant = values.get("jacobi")
     values = {name: value for name, value in values.items() if name != "jacobi"}
@@ -164,31 +164,31 @@ def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[di
 
 
 def refused_link(problem: str) -> str:
-    """The message for a link whose system is refused."""
+    """Return the message for a link whose system is refused."""
     return f"Ignored the potential in the link: {problem}"
 
 
 def refused_comparison(problem: str) -> str:
-    """The message for a link whose view to compare with has a system that is refused."""
+    """Return the message for a link whose view for comparison has a system that is refused."""
     return f"Ignored the view in the link with which to compare: {problem}"
 
 
 def _write_view(view: View) -> dict[str, str]:
-    """System, slice and energy as parameters of a link."""
+    """Return the link parameters of system, slice and energy."""
     axes, held = write_slice(view.plane)
     energy = {} if view.energy is None else {_ENERGY: _FORMATS[_ENERGY].write(view.energy)}
     return {**write_system(view.system), _PLANE: axes, **({_FIX: held} if held else {}), **energy}
 
 
 def _write_layers(state: ViewState) -> dict[str, str]:
-    """The layers that are on, and the settings that have not their defaults."""
+    """Return the layers that are on, and the settings that differ from their defaults."""
     layers = {name: SWITCH.write(True) for name in LAYERS if name in state.layers}
     changed = {name: value for name, value in state.settings.items() if value != SETTINGS[name].default}
     return layers | {name: _SETTING_FORMATS[name].write(value) for name, value in changed.items()}
 
 
 def _read_layers(found: Mapping[str, Any]) -> dict[str, Any]:
-    """The layers and settings that a link names; none if it names none."""
+    """Return the layers and settings in a link; empty if it contains none."""
     values: dict[str, Any] = {}
     if any(name in found for name in LAYERS):
         values["layers"] = frozenset(name for name in LAYERS if found.get(name))
@@ -198,7 +198,7 @@ def _read_layers(found: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _read_each(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, Any], list[str]]:
-    """The values that one parameter gives each, by the names of the parameters, and a message for each invalid one."""
+    """Return values that are read from one parameter each, by parameter name, and a message for each invalid one."""
     found: dict[str, Any] = {}
     problems: list[str] = []
     for name, form in _FORMATS.items():
@@ -215,7 +215,7 @@ def _read_each(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, An
 
 
 def _read_view(parameters: Mapping[str, str], found: Mapping[str, Any], prefix: str) -> tuple[dict[str, Any], list[str]]:
-    """System, slice and energy of a link, of which `found` has what one parameter gives, and messages for invalid ones."""
+    """Return system, slice and energy of a link, and messages for invalid ones; `found` has the values from single parameters."""
     system, problems = system_of(found)
     view: dict[str, Any] = {"system": system} if any(name in found for name in SYSTEM_FORMATS) else {}
     if _ENERGY in found:
@@ -235,12 +235,12 @@ def _read_view(parameters: Mapping[str, str], found: Mapping[str, Any], prefix: 
 
 
 def _read_compared(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
-    """The view with which a link compares, and messages for what is invalid of it; then there is no such view."""
+    """Return the view with which a link compares, and messages for invalid values; if there are any, there is no view."""
     given = {name: parameters[_COMPARED + name] for name in _VIEW_NAMES if _COMPARED + name in parameters}
     if not given:
         return {}, []
     if _ENERGY in given:
-        # Links of earlier versions name both ends of an axis h.
+        # Links of earlier versions contain both ends of an axis h.
         given[_ENERGY], _, _ = given[_ENERGY].partition(",")
     values, problems = read_link(given, _COMPARED)
     return {} if problems else {"compared": linked_view(values)}, problems
@@ -252,6 +252,6 @@ def _quoted(name: str, text: str) -> str:
 
 
 def _shown(text: str) -> str:
-    """Text of a link for messages: truncated, and without markup characters."""
+    """Return text from a link for messages: truncated, and without markup characters."""
     safe = "".join(c if c.isascii() and (c.isalnum() or c in " .,+-") else "?" for c in text[:_SHOWN])
     return safe + " …" if len(text) > _SHOWN else safe

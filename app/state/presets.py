@@ -1,4 +1,4 @@
-"""Preset views: every kind of figure of Zotos (2014), details of the maps, and explanations."""
+"""Preset views: the kinds of figures in Zotos (2014), details of the maps, and explanations."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Preset:
     Attributes
     ----------
     key
-        Stem of the file of its thumbnail.
+        Stem of the file name of its thumbnail.
     title, caption
         Texts on the page: a few words, and a few sentences.
     group
@@ -31,7 +31,7 @@ class Preset:
     link
         The view as a link, without its question mark.
     invitation
-        One line of text if the view is offered before there is an orbit; empty for others.
+        One line of text if the view is offered before there is an orbit; empty for the other views.
     """
 
     key: str
@@ -44,7 +44,7 @@ class Preset:
 
     @property
     def view(self) -> View:
-        """The view; choices that the settings of the server do not allow have their defaults."""
+        """Return the view; choices that the settings of the server do not allow have their defaults."""
         values, _ = read_link(dict(parse_qsl(self.link)))
         return linked_view(values)
 

@@ -1,4 +1,4 @@
-"""A view: which starts of orbits are shown, and what is known of them; links, presets and the view state have its fields."""
+"""A view: the starts of orbits that are shown, and the analyses of them; links, presets and the view state have its fields."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Start = tuple[float, float]
 
 
 class Analysis(StrEnum):
-    """What is shown beside the maps; the values stand in links."""
+    """The analysis that is shown beside the maps; links contain the values."""
 
     ORBIT = "orbit"
     STATISTICS = "statistics"
@@ -47,7 +47,7 @@ _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
-    """Return the choices up to a limit, and the smallest one in any case."""
+    """Return the choices up to a limit, but at least the smallest one."""
     least = min(choices.values())
     return {name: value for name, value in choices.items() if value <= max(limit, least)}
 
@@ -76,7 +76,7 @@ def default_settings() -> dict[str, Any]:
 
 
 def _linked(name: str, form: Format, *, of_system: bool = False, always: bool = False) -> dict[str, LinkParameter]:
-    """The metadata of a field that has a parameter in links."""
+    """Return the metadata of a field that has a parameter in links."""
     return {_LINK: LinkParameter(name, form, of_system, always)}
 
 
@@ -86,7 +86,7 @@ def _sides() -> dict[str, int]:
 
 @dataclass(frozen=True)
 class View:
-    """A view, by default the first one of the page; its colours are the visitor's choice.
+    """A view; the default is the first view of the page. The visitor chooses the colours independently.
 
     Attributes
     ----------
@@ -95,21 +95,21 @@ class View:
     plane
         The slice.
     energy
-        h, in the units of the potential; None for the first energy of the system. A slice with an axis h does not use it.
+        h, in the units of the potential; None for the initial energy of the system. A slice with an axis h does not use it.
     t_max
         Longest time of the orbits.
     resolution
         Columns and rows of the map.
     window, box
-        Part of the plane, and part of it for the statistics; None for the whole interior and for all of the window.
+        Part of the plane, and part of it for the statistics; None for the whole interior and for the whole window.
     layers
-        Names of the layers that are on, of `plots.layers.table.LAYERS`.
+        Names of the layers that are on, as in `plots.layers.table.LAYERS`.
     settings
-        The values of all `plots.layers.table.SETTINGS` by their names.
+        The values of all `plots.layers.table.SETTINGS`, by name.
     analysis
-        What is shown beside the maps.
+        The analysis shown beside the maps.
     watched
-        Starts of the orbits that are watched.
+        Starts of the orbits in the player of many orbits.
     starts, chosen
         Starts of up to `plots.pictures.palette.MOST_ORBITS` orbits, and the index of the chosen one.
     """
@@ -132,26 +132,26 @@ class View:
 
     @property
     def title(self) -> str:
-        """System, slice and energy in words."""
+        """Describe system, slice and energy."""
         energy = "" if self.known_energy is None else f", h = {self.known_energy:.6g}"
         return f"{self.system.title}, {self.plane.title}{energy}"
 
     @property
     def known_energy(self) -> float | None:
-        """The energy of all starts; None if the slice has an axis h, or before the first energy of the system is known."""
+        """The energy of all starts; None if the slice has an axis h, or before the initial energy of the system is known."""
         return self.energy if self.plane.energy_axis is None else None
 
     def values(self) -> dict[str, Any]:
-        """The values of all fields by their names."""
+        """The values of all fields, by name."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     def within_limits(self) -> View:
-        """The view with the nearest t_max and resolution that the settings of the server allow."""
+        """Return the view with the nearest t_max and resolution that the settings of the server allow."""
         t_max, resolution = max(allowed_t_max().values()), max(allowed_resolutions().values())
         return replace(self, t_max=min(self.t_max, t_max), resolution=min(self.resolution, resolution))
 
     def map_spec(self, reviewed: SystemReview) -> MapSpec:
-        """The map of this view; ValueError if it has none.
+        """Return the map of this view; ValueError if it has none.
 
         Parameters
         ----------
@@ -173,4 +173,4 @@ FIRST_VIEW = View()
 """The view of the page without a link."""
 
 VIEW_PARAMETERS: Mapping[str, LinkParameter] = {each.name: each.metadata[_LINK] for each in fields(View) if each.metadata}
-"""The fields that have one parameter each in links, in the order of links."""
+"""The fields that have one link parameter each, in the order of links."""

@@ -1,4 +1,4 @@
-"""View state: the validated choices of the user, which all views follow."""
+"""The view state: the validated choices of the user, which all parts of the page follow."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _LONGEST_FIRST = 1000.0
 
 
 def plane_of_system(plane: Slice, system: System) -> Slice:
-    """The same slice for another system; that of the first view if the system has not its parameter."""
+    """Return the same slice for another system; the default slice if the system lacks its parameter."""
     try:
         return plane.of_system(system)
     except ValueError:
@@ -79,14 +79,14 @@ class _Settings(param.Parameter):
 
 
 def longest_first_t_max(potential: Potential) -> float:
-    """The longest t_max with which a system is first shown: a short one where all bounded orbits are integrated to it."""
+    """Return the longest t_max with which a system is first shown: short if all bounded orbits must be integrated to it."""
     allowed = allowed_t_max().values()
     longest = np.inf if potential.tori_are_evidence else _LONGEST_FIRST * potential.well.exact_time_unit
     return max((each for each in allowed if each <= longest), default=min(allowed))
 
 
 class ViewState(param.Parameterized):
-    """What a session shows: the fields of `View`, with what is legal, and the choices that belong to the visitor."""
+    """What a session shows: the fields of `View` with their legal values, and the choices that belong to the visitor."""
 
     system = param.ClassSelector(class_=System, default=FIRST_VIEW.system)
     plane = param.ClassSelector(class_=Slice, default=FIRST_VIEW.plane)
@@ -134,7 +134,7 @@ class ViewState(param.Parameterized):
 
     @property
     def reviewed(self) -> SystemReview:
-        """The chosen system with its review; RuntimeError if it is no catalogue entry and `show` did not get its review."""
+        """The chosen system with its review; RuntimeError if it is not in the catalogue and `show` did not get its review."""
         if self._reviewed.system != self.system:
             if self.system.case == TYPED or self.system.parameters:
                 raise RuntimeError(f"{self.system} has not been reviewed")
@@ -166,18 +166,18 @@ class ViewState(param.Parameterized):
         return self.view.map_spec(self.reviewed)
 
     def find_window(self) -> Window:
-        """The window in view; ValueError while it is not known, as the event loop must not compile the kernels that find it."""
+        """Return the window in view; ValueError while it is not known: the event loop must not compile the kernels for it."""
         if self.window is None and not is_ready_for_maps(self.potential):
             raise ValueError(WINDOW_UNKNOWN)
         return self.map_spec().find_window()
 
     def start_state(self, start: Start) -> tuple[float, ...]:
-        """x, y, px, py of a start; NaN if it is forbidden."""
+        """Return x, y, px, py of a start; NaN if it is forbidden."""
         x, ordinate = (np.array([value]) for value in start)
         return tuple(start_states(self.potential, self.plane, self.energy, x, ordinate)[0].tolist())
 
     def orbit_job(self, start: Start) -> Job[Orbit] | None:
-        """The job of the orbit of a start; None if the start is forbidden at this energy."""
+        """Return the job of the orbit of a start; None if the start is forbidden at this energy."""
         state = self.start_state(start)
         if not np.isfinite(state).all():
             return None
@@ -185,7 +185,7 @@ class ViewState(param.Parameterized):
         return Job(integrate_orbit, arguments, queue=Queue.LONG_CALL)
 
     def add_start(self, start: Start) -> bool:
-        """Add a start and choose it; returns False if there are `MOST_ORBITS` others already."""
+        """Add a start and choose it; return False if there are already `MOST_ORBITS` other starts."""
         if start in self.starts:
             self.chosen = self.starts.index(start)
         elif len(self.starts) < MOST_ORBITS:
@@ -202,7 +202,7 @@ class ViewState(param.Parameterized):
         values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
         values["system"] = reviewed.system
         if reviewed.system == self.system:
-            # Param takes it for a change.
+            # Param treats it as a change.
             del values["system"]
         self.param.update(**values)
 

@@ -1,4 +1,4 @@
-"""Starts of the orbits that the player shows."""
+"""Starts of the orbits in the player of many orbits."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from enum import StrEnum
 from engine import Potential
 
 LARGEST_SEED = 2**31 - 1
-"""Largest seed of the generator of the browser."""
+"""Largest seed of the random generator in the browser."""
 
 
 class StartsFrom(StrEnum):
-    """Kind of place of the starts; links contain the values."""
+    """Where the starts are placed; links contain the values."""
 
     WELL = "well"
     VIEW = "view"
@@ -45,7 +45,7 @@ EXPLANATIONS = {
 
 
 def places_for(potential: Potential) -> dict[StartsFrom, str]:
-    """Return the places that a system offers, with their phrases: exits if it has some, tubes if its frame is at rest."""
+    """Return the places that a system offers, with their phrases: exits if it has any, tubes if its frame does not rotate."""
     missing = set[StartsFrom]()
     if potential.escape_radius is not None:
         missing |= {StartsFrom.EXITS, StartsFrom.TUBES}
@@ -55,10 +55,10 @@ def places_for(potential: Potential) -> dict[StartsFrom, str]:
 
 
 COUNTS = (1000, 5000, 20000)
-"""Numbers of orbits that can be watched."""
+"""Possible numbers of orbits."""
 
 SMALLEST_RADIUS, LARGEST_RADIUS = -9.0, -1.0
-"""Powers of ten of the radius of a disc, as a share of half the window."""
+"""Possible radii of a disc: powers of ten, as shares of half the window."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class WatchedStarts:
     Raises
     ------
     ValueError
-        Naming the parameter, its value and what is legal.
+        If a value is not legal; the message names the parameter, its value and what is legal.
     """
 
     where: StartsFrom = StartsFrom.WELL

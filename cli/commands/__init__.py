@@ -1,1 +1,1 @@
-"""One module for each command: its docstring is the help, and its function `run` has the options as parameters."""
+"""The commands, one module each: the module's docstring is the help, and the parameters of its function `run` are the options."""

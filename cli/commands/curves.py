@@ -1,6 +1,6 @@
-"""Compute measures of the basins at many energies, or values of a parameter, written to STEM.nc and STEM.csv.
+"""Compute measures of the basins at many energies, or values of a parameter, and write them to STEM.nc and STEM.csv.
 
-With --output FILE.png, FILE.svg or FILE.pdf they are drawn instead.
+With --output FILE.png, FILE.svg or FILE.pdf, they are drawn instead.
 
 Examples:
 
@@ -35,7 +35,7 @@ from plots.texts.exports import curves_csv, dataset_bytes
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
 
-# Columns that are in files and JSON only.
+# Columns that are written to files and JSON only.
 _ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
 
 

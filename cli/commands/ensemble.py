@@ -1,8 +1,8 @@
 """Follow random orbits, uniform on the energy surface, on a slice, or entering through the exits.
 
-Prints the shares of the exits, of entering orbits also by entrance, and the decay rate beside flux over volume. With --output,
-FILE.webp, FILE.gif or FILE.mp4 is a movie, FILE.nc has the paths, and FILE.csv the starts and outcomes; of a STEM, the movie as
-WebP and the table.
+Prints the share of each exit, for entering orbits also by entrance, and the decay rate beside flux over volume.
+With --output FILE.webp, FILE.gif or FILE.mp4 it writes a movie, with FILE.nc the paths, and with FILE.csv the starts and
+outcomes; with a STEM it writes the movie as WebP and the CSV table.
 
 Examples:
 
@@ -51,7 +51,7 @@ from plots.printed.figure_style import FigureStyle
 from plots.texts.exports import dataset_bytes, write_csv
 
 MOST_PATHS = 20_000
-"""Most orbits of a movie, or of a file of paths."""
+"""Largest number of orbits in a movie, or in a file of paths."""
 
 
 @with_options
@@ -77,9 +77,9 @@ def run(
     Parameters
     ----------
     entering
-        Start on the exits and go inward, distributed as the flux: gap times.
+        Start on the exits and move inward, distributed as the flux; the escape times are then gap times.
     frames
-        Times of the movie or of the NetCDF file, evenly spaced.
+        Number of times in the movie or the NetCDF file, evenly spaced.
     """
     paths = name_files(output, ["csv", "nc", *MovieFormat], ["csv", MovieFormat.WEBP])
     with_paths = paths.keys() - {"csv"}

@@ -36,7 +36,7 @@ def run(
     Parameters
     ----------
     output
-        CSV file for their paths over one period; an existing file is replaced.
+        CSV file of their paths over one period; an existing file is replaced.
     """
     if output is not None:
         split_ending(output, ["csv"], [])
@@ -82,7 +82,7 @@ def _print(
         )
         for orbit, share in zip(orbits, through, strict=True)
     ]
-    # In a rotating frame orbits do not turn back: these are the start and the point half a period later.
+    # In a rotating frame orbits do not turn back: the points are the start and the point half a period later.
     point = ("turning point (x, y)",) * 2 if flux is not None else ("point (x, y)", "half a period later")
     table = Table(("channel", "period", "flux", *point), rows)
     of_all = ({}, []) if flux is None else (flux.numbers(), [flux.describe()])

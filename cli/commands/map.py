@@ -1,6 +1,6 @@
-"""Compute a map: exit channel, escape time and crossings of each start, written to STEM.nc and STEM.png.
+"""Compute a map of the exit, the escape time and the crossings of each start, and write it to STEM.nc and STEM.png.
 
-The NetCDF file contains all results and the request; layers of curves go to tables, such as STEM-manifolds.csv.
+The NetCDF file contains all results and the request; curves of layers are written to tables such as STEM-manifolds.csv.
 
 Examples:
 
@@ -44,9 +44,9 @@ from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.texts.exports import file_stem, netcdf_bytes
 
 FIRST_PICTURES = ("basins", "times", "crossings")
-"""Pictures drawn by default; those of requested analyses follow."""
+"""Pictures drawn by default; the pictures of requested layers follow."""
 
-PICTURE_HELP = f"Picture to draw: {', '.join(TITLES)}; repeat for several. By default {', '.join(FIRST_PICTURES)}."
+PICTURE_HELP = f"Picture to draw: {', '.join(TITLES)}; can be repeated; by default {', '.join(FIRST_PICTURES)}."
 
 
 class Format(StrEnum):
@@ -97,7 +97,7 @@ def run(
     count_outside
         Count starts beyond an exit as escaped.
     formats
-        Output format, by default that of --output, or else nc and png; repeat for several.
+        Output format, by default the ending of --output, or else nc and png; can be repeated.
     """
     wanted = layers.with_pictures(picture or ())
     wanted.check(spec)
@@ -109,7 +109,7 @@ def run(
     with reserve_output(stem):
         with place.run() as context:
             frame, found = compute_map_with_layers(spec, wanted, context)
-        # After the cluster is closed: with a Dask client, xarray uses distributed locks, which in-memory files do not support.
+        # After the cluster is closed, because with a Dask client xarray uses locks that in-memory files do not support.
         with Place().run() as context:
             context.start_stage("writing")
             contents = _contents(stem, formats or endings, frame, found, drawing)

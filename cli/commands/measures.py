@@ -1,4 +1,4 @@
-"""Compute measures of a map, from its pixels and from further orbits.
+"""Compute measures of a map, from its pixels and from additional orbits.
 
 Examples:
 
@@ -68,7 +68,7 @@ def _numbers(result: Result | None) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Return the fields that a result shows, with those of the results in it."""
+    """Return the fields that a result shows, including those of the results that it contains."""
     if not is_dataclass(value) or isinstance(value, type):
         return value
     return {field.name: _plain(getattr(value, field.name)) for field in fields(value) if field.repr}

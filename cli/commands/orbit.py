@@ -1,7 +1,7 @@
-"""Integrate one orbit: verdict, SALI, Lyapunov exponent and Birkhoff digits.
+"""Integrate one orbit and print its verdict, SALI, Lyapunov exponent and Birkhoff digits.
 
-With --output, STEM.csv contains the path, SALI, exponent and R² against time, and STEM.png shows them; or FILE.csv, FILE.png,
-FILE.svg or FILE.pdf alone.
+With --output STEM, STEM.csv contains the path, SALI, the exponent and R² against time, and STEM.png shows them.
+With --output FILE.csv, FILE.png, FILE.svg or FILE.pdf it writes that file alone.
 
 Examples:
 
@@ -53,14 +53,14 @@ def run(
     output: Stem = None,
     as_json: AsJson = False,
 ) -> None:
-    """Follow, judge and write an orbit.
+    """Integrate, judge and write an orbit.
 
     Parameters
     ----------
     start
         Start on the plane, at --energy.
     state
-        Full initial state instead, which determines the energy.
+        Full initial state, instead of --start and --energy.
     """
     whole = _find_start(potential, plane, energy, start, state)
     paths = name_files(output, ["csv", *FigureFormat], ["csv", FigureFormat.PNG])

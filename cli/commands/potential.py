@@ -1,4 +1,4 @@
-"""List the catalogue, or show critical points, escape energy and channels of one potential.
+"""List the catalogue, or show critical points, escape energy and exits of one potential.
 
 Examples:
 
@@ -62,5 +62,5 @@ def _print(found: PotentialReview, as_json: bool) -> None:
         "critical_points": points,
         "remarks": list(found.remarks),
     }
-    sentence = f"V = {found.formula}: {found.channels} channels above h = {found.escape_energy:.12g}."
+    sentence = f"V = {found.formula}: {found.channels} exits above h = {found.escape_energy:.12g}."
     print_result(as_json, answer, sentence, Table(("critical point", "(x, y)", "V", "channel"), rows), *found.remarks)

@@ -1,6 +1,6 @@
-"""Reproduce the figures of Zotos (2014) as NAME.png and NAME.pdf, and its numbers beside ours as `tables`.
+"""Reproduce the figures of Zotos (2014) as NAME.png and NAME.pdf, and compare its numbers with computed ones (`tables`).
 
-Each file is written as soon as it is ready, and is kept after an interruption.
+Each file is written as soon as it is ready and stays after an interruption.
 
 Examples:
 
@@ -45,11 +45,11 @@ def run(
     names
         Figures to draw, as listed by --list; by default all.
     quick
-        A ninth of the starts: a few minutes instead of half an hour.
+        Compute a ninth of the starts, in a few minutes instead of half an hour.
     only_list
-        Only list the figures.
+        List the figures without making them.
     output
-        Output folder, created if missing; existing files are replaced.
+        Output folder, which is created if missing; existing files are replaced.
     """
     chosen = members.choose_members(names or ())
     if only_list:
@@ -75,14 +75,14 @@ def run(
 
 
 def _make_folder(folder: Path) -> None:
-    """Create the output folder; ValueError if that is impossible."""
+    """Create the output folder; ValueError if that is not possible."""
     if not folder.absolute().parent.is_dir() or (folder.exists() and not folder.is_dir()):
         raise ValueError(f"output='{folder}': must be a folder, or a new folder inside an existing one")
     folder.mkdir(exist_ok=True)
 
 
 def _make(name: str, cache: MapCache, folder: Path) -> dict[str, Any]:
-    """Make and write one figure; its name, files and seconds."""
+    """Make and write one figure; return its name, files and seconds."""
     began = time.perf_counter()
     files = write_files({folder / file: content for file, content in members.make_files(name, cache).items()})
     return {"name": name, "files": files, "seconds": time.perf_counter() - began}

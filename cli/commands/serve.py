@@ -26,11 +26,11 @@ def run(
         str, typer.Option(help="Address of the network interface to listen on; by default this machine only.")
     ] = "127.0.0.1",
     allow_websocket_origin: Annotated[
-        list[str] | None, typer.Option(metavar="HOST", help="Host whose pages may open a WebSocket; repeat for several.")
+        list[str] | None, typer.Option(metavar="HOST", help="Host whose pages may open a WebSocket; can be repeated.")
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Open the page in a browser.")] = False,
 ) -> None:
-    """Start the program that serves the installed page."""
+    """Run the program that serves the installed page."""
     if importlib.util.find_spec("panel") is None:
         # The engine is slow to import.
         from engine.foundations.extras import require_package
@@ -62,7 +62,7 @@ def server_environment() -> dict[str, str]:
 
 
 def app_package() -> str:
-    """Return the name of the installed package of the page, which is a program of its own and not imported here."""
+    """Return the name of the installed package of the page; the package is a program of its own and is not imported here."""
     spec = importlib.util.find_spec("app")
     if spec is None:
         raise RuntimeError("the package app is not installed beside the command line")

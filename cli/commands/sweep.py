@@ -1,6 +1,6 @@
-"""Compute maps at many energies into one labelled Zarr store; an interrupted run is resumed by the same command.
+"""Compute maps at many energies into one labelled Zarr store; the same command resumes an interrupted run.
 
-Without --window all maps use the window of the highest energy. With xarray: open_zarr(FOLDER).
+Without --window, all maps use the window of the highest energy. To open the store with xarray: open_zarr(FOLDER).
 
 Examples:
 
@@ -52,9 +52,9 @@ def run(
     Parameters
     ----------
     store
-        Zarr store: a new one, or one of the same sweep to resume.
+        Zarr store: a new one, or a store of the same sweep, which is resumed.
     plan
-        Only estimate the cost.
+        Estimate the cost without computing.
     """
     energies = space_values(low, high, count, energy)
     spec = SweepSpec(potential, plane, energies, resolution, window, t_max, use_evidence, measure or ("maps",))

@@ -123,7 +123,7 @@ def _digits(averages: np.ndarray) -> np.ndarray:
 
 @functools.lru_cache(maxsize=16)
 def window_weights(window: float, step: float) -> np.ndarray:
-    """Kaiser weights I0(β √(1 − (2s − 1)²)), s = t/T, of the samples of a window of length T, normalised to sum 1.
+    """Return Kaiser weights I0(β √(1 − (2s − 1)²)), s = t/T, of the samples of a window of length T, normalised to sum 1.
 
     Parameters
     ----------

@@ -74,7 +74,7 @@ class Axes(NamedTuple):
     outward: np.ndarray
 
     def coordinates(self, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """u and q of a path (2, n)."""
+        """Return u and q of a path (2, n)."""
         dx, dy = path[0] - self.origin[0], path[1] - self.origin[1]
         return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
 
@@ -130,7 +130,7 @@ def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrb
 def find_from_both_ends(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """Return the orbit over a saddle at one energy, shot from both ends and joined in its middle; None if it is not found.
 
-    Errors grow over a quarter of a period only, and the zero-velocity curve may bend away at the first end.
+    Errors then grow over only a quarter of a period, and the zero-velocity curve may bend away at the first end.
     """
     axes = saddle_axes(potential, channel)
     back = _find_from_saddle(potential, energy, channel, Axes(axes.origin, -axes.outward), _NEARLY_AT_REST)
@@ -154,7 +154,7 @@ def find_from_outside(potential: Potential, energy: float, axes: Axes, size: flo
 
 
 def continue_in_energy(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
-    """The orbit over a saddle, followed from small oscillations up to an energy with an adaptive step; None if this fails."""
+    """Follow the orbit over a saddle from small oscillations up to an energy with an adaptive step; None if this fails."""
     bottom = float(potential.well.saddle_energies[channel - 1])
     height = energy - bottom
 

@@ -64,7 +64,7 @@ def ridge_bend(potential: Potential, channel: int) -> float:
 
 
 def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
-    """(columns,) the exit u = edge + a q² in the axes of a saddle, between the walls of its neck, V = energy; a: `ridge_bend`.
+    """Return (columns,) the exit u = edge + a q² in the axes of a saddle, between the walls of its neck; a: `ridge_bend`.
 
     The walls beside the saddle are followed to the line. The result is None if they do not lead to it.
     """
@@ -161,7 +161,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
 
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two paths, (n, 2) and (m, 2), intersect, or connect the same points and are thus equal up to rounding errors."""
+    """Return whether two paths, (n, 2) and (m, 2), intersect, or connect the same points, so that they are equal to rounding."""
     return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
 
 

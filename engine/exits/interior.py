@@ -31,7 +31,7 @@ def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y:
 
 
 def find_outside_in_well_units(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """`find_outside_channels` for a potential in units of its well."""
+    """Apply `find_outside_channels` to a potential in units of its well."""
     energies, curves, row = np.full(x.size, energy), exit_curves(potential, energy)[None], np.zeros(x.size, np.int64)
     return find_outside_starts(potential, x.ravel(), y.ravel(), energies, curves, row).reshape(x.shape)
 

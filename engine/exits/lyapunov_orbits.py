@@ -34,7 +34,7 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
-# Reasons why an exit of several channels is not defined, numbered from what its search finds first.
+# Reasons why an exit of several channels is not defined, in the order in which its search checks them.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
 _MISSING = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",

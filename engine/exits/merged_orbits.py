@@ -27,7 +27,7 @@ _NO_GATES = np.array([[0.0, 0.0, -1.0]])
 
 
 def axes_between(potential: Potential, channels: tuple[int, ...], share: float = 0.5) -> Axes:
-    """Axes along and across the line between the outermost saddles of an exit, with the origin at a share of its length."""
+    """Return axes along and across the line between the outermost saddles of an exit, with the origin at a share of it."""
     saddles = potential.saddles[np.array(channels) - 1]
     angles = np.arctan2(saddles[:, 1], saddles[:, 0])
     order = np.argsort(angles)

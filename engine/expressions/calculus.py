@@ -31,7 +31,7 @@ _DERIVATIVES = 4096
 
 @lru_cache(maxsize=_DERIVATIVES)
 def derivative(expression: Expression, axis: int) -> Expression:
-    """∂/∂x (axis 0) or ∂/∂y (axis 1)."""
+    """Return ∂/∂x (axis 0) or ∂/∂y (axis 1)."""
     match expression:
         case Coordinate(own):
             return number(1.0 if own == axis else 0.0)

@@ -151,7 +151,7 @@ def _log(argument: Interval) -> Ends:
 
 @_widened
 def _sine(angle: Interval, shift: float = 0.0) -> Ends:
-    """sin(angle + shift)."""
+    """Return sin(angle + shift)."""
     first, last = angle.low + shift, angle.high + shift
     margin = _RELATIVE * (np.abs(first) + np.abs(last) + 1.0)
     ends = np.sin(first) - margin, np.sin(first) + margin, np.sin(last) - margin, np.sin(last) + margin

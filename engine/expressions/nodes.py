@@ -114,7 +114,7 @@ def as_number(expression: Expression) -> float | None:
 
 
 def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
-    """Σ c e over the pairs (c, e)."""
+    """Return Σ c e over the pairs (c, e)."""
     constant, collected = 0.0, dict[Expression, float]()
     for c, part in parts:
         inner = part if isinstance(part, Sum) else Sum(0.0, ((part, 1.0),))

@@ -29,7 +29,7 @@ def degree(terms: Mapping[Powers, object]) -> int:
 
 
 def largest_coefficients(*polynomials: Terms) -> dict[int, float]:
-    """{n: largest magnitude of a coefficient of degree n}."""
+    """Return {n: largest magnitude of a coefficient of degree n}."""
     largest: dict[int, float] = {}
     for terms in polynomials:
         for (i, j), c in terms.items():
@@ -89,7 +89,7 @@ def exact_sum(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
 
 
 def exact_negative(a: ExactTerms) -> dict[Powers, Fraction]:
-    """−a."""
+    """Return −a."""
     return {powers: -c for powers, c in a.items()}
 
 
@@ -101,7 +101,7 @@ def exact_product(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
 
 
 def exact_power(a: ExactTerms, exponent: int) -> dict[Powers, Fraction]:
-    """a to an integer power from 0 to `HIGHEST_DEGREE`."""
+    """Return the power of a with an integer exponent from 0 to `HIGHEST_DEGREE`."""
     total: dict[Powers, Fraction] = {(0, 0): Fraction(1)}
     for _ in range(exponent):
         total = exact_product(total, a)

@@ -47,7 +47,7 @@ def monomial_term(i: int, j: int, size: float, digits: int | None) -> str:
 
 
 def monomial(i: int, j: int) -> str:
-    """x^i y^j as text, such as "x²y"; empty for a constant."""
+    """Return x^i y^j as text, such as "x²y"; empty for a constant."""
     return "".join(raised(name, exponent) for name, exponent in (("x", i), ("y", j)) if exponent)
 
 

@@ -111,7 +111,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         TypeError
             If the result has no picture, or an option does not apply to it.
         ValueError
-            If an option does not have the given value.
+            If the value of an option is not legal.
         """
         return load_pictures().plot_result(self, ax, **options)
 

@@ -9,7 +9,7 @@ class Clock(Protocol):
     """The functions of the module `time` that jobs use; tests replace them by a clock that is set by hand."""
 
     def monotonic(self) -> float:
-        """Seconds since a fixed moment."""
+        """Return seconds since a fixed moment."""
 
     def thread_time(self) -> float:
-        """Processor time of the calling thread, in seconds."""
+        """Return the processor time of the calling thread, in seconds."""

@@ -62,7 +62,7 @@ class _Run:
         return subscriptions
 
     def priority(self) -> Priority:
-        """Priority of the short calls."""
+        """Return the priority of the short calls."""
         if self.map_priority is not None:
             return self.map_priority()
         return Priority.BACKGROUND

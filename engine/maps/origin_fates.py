@@ -18,7 +18,7 @@ from engine.maps.spec import MapSpec
 from engine.propagation.fates import Fate
 from engine.systems.outcomes import Exit
 
-# What orbits do at the outcomes in each array.
+# The verbs for the outcomes in each array.
 _VERBS = {"origin": "entered", "fate": "leaves"}
 
 

@@ -102,7 +102,7 @@ class Rerun:
         return decided
 
     def has_changed(self) -> np.ndarray:
-        """(n,) bool: whether the outcome differs from the map's, or must differ because there are already more crossings."""
+        """Return (n,) bool: whether the outcome differs from the map's, or must because there are already more crossings."""
         batch, escaped = self.batch, self.fate >= 1
         other_fate = self.is_decided() & (batch.fate != self.fate)
         other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)

@@ -128,7 +128,7 @@ class MapSpec:
         for name, value in checked.items():
             object.__setattr__(self, name, value)
         if plane.parameter is not None and plane.parameter.system.potential != self.potential:
-            raise ValueError(f"plane={plane.title}: its parameter is one of another system; must be one of {self.potential.name}")
+            raise ValueError(f"plane={plane.title}: its parameter belongs to another system; must be of {self.potential.name}")
 
     @property
     def common_energy(self) -> float | None:
@@ -264,7 +264,7 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
         window = None if found["default_window"] else tuple(float(edge) for edge in found["window"])
         columns, rows = map(int, found["resolution"])
     except KeyError as error:
-        raise ValueError(f"dataset: has no attribute {error}; must be one of a map, written by this version") from None
+        raise ValueError(f"dataset: has no attribute {error}; must be the dataset of a map written by this version") from None
     return MapSpec(
         read_potential(found), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
         float(found["t_max"]), use_evidence=bool(found["use_evidence"]), backward=bool(found["backward"]),

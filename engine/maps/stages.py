@@ -21,7 +21,7 @@ Pause = Callable[[float], float]
 """A function that returns the pause in seconds after a frame, given the time in seconds since the start of the computation."""
 
 OnChange = Callable[[bool], None]
-"""A callback for times when pixels may have changed; its argument tells whether a stage has ended."""
+"""A function to call whenever pixels may have changed; its argument tells whether a stage has ended."""
 
 
 class Frame(Protocol):

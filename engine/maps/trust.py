@@ -93,11 +93,9 @@ class TrustMap(PixelAnalysis):
         """Return the shares in one sentence."""
         if np.isnan(self.doubtful_share):
             return "There are no pixels inside to test."
-        doubtful, tested, like = (
-            f"{100.0 * share:.2f} %" for share in (self.doubtful_share, self.tested_share, self._share(Trust.LIKE_NEIGHBOURS))
-        )
+        doubtful, tested = (f"{100.0 * share:.2f} %" for share in (self.doubtful_share, self.tested_share))
         so_far = "" if self.complete else " so far"
-        return f"{doubtful} of the pixels inside are doubtful{so_far}: {tested} were tested, {like} agree with their neighbours."
+        return f"Of the pixels inside, {tested} were tested{so_far} and {doubtful} are doubtful."
 
     def _share(self, *codes: Trust) -> float:
         return code_share(self.trust[self.trust != Trust.NOT_APPLICABLE], *codes)

@@ -161,7 +161,7 @@ def _box_entropies(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _mean_and_error(entropies: np.ndarray) -> tuple[float, float]:
-    """Mean and standard error; NaN where undefined."""
+    """Return the mean and standard error; NaN where undefined."""
     if not entropies.size:
         return math.nan, math.nan
     error = float(entropies.std(ddof=1)) / math.sqrt(entropies.size) if entropies.size > 1 else math.nan

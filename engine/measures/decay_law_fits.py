@@ -118,7 +118,7 @@ class _Sample:
     times: np.ndarray
 
     def unit_times(self, law: DecayLaw) -> np.ndarray:
-        """Unit times u of a law."""
+        """Return the unit times u of a law."""
         return to_unit_time(law, self.t_low, self.t_high, self.times)
 
     def p_value(self, law: DecayLaw) -> float:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from engine.foundations.result import RecordedResult
-from engine.foundations.wording import format_count, format_whole
+from engine.foundations.wording import format_count, format_number, format_whole
 
 MIN_ESCAPES = 100
 """Smallest number of escapes in a window for a fit, which gives the rate to about 20 %. Choosing a window needs twice as many."""
@@ -128,7 +128,7 @@ class DecayLaws(RecordedResult):
             return self._describe_missing_fit()
         kappa, gamma = _describe_fit("κ", self.exponential), _describe_fit("γ", self.power_law)
         part = f"{format_whole(self.escapes)} of {format_count(self.escapes_in_all, 'escape')}"
-        data = f"{part}, t = {self.t_low:.4g} to {self.t_high:.4g}"
+        data = f"{part}, t = {format_number(self.t_low)} to {format_number(self.t_high)}"
         if self.preferred is DecayLaw.EXPONENTIAL:
             return f"Exponential: {kappa}; {data}. A power law is less likely{_describe_exclusion(self.power_law)}."
         if self.preferred is DecayLaw.POWER_LAW:
@@ -154,13 +154,14 @@ class DecayLaws(RecordedResult):
         if len(possible) == 2:
             return "The data do not decide between the two laws"
         if possible:
-            return f"Only the {possible[0]} may hold, but it is not significantly more likely"
+            return f"The {possible[0]} may hold, but is not clearly more likely"
         ruled_out = max(exponential.p_value, power_law.p_value) < MIN_P_VALUE
         return "Neither law holds" if ruled_out else "These escapes do not show a decay"
 
 
 def _describe_fit(symbol: str, fit: LawFit) -> str:
-    return f"{symbol} = {fit.rate:.3g} ({fit.low:.3g} to {fit.high:.3g}), {_describe_p_value(fit)}"
+    rate, low, high = (format_number(value, 3) for value in (fit.rate, fit.low, fit.high))
+    return f"{symbol} = {rate} ({low} to {high}), {_describe_p_value(fit)}"
 
 
 def _describe_p_value(fit: LawFit) -> str:

@@ -153,7 +153,7 @@ class Measure:
         return next((quantity.bars for quantity in self.quantities if quantity.label), Bars.NONE)
 
     def variables(self, point: Any, result: Any) -> Variables:
-        """Its variables in the dataset of a sweep; numbers are NaN if `result` is None."""
+        """Return its variables in the dataset of a sweep; numbers are NaN if `result` is None."""
         found = {} if self.other_variables is None else dict(self.other_variables(point, result))
         for quantity in self.quantities:
             found |= quantity.variables(result)

@@ -137,7 +137,7 @@ def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
 
 
 def _largest_distances(labels: np.ndarray, valid: np.ndarray, basins: tuple[int, ...], boundary: np.ndarray) -> np.ndarray:
-    """Distance of each pixel of `boundary` from the furthest slim boundary; infinite if a basin has none."""
+    """Return the distance of each pixel of `boundary` from the furthest slim boundary; infinite if a basin has none."""
     from scipy import ndimage
 
     distances = np.zeros(np.count_nonzero(boundary))

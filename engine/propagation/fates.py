@@ -69,7 +69,7 @@ def outcome_of(fate: int, outcomes: Sequence[Outcome] = ()) -> Outcome:
 
 
 def name_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
-    """Return the name a fate in a word or two: "channel 1", "bounded"."""
+    """Name a fate in a word or two: "channel 1", "bounded"."""
     if fate >= 1:
         return outcome_of(fate, outcomes).label
     return UNRESOLVED if fate == Fate.FAILED else name_code(Fate, fate)

@@ -1,4 +1,4 @@
-"""Axes of a slice: what changes along them, and the energy of its starts."""
+"""Axes of a slice: what varies along them, and the energy of its starts."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from engine.systems.well_units import WellUnits, nearest_power_of_two
 class Coordinate(Enum):
     """A coordinate of a start; the value is its name.
 
-    `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is its angle from the direction
-    away from the origin, at the origin from the +y axis: 0 is radially outward, π/2 tangential, counterclockwise. `SPEED` is v,
-    which only the energy decides.
+    `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is its angle from the direction away
+    from the origin, or at the origin from the +y axis: 0 is radially outward, π/2 tangential, counterclockwise. `SPEED` is v,
+    which is always determined by the energy.
     """
 
     X = "x"
@@ -40,7 +40,7 @@ class Coordinate(Enum):
 
     @property
     def symbol(self) -> str:
-        """The name in texts and at axes."""
+        """The symbol in texts and on axes."""
         return {"theta": "θ", "beta": "β"}.get(self.value, self.value)
 
     @property
@@ -54,21 +54,21 @@ class Coordinate(Enum):
         return self is not Coordinate.H
 
     def unit(self, units: WellUnits) -> float:
-        """The unit of the coordinate in which it is a number of the size of the well."""
+        """Return the unit of the coordinate in which its values are of the order of the size of the well."""
         momentum = {"px": units.momentum, "py": units.momentum, "v": units.momentum}
         return {"x": units.length, "y": units.length, **momentum, "h": units.energy}.get(self.value, 1.0)
 
     @property
     def components(self) -> dict[Coordinate, float]:
-        """How far starts move along each coordinate where the axis rises by 1."""
+        """Change of each coordinate of a start per unit along the axis."""
         return {self: 1.0}
 
     def in_well_units(self, units: WellUnits) -> Coordinate:
-        """The axis itself: its values have units, it has none."""
+        """Return the axis itself: its values have units, but the axis has none."""
         return self
 
     def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
-        """Give starts their coordinates (n,) on this axis."""
+        """Set the coordinates (n,) of starts on this axis."""
         start[self] = along
 
 
@@ -77,25 +77,25 @@ MOMENTA = (Coordinate.PX, Coordinate.PY)
 ANGLES = (Coordinate.THETA, Coordinate.BETA)
 STATE = (*POSITIONS, *MOMENTA)
 
-# Values of a parameter below this, as a share of its range, are rounding errors of 0, and too small for a coefficient.
+# Values of a parameter below this, as a share of its range, are rounding errors of 0, and are too small for a coefficient.
 _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
 class Direction:
-    """An oblique axis: a direction in (x, y, px, py), along which starts move from the fixed values of the slice.
+    """An oblique axis: a direction in (x, y, px, py) along which starts move from the fixed values of the slice.
 
     Parameters
     ----------
     key
         Its name, an identifier such as "u".
     x, y, px, py
-        How far a start moves along each coordinate where the axis rises by 1, finite, not all 0.
+        Change of each coordinate of a start per unit along the axis, finite, not all 0.
 
     Raises
     ------
     ValueError
-        If the name is not an identifier, or is that of a coordinate, or the components are not finite or all 0.
+        If the name is not an identifier or is the name of a coordinate, or the components are not finite or all 0.
     """
 
     key: str
@@ -107,7 +107,7 @@ class Direction:
     def __post_init__(self) -> None:
         check_type("key", self.key, str)
         if not self.key.isidentifier() or self.key in {coordinate.value for coordinate in Coordinate}:
-            raise ValueError(f"direction {short_repr(self.key)}: its name must be an identifier and none of a coordinate")
+            raise ValueError(f"direction {short_repr(self.key)}: its name must be an identifier that is not a coordinate")
         for coordinate in STATE:
             value = checked_number(f"direction {self.key}: {coordinate.value}", getattr(self, coordinate.value))
             object.__setattr__(self, coordinate.value, value)
@@ -121,26 +121,26 @@ class Direction:
 
     @property
     def symbol(self) -> str:
-        """The name in texts and at axes."""
+        """The symbol in texts and on axes."""
         return self.key
 
     @property
     def parity(self) -> int | None:
-        """The parity of the components, see `Coordinate.parity`; None if they have both."""
+        """The common parity of the components, see `Coordinate.parity`; None if they differ."""
         parities = {coordinate.parity for coordinate in self.components}
         return parities.pop() if len(parities) == 1 else None
 
     @property
     def is_free(self) -> bool:
-        """True: starts can be displaced along it at constant energy."""
+        """True, because starts can be displaced along it at constant energy."""
         return True
 
     def unit(self, units: WellUnits) -> float:
-        """The unit of the axis, a power of 2, in which it is a number of the size of the well."""
+        """Return the unit of the axis, a power of 2, in which its values are of the order of the size of the well."""
         return 1.0 / nearest_power_of_two(float(np.hypot.reduce([v / c.unit(units) for c, v in self.components.items()])))
 
     def in_well_units(self, units: WellUnits) -> Direction:
-        """The same direction where the state and the axis are in units of the well."""
+        """Return the direction for a state and an axis in units of the well."""
         unit = self.unit(units)
         return Direction(self.key, **{c.value: value * unit / c.unit(units) for c, value in self.components.items()})
 
@@ -151,18 +151,18 @@ class Direction:
 
 
 class _SystemAxis:
-    """An axis along which the system differs, and starts stay as they are."""
+    """An axis along which the system varies while starts do not change."""
 
     key: str
 
     @property
     def components(self) -> dict[Coordinate, float]:
-        """None: starts stay as they are."""
+        """Empty, because starts do not change."""
         return {}
 
     @property
     def symbol(self) -> str:
-        """The name in texts and at axes."""
+        """The symbol in texts and on axes."""
         return symbol_of(self.key)
 
     @property
@@ -172,7 +172,7 @@ class _SystemAxis:
 
     @property
     def is_free(self) -> bool:
-        """Return False: starts cannot be free in a parameter, as another value is another system."""
+        """False: starts cannot be displaced along a parameter, because another value is another system."""
         return False
 
     def unit(self, units: WellUnits) -> float:
@@ -184,12 +184,12 @@ class _SystemAxis:
         return self
 
     def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
-        """Leave starts as they are."""
+        """Leave starts unchanged."""
 
 
 @dataclass(frozen=True)
 class ParameterAxis(_SystemAxis):
-    """A parameter of a system as an axis: each of its values has a potential of its own.
+    """A parameter of a system as an axis, with a potential for each of its values.
 
     Parameters
     ----------
@@ -198,13 +198,13 @@ class ParameterAxis(_SystemAxis):
     low, high
         Its range in the default window, dimensionless, low < high, within `System.range_of`.
     system
-        The system, or its potential; its own value of the parameter is that at which exits have their numbers.
+        The system, or its potential; exits are numbered at the value of the parameter in this system.
 
     Raises
     ------
     ValueError
-        If the system has no such parameter, or the range is empty or not legal. That the system has a potential at each value is
-        not checked here, as this takes seconds for some formulas; `potential` does.
+        If the system has no such parameter, or the range is empty or not legal. Whether the system has a potential at each value
+        is not checked here, because this takes seconds for some formulas; `potential` checks it.
     """
 
     key: str
@@ -212,7 +212,7 @@ class ParameterAxis(_SystemAxis):
     high: float
     system: System
 
-    # Type checkers accept what is converted; fields have the types of what is kept.
+    # Type checkers accept the types that are converted; the fields have the types of the stored values.
     if TYPE_CHECKING:
 
         def __init__(self, key: str, low: float, high: float, system: System | Potential) -> None: ...
@@ -235,12 +235,12 @@ class ParameterAxis(_SystemAxis):
             raise ValueError(f"parameter {self.key} from {low:g} to {high:g}: must be between {lowest:g} and {highest:g}")
 
     def potential(self, value: float) -> Potential:
-        """The potential at a value of the parameter; ValueError if there is none."""
+        """Return the potential at a value of the parameter; ValueError if there is none."""
         is_zero = abs(value) < _ROUNDING * (self.high - self.low)
         return self.system.with_parameter(self.key, 0.0 if is_zero else value).potential
 
     def at(self, value: float) -> HeldParameter:
-        """The axis of a line of starts, on which the parameter has one value."""
+        """Return the axis of a line of starts on which the parameter has one value."""
         return HeldParameter(self.key, value)
 
 
@@ -253,7 +253,7 @@ class HeldParameter(_SystemAxis):
     key
         Name of the parameter.
     value
-        Its value; the potential of the map is the one at this value.
+        Its value, at which the potential of the map is taken.
     """
 
     key: str
@@ -273,19 +273,19 @@ Axis = Coordinate | Direction | ParameterAxis | HeldParameter
 
 
 Energy = float | tuple[float, float]
-"""The energy of a map: h, or on a slice with an axis h its range (low, high)."""
+"""The energy of a map: h, or its range (low, high) on a slice with an axis h."""
 
 
 def common_energy(energy: Energy) -> float | None:
-    """h of all starts of a map; None on a slice with an axis h."""
+    """Return h of all starts of a map; None on a slice with an axis h."""
     return None if isinstance(energy, tuple) else energy
 
 
 def highest_energy(energy: Energy) -> float:
-    """The highest h of a map."""
+    """Return the highest h of a map."""
     return energy[1] if isinstance(energy, tuple) else energy
 
 
 def scaled_energy(energy: Energy, factor: float) -> Energy:
-    """The energy of a map in other units."""
+    """Convert the energy of a map to other units."""
     return (factor * energy[0], factor * energy[1]) if isinstance(energy, tuple) else factor * energy

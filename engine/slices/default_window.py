@@ -30,23 +30,24 @@ from engine.systems.well_units import WellUnits
 
 # Margin of the default window on each side, as a share of the size of the interior.
 _MARGIN = 0.03
-# Sides of an interior in units of the well that differ by more are shown at different scales.
+# If the sides of an interior, in units of the well, differ by more than this factor, their scales differ.
 _LARGEST_ASPECT = 4.0
-# Share of the points between the edges whose momenta are shown of a system with gaps, near which there is no largest one.
+# Share of the momenta, of points between the edges, that the window shows for a system with gaps, where momenta are unbounded.
 _SHOWN_MOMENTA = 0.9
 _SCAN_POINTS = 801
-# The interior is searched up to the first distance from the origin, in units of that of the nearest exit saddle, and where it is
-# larger up to twice as far until it ends, or up to the second distance, in units of that of the outermost exit saddle.
+# The interior is searched up to the first distance from the origin, in units of the distance of the nearest exit saddle. If it is
+# larger, it is searched up to twice as far until it ends, or up to the second distance, in units of that of the outermost exit
+# saddle.
 _SEARCH_LENGTHS = 4.0
 _SEARCH_SADDLE_DISTANCES = 2.0
-# The same in units of the distance of the outermost body or critical point, where saddles are no exits.
+# The corresponding distance in units of that of the outermost body or critical point, for systems whose saddles are not exits.
 _SEARCH_BODY_DISTANCES = 2.5
 _RAYS = 180
-# Points along a side of the lattice on which the interior of an oblique slice is searched, and how often it is refined.
+# Points along a side of the lattice on which the interior of an oblique slice is searched, and number of refinements.
 _SCAN_SIDE, _SCANS = 201, 3
-# Values of a parameter at which the interior is searched.
+# Number of values of a parameter at which the interior is searched.
 _VALUES = 9
-# Points of a line of pixels that are tested for symmetry, and the largest distance of its pixels from 0 as a share of the window.
+# Number of tested points of a line of pixels, and largest distance of its pixels from 0 as a share of the window.
 _LINE_POINTS = 65
 _CENTRED = 1e-9
 _EMPTY = "must be at least about 1e-5 above the minimum of the well; fixed values must lie inside the well"
@@ -56,7 +57,7 @@ Range = tuple[float, float]
 
 @checks_types(potential=Potential)
 def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window:
-    """A window that shows the whole interior: all starts that are neither forbidden nor outside.
+    """Find a window that shows the whole interior: all starts that are neither forbidden nor outside.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
 
     Returns
     -------
-    The window; on a slice of one energy it is a square in units of the well, unless the interior is much longer than wide.
+    The window. On a slice of one energy it is a square in units of the well, unless the interior is much longer than wide.
 
     Raises
     ------
@@ -88,10 +89,10 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
 
 
 def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: tuple[int, int]) -> Window:
-    """The default window of a map, moved by half a pixel where a line of pixels would be on a line of symmetry.
+    """Find the default window of a map, shifted by half a pixel if a line of pixels would lie on a line of symmetry.
 
-    An orbit of a potential even in x that starts with x = px = 0 stays there for ever, by symmetry alone. Such starts have
-    measure zero, and a column of them would count in shares and show a line that is not a property of the basins; so for y.
+    An orbit with x = px = 0 in a potential even in x stays on x = 0 for ever, by symmetry alone. Such starts have measure zero,
+    but a column of them would count in shares and show a line that is not a property of the basins. The same holds for y.
 
     Parameters
     ----------
@@ -110,12 +111,12 @@ def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: t
 
 
 def _is_centred(low: float, high: float, count: int) -> bool:
-    """Whether the middle one of several pixels is at 0, to rounding."""
+    """Return whether the middle one of several pixels is at 0, to rounding."""
     return count > 1 and count % 2 == 1 and abs(low + high) < _CENTRED * (high - low)
 
 
 def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, place: int, others: Range) -> bool:
-    """Whether all starts with 0 on one axis, 0 or 1, and values of this range on the other one stay on x = 0 or y = 0."""
+    """Return whether all starts with 0 on axis `place` and values of a range on the other axis stay on x = 0 or y = 0."""
     line = plane if plane.parameter is None else plane.line(plane.parameter.low)
     points = [np.linspace(*others, _LINE_POINTS)] * 2
     points[place] = np.zeros(_LINE_POINTS)
@@ -132,7 +133,7 @@ def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Windo
         try:
             found += _axis_ranges(each, plane, energy)
         except ValueError as error:
-            # Along a parameter the others may have exits.
+            # Along a parameter, other values may have exits.
             problem = error
     if problem is not None and not found:
         raise problem
@@ -153,7 +154,7 @@ def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Windo
 
 
 def _exact_unit(axis: Axis, potential: Potential) -> float:
-    """The unit of an axis with the exact unit of time, so that the shape of a square does not depend on the user's units."""
+    """Return the unit of an axis with the exact unit of time, so that the shape of a square does not depend on user units."""
     units = WellUnits(potential.units.length, potential.well.exact_time_unit)
     if isinstance(axis, Direction):
         return 1.0 / float(np.hypot.reduce([value / c.unit(units) for c, value in axis.components.items()]))
@@ -161,7 +162,7 @@ def _exact_unit(axis: Axis, potential: Potential) -> float:
 
 
 def _potentials(potential: Potential, plane: Slice) -> list[Potential]:
-    """The potentials over which a window extends: those along a parameter, else the one of the map."""
+    """Return the potentials over which a window extends: those along a parameter, otherwise the potential of the map."""
     axis = plane.parameter
     if axis is None:
         return [potential]
@@ -169,7 +170,7 @@ def _potentials(potential: Potential, plane: Slice) -> list[Potential]:
 
 
 def _axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[list[Range]]:
-    """The ranges of both axes over the interior of a slice, as a list of one pair; an empty list if it has none."""
+    """Return the ranges of both axes over the interior of a slice as a list of one pair; an empty list without an interior."""
     units = potential.units
     well, level, scaled = potential.in_well_units, highest_energy(energy) / units.energy, plane.in_well_units(units)
     if any(isinstance(axis, Direction) for axis in plane.axes):
@@ -185,12 +186,12 @@ def _axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[lis
 
 
 def _is_whole(axis: Axis) -> bool:
-    """Whether the default window shows all of an axis, whatever the interior."""
+    """Return whether the default window shows all of an axis, independent of the interior."""
     return isinstance(axis, ParameterAxis) or axis in (*ANGLES, Coordinate.H)
 
 
 def _edges(axis: Axis, energy: Energy, low: float, high: float) -> Range:
-    """The edges of a window along an axis on which the interior has this range."""
+    """Return the edges of a window along an axis on which the interior has this range."""
     if isinstance(axis, ParameterAxis):
         return axis.low, axis.high
     if axis in ANGLES:
@@ -201,7 +202,7 @@ def _edges(axis: Axis, energy: Energy, low: float, high: float) -> Range:
 
 
 def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[Range]:
-    """The ranges of both axes over the interior of a slice with a direction, from points on a lattice, in units of the well."""
+    """Return the ranges of both axes over the interior of a slice with a direction, from a lattice, in units of the well."""
     reach = 2.0 * _search_radius(potential, highest_energy(energy))
     reaches = [reach * _exact_unit(axis, potential) for axis in plane.axes]
     ranges = [_edges(axis, energy, -each, each) for axis, each in zip(plane.axes, reaches, strict=True)]
@@ -221,7 +222,7 @@ def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[
 
 
 def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[Coordinate, Range]:
-    """The ranges of x and y over the interior of a slice; for a coordinate that is not an axis, its value twice."""
+    """Return the ranges of x and y over the interior of a slice; for a coordinate that is not an axis, its value twice."""
     if {Coordinate.X, Coordinate.Y} == set(plane.axes):
         points = _interior_points(potential, energy)
         return dict(zip((Coordinate.X, Coordinate.Y), map(_rounded_range, points), strict=True))
@@ -235,7 +236,7 @@ def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[
 
 
 def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ranges: dict[Coordinate, Range]) -> None:
-    """Raise ValueError if a fixed momentum takes more than all kinetic energy between these positions, in units of the well."""
+    """Raise ValueError if a fixed momentum exceeds the kinetic energy between these positions, in units of the well."""
     units, level = potential.units, highest_energy(energy) / potential.units.energy
     x, y = np.meshgrid(*(np.linspace(*ranges[coordinate], _SCAN_SIDE) for coordinate in (Coordinate.X, Coordinate.Y)))
     largest = units.momentum * float(np.sqrt(2.0 * max(level - np.nanmin(potential.in_well_units.value(x, y)), 0.0)))
@@ -248,7 +249,7 @@ def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ra
 
 
 def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate, Range]) -> Range:
-    """The range of a momentum of the starts between these positions; near gaps it would have no end."""
+    """Return the range of a momentum of the starts between these positions, limited near gaps, where it is unbounded."""
     x, y = (np.linspace(*ranges[coordinate], _SCAN_POINTS) for coordinate in (Coordinate.X, Coordinate.Y))
     value = potential.value(x, y)
     bottom = np.quantile(value[np.isfinite(value)], 1.0 - _SHOWN_MOMENTA) if potential.gaps else np.min(value)
@@ -269,7 +270,7 @@ def _square_window(x_low: float, x_high: float, low: float, high: float) -> Wind
 
 
 def _run_around_middle(allowed: np.ndarray) -> slice:
-    """The run of True values around the middle of an array."""
+    """Return the run of True values around the middle of an array."""
     middle = allowed.size // 2
     blocked = np.flatnonzero(~allowed)
     low = blocked[blocked < middle].max(initial=-1) + 1
@@ -278,7 +279,7 @@ def _run_around_middle(allowed: np.ndarray) -> slice:
 
 
 def _interior_interval(potential: Potential, energy: float, axis: Coordinate, held: dict[Coordinate, float]) -> np.ndarray:
-    """(n,) x or y of the interior on the line on which the other one is held, with a resolution of about a thousandth."""
+    """Return (n,) x or y of the interior on a line of constant y or x, with a resolution of about a thousandth."""
     radius = _search_radius(potential, energy)
     line = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
     x, y = (line if axis is coordinate else np.full_like(line, held[coordinate]) for coordinate in (Coordinate.X, Coordinate.Y))
@@ -287,7 +288,7 @@ def _interior_interval(potential: Potential, energy: float, axis: Coordinate, he
 
 
 def _is_inside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether points are allowed and not beyond an exit; gaps in an interior count as inside."""
+    """Return whether points are allowed and not beyond an exit; gaps in an interior count as inside."""
     outside = find_outside_in_well_units(potential, energy, x, y)
     gaps = [number for number, end in enumerate(potential.ends, potential.channels + 1) if end in potential.gaps]
     inside: np.ndarray = ~(potential.value(x, y) > energy) & np.isin(outside, [0, *gaps])
@@ -295,21 +296,21 @@ def _is_inside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray
 
 
 def _search_radius(potential: Potential, energy: float) -> float:
-    """A radius that contains the interior, unless the energy is many times the escape energy."""
+    """Return a radius that contains the interior, unless the energy is many times the escape energy."""
     if potential.escape_radius is not None:
         return _shown_radius(potential, potential.escape_radius)
     distances = np.hypot(*potential.saddles.T)
-    # Not in units of the well, which are rounded: edges found on the scanned points must not depend on the user's units.
+    # Units of the well are rounded and are not used here: edges found on the scanned points must not depend on the user's units.
     nearest, outermost = (float(distances.min()), float(distances.max())) if distances.size else (1.0, 0.0)
     radius = _SEARCH_LENGTHS * nearest
-    # Not at once to the outermost saddle, which may be so far away that the points miss the interior.
+    # The search does not begin at the outermost saddle, which may be so far away that the points miss the interior.
     while radius < _SEARCH_SADDLE_DISTANCES * outermost and _interior_on_rays(potential, energy, radius)[2][:, -1].any():
         radius *= 2.0
     return radius
 
 
 def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x, y, and whether in the interior, (rays, n), of points on rays from the origin; of a well up to where a ray leaves it."""
+    """Return x, y, and whether points on rays from the origin are inside, (rays, n); in a well, up to where a ray leaves it."""
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
     radius = np.linspace(0.0, farthest, _SCAN_POINTS // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
@@ -318,7 +319,7 @@ def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> t
 
 
 def _shown_radius(potential: Potential, escape_radius: float) -> float:
-    """A radius that contains the bodies and critical points of a system with an escape radius, with some space around."""
+    """Return a radius that contains the bodies and critical points of a system with an escape radius, with some margin."""
     places = [(point.x, point.y) for point in review_potential(potential).critical_points]
     places += [(end.x, end.y) for end in potential.ends]
     outermost = max((float(np.hypot(*place)) for place in places), default=0.0)
@@ -326,7 +327,7 @@ def _shown_radius(potential: Potential, escape_radius: float) -> float:
 
 
 def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) x and y of points of the interior of the (x, y) plane, on rays that start at the origin, and of the exits."""
+    """Return (n,) x and y of points of the interior of the (x, y) plane, on rays from the origin, and of the exits."""
     x, y, inside = _interior_on_rays(potential, energy, _search_radius(potential, energy))
     x, y = x[inside], y[inside]
     if x.size == 0 or not x.min() < x.max():
@@ -336,7 +337,7 @@ def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, n
 
 
 def _rounded_range(coordinate: np.ndarray) -> Range:
-    """The smallest and the largest value, to 12 decimals, so that the window of a symmetric interior is symmetric."""
+    """Return the smallest and the largest value, to 12 decimals, so that the window of a symmetric interior is symmetric."""
     if not coordinate.size:
         return 0.0, 0.0
     return round(float(coordinate.min()), 12), round(float(coordinate.max()), 12)

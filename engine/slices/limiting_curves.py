@@ -18,7 +18,7 @@ _CONTOUR_SAMPLES = 201
 
 @checks_types(potential=Potential)
 def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy, window: GivenWindow) -> list[np.ndarray]:
-    """The boundary of the forbidden region of a slice: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
+    """Trace the boundary of the forbidden region of a slice: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
 
     Parameters
     ----------
@@ -41,13 +41,13 @@ def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy
     >>> len(MapSpec(CASES["I"], Plane.X_PX, 0.19).trace_zero_velocity_curve())
     1
     """
-    # Along an axis h the required energy is the one that is missing.
+    # With an axis h, the required energy is the energy that is missing.
     level = None if checked_slice(plane).energy_axis is not None else common_energy(energy)
     return trace_equipotentials(potential, plane, (level or 0.0,), checked_window(window))[0]
 
 
 def trace_equipotentials(potential: Potential, plane: Slice, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
-    """The zero-velocity curves of several energies on a slice of one energy: a list of (n, 2) pieces for each energy."""
+    """Return the zero-velocity curves of several energies on a slice of one energy, as a list of (n, 2) pieces for each."""
     import contourpy
 
     levels = [checked_number("energies", energy) for energy in energies]

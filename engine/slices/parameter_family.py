@@ -1,8 +1,8 @@
-"""The potentials along a parameter of a system, whose exits keep their numbers.
+"""The potentials along a parameter of a system, with exits that keep their numbers.
 
-Critical points take a tenth of a second to find and to classify, so they are found at a few values of the parameter, the nodes.
-Between two nodes with the same exits, saddles are continued by Newton's method, which takes a millisecond. Where the exits of two
-neighbouring nodes cannot be matched, nodes are inserted: exits appear and disappear there.
+Finding and classifying critical points takes a tenth of a second, so that it is done at a few values of the parameter, the nodes.
+Between two nodes with the same exits, saddles are continued by Newton's method, which takes a millisecond. If the exits of two
+neighbouring nodes cannot be matched, exits appear or disappear between them, and nodes are inserted.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from engine.slices.axes import ParameterAxis
 from engine.systems.outcomes import Exit
 from engine.systems.potential import Potential
 
-# Nodes divide the range of the axis into `_PARTS`, and the distance from the system's own value to the farther end of the range
-# into at most `_MOST_PARTS`. A part whose ends have different exits is halved up to `_HALVINGS` times.
+# Nodes divide the range of the axis into `_PARTS` parts, and the distance from the value of the system to the farther end of the
+# range into at most `_MOST_PARTS`. A part whose ends have different exits is halved up to `_HALVINGS` times.
 _PARTS, _MOST_PARTS, _HALVINGS = 8, 24, 12
 _NEWTON_STEPS = 20
-# Potentials along the axis that `find_members` finds.
+# Number of potentials along the axis that `find_members` finds.
 _TRIED = 112
-# Newton's method has converged when its last step is this small, and it may move a saddle by this share of the distance to the
-# nearest other one.
+# Newton's method has converged when its last step is this small. It may move a saddle by this share of the distance to the
+# nearest other saddle.
 _CONVERGED, _LARGEST_SHARE = 1e-12, 0.5
-# Relative to the distance from the origin, saddles closer than this are the same one.
+# Saddles closer than this, relative to the distance from the origin, are the same.
 _SAME = 1e-7
 
 
 MOST_FOUND = 120
-"""Most potentials of a family whose critical points are searched, which takes some 10 s."""
+"""Largest number of potentials of a family whose critical points are searched, which takes about 10 s."""
 
 
 class ManyExitsError(ValueError):
@@ -50,14 +50,14 @@ class Member:
     potential
         The potential.
     numbers
-        (outcomes + 1,) int8: the fate in the family of each of its fates; entry 0 is 0.
+        (outcomes + 1,) int8: the fate in the family for each fate of the potential; entry 0 is 0.
     """
 
     potential: Potential
     numbers: np.ndarray
 
     def numbers_at(self, energy: float) -> np.ndarray:
-        """`numbers` at an energy: an exit of several channels has the lowest of their numbers in the family."""
+        """Return `numbers` at an energy: an exit of several channels has the lowest of their numbers in the family."""
         numbers = self.numbers.copy()
         for merged in self.potential.well.merged_exits(energy):
             channels = list(merged.channels)
@@ -66,22 +66,22 @@ class Member:
 
     @property
     def of_others(self) -> np.ndarray:
-        """The fates in the family of the outcomes after the exits."""
+        """The fates in the family of the outcomes that follow the exits."""
         return self.numbers[self.potential.channels + 1 :]
 
 
 class ParameterFamily:
     """The potentials along one axis. `parameter_family` makes it once for each axis.
 
-    Outcomes keep the numbers that they have at the system's own value of the parameter. Exits that do not exist there get the
-    numbers after those, in the order in which they appear, first towards higher values and then towards lower ones.
+    Outcomes keep the numbers that they have at the value of the system. Exits that do not exist there get the next numbers in the
+    order in which they appear, first towards higher and then towards lower values.
 
     Parameters
     ----------
     axis
         The axis.
     most_found
-        Most potentials whose critical points are searched, 1 or more.
+        Largest number of potentials whose critical points are searched, 1 or more.
     """
 
     def __init__(self, axis: ParameterAxis, most_found: int = MOST_FOUND) -> None:
@@ -90,7 +90,7 @@ class ParameterFamily:
         self._reach = max(abs(axis.low - self._own), abs(axis.high - self._own))
         self._step = max((axis.high - axis.low) / _PARTS, self._reach / _MOST_PARTS)
         self._found = 0
-        # Potentials within parts whose ends have different exits.
+        # Potentials inside parts whose ends have different exits.
         self._others: dict[float, Member] = {}
         self._nodes: dict[float, Member] = {}
         self._matched: dict[tuple[float, float], list[int] | None] = {}
@@ -98,19 +98,19 @@ class ParameterFamily:
         first = axis.potential(self._own)
         self._nodes[self._own] = Member(first, read_only(np.arange(len(first.outcomes) + 1, dtype=np.int8)))
         self.outcomes = first.outcomes
-        """Outcomes of all potentials of the family that have been found so far."""
+        """The outcomes of all potentials of the family that have been found so far."""
         self._extend_to(axis.high)
         self._extend_to(axis.low)
 
     def member(self, value: float) -> Member:
-        """The potential at a value of the parameter.
+        """Return the potential at a value of the parameter.
 
         Raises
         ------
         ManyExitsError
-            If the exits change too often on the way to it.
+            If the exits change too often between the value of the system and this one.
         ValueError
-            If the system has no potential there.
+            If the system has no potential at this value.
         """
         with self._lock:
             return self._member(value)
@@ -129,7 +129,7 @@ class ParameterFamily:
         return between
 
     def _extend_to(self, value: float) -> None:
-        """Add nodes, away from the system's own value, until they enclose a value."""
+        """Add nodes, away from the value of the system, until they enclose a value."""
         sign = math.copysign(1.0, value - self._own)
         while True:
             ends = sorted(self._nodes)
@@ -139,9 +139,9 @@ class ParameterFamily:
             self._connect(end, self._node_after(end, value, sign))
 
     def _node_after(self, end: float, value: float, sign: float) -> float:
-        """Return the next node: the next multiple of the step within the range, and twice the distance beyond it.
+        """Return the next node: the next multiple of the step inside the range, and twice the distance outside it.
 
-        If the system has no potential at the node, return the value to reach instead.
+        If the system has no potential at the node, return the value to reach.
         """
         distance = abs(end - self._own)
         further = self._step * (math.floor(distance / self._step * (1.0 + _CONVERGED)) + 1)
@@ -153,7 +153,7 @@ class ParameterFamily:
         return node
 
     def _connect(self, known: float, new: float) -> None:
-        """Add a node, and more nodes before it if its exits differ from those of the last one."""
+        """Add a node; if its exits differ from those of the last node, first insert nodes between them."""
         potential = self._axis.potential(new)
         for _ in range(_HALVINGS):
             if _match(self._nodes[known].potential, potential) is not None:
@@ -186,7 +186,7 @@ class ParameterFamily:
         return Member(potential, read_only(numbers))
 
     def _matches(self, low: float, high: float) -> list[int] | None:
-        """`_match` of two nodes."""
+        """Return `_match` of two nodes."""
         if (low, high) not in self._matched:
             self._matched[low, high] = _match(self._nodes[low].potential, self._nodes[high].potential)
         return self._matched[low, high]
@@ -241,12 +241,12 @@ def find_members(axis: ParameterAxis) -> None:
         except ManyExitsError:
             raise
         except ValueError:
-            # The system has no potential there, and the line of the map stays empty.
+            # The system has no potential there, so that the line of the map remains empty.
             continue
 
 
 def _match(first: Potential, last: Potential) -> list[int] | None:
-    """For each exit saddle of the first potential, the index of the one in the last to which it leads; None if not one to one."""
+    """Return, for each exit saddle of the first potential, the index of its continuation in the last; None if not one to one."""
     if first.channels != last.channels:
         return None
     found = [_nearest(last.saddles, place) for place in _continue(last, first.saddles)]
@@ -255,7 +255,7 @@ def _match(first: Potential, last: Potential) -> list[int] | None:
 
 
 def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
-    """(n, 2) the critical points of a potential near those of another one, by Newton's method; NaN where there is none."""
+    """Return (n, 2) the critical points of a potential near those of another one, by Newton's method; NaN where there is none."""
     start = points = np.array(points)
     if not len(points):
         return points
@@ -274,7 +274,7 @@ def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
 
 
 def _separation(points: np.ndarray) -> np.ndarray:
-    """(n,) the distance of each point to the nearest other one or to the origin."""
+    """Return (n,) the distance of each point to the nearest other point or to the origin."""
     others = np.concatenate([points, np.zeros((1, 2))])
     distances = np.hypot(*np.moveaxis(points[:, None] - others, -1, 0))
     distances[np.arange(len(points)), np.arange(len(points))] = np.inf
@@ -283,7 +283,7 @@ def _separation(points: np.ndarray) -> np.ndarray:
 
 
 def _nearest(points: Sequence[np.ndarray] | np.ndarray, place: np.ndarray) -> int | None:
-    """The index of the point at a place; None if there is none."""
+    """Return the index of the point at a place; None if there is none."""
     if not len(points) or not np.isfinite(place).all():
         return None
     distances = np.hypot(*(np.asarray(points) - place).T)

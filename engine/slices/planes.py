@@ -14,10 +14,11 @@ from engine.systems.potential import Potential
 
 
 class Plane(Slice, Enum):
-    """The named slices. Coordinates that are not axes are 0, and the momentum that the energy decides is positive.
+    """The named slices. Coordinates that are not axes are 0, and the momentum determined by the energy is positive.
 
-    The first three are those of Zotos (2014), the fourth is the section of Hénon & Heiles (1964), Astron. J. 69, 73, and the last
-    one, of orbits launched at right angles to the radius, is that of Aguirre, Vallejo & Sanjuán (2001), Phys. Rev. E 64, 066208.
+    The first three are those of Zotos (2014), the fourth is the section of Hénon & Heiles (1964), Astron. J. 69, 73. The last
+    one, with orbits launched at right angles to the radius, is that of Aguirre, Vallejo & Sanjuán (2001), Phys. Rev. E 64,
+    066208.
     """
 
     X_Y = Coordinate.X, Coordinate.Y
@@ -40,7 +41,7 @@ SECTION = Plane.X_PX
 
 
 def checked_slice(value: Any) -> Slice:
-    """A slice, given as one or by the title or the key of a named one: "(x, px)" or "x_px"."""
+    """Return a slice, given as one or by the title or the key of a named slice: "(x, px)" or "x_px"."""
     if isinstance(value, Slice):
         return next((plane for plane in Plane if _fields(plane) == _fields(value)), value)
     for plane in Plane if isinstance(value, str) else ():
@@ -57,7 +58,7 @@ def _fields(chosen: Slice) -> tuple[Any, ...]:
 def start_states(
     potential: Potential, plane: Slice | str, energy: float | np.ndarray, x: float | np.ndarray, ordinate: float | np.ndarray
 ) -> np.ndarray:
-    """The initial conditions of points of a slice.
+    """Return the initial conditions of points of a slice.
 
     Parameters
     ----------
@@ -72,7 +73,7 @@ def start_states(
 
     Returns
     -------
-    (n, 4), n = 1 for numbers: x, y, px, py; the momentum that the energy decides is NaN where the start is forbidden.
+    (n, 4), n = 1 for numbers: x, y, px, py; the momentum determined by the energy is NaN where the start is forbidden.
 
     Raises
     ------

@@ -38,7 +38,7 @@ _EXIT_COLUMNS = {
 
 @dataclass(frozen=True, eq=False)
 class PortableSystem:
-    """What integrates the orbits of a potential, in units of its well.
+    """The data needed to integrate the orbits of a potential, in units of its well.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class PortableSystem:
     table
         (m,) the coefficients in the form that the functions take.
     backward
-        (m,) those of the system backward in time, whose orbits have the opposite velocities.
+        (m,) the coefficients of the system backward in time, whose orbits have the opposite velocities.
     exits
         The exits of each channel.
     """
@@ -66,7 +66,7 @@ class PortableSystem:
         return len(self.module) + 2 * self.table.nbytes + sum(exits.rows.nbytes for exits in self.exits) + 2048
 
     def to_dict(self) -> dict[str, object]:
-        """All of it but the module as lists and numbers."""
+        """Return everything except the module as lists and numbers."""
         well, units = self.potential.in_well_units, self.potential.units
         mirror = self.potential.well.mirror_channels.tolist() if self.potential.well.mirror_in_x else None
         return {
@@ -93,7 +93,7 @@ class PortableSystem:
         }
 
     def _tables(self) -> list[dict[str, object]]:
-        """The exits over saddles."""
+        """Return the exits over saddles."""
         shape = {"shape": "line" if self.potential.rotation else "curve"}
         return [
             {**shape, "saddle": each.saddle, "highest": each.highest, "nodes": each.nodes.tolist(), "rows": each.rows.tolist()}
@@ -102,14 +102,14 @@ class PortableSystem:
 
 
 def _energy_surface(units: WellUnits) -> dict[str, object]:
-    """All directions of the velocity at all places: a slice with a third axis, the angle."""
+    """Return all directions of the velocity at all positions, as a slice with a third axis, the angle."""
     launched = Slice(*SPACE.axes, Coordinate.SPEED).to_dict(units)
     turned = [float(column == slice_starts.ANGLE) for column in range(slice_starts.COORDINATES)]
     return {**launched, "motion": [*launched["motion"], turned]}
 
 
 def _circles(well: Potential) -> list[dict[str, object]]:
-    """The other ends: their rows for the kernels, and their gates."""
+    """Return the ends that are not over saddles: their rows for the kernels, and their gates."""
     return [
         {"side": end.side, "radius": end.radius, "row": end.row.tolist(), "gate": exit_gates(end.row[None, None])[0].tolist()}
         for end in well.ends
@@ -117,16 +117,16 @@ def _circles(well: Potential) -> list[dict[str, object]]:
 
 
 def _polynomial_data(form: Any) -> dict[str, object] | None:
-    """V as the interior test takes it, as lists; None for an expression."""
+    """Return V in the form of the interior test, as lists; None for an expression."""
     if not isinstance(form, PolynomialForm):
         return None
     return {name: array.tolist() for name, array in tabulate_polynomial(form)._asdict().items()}
 
 
 def make_portable_system(potential: Potential, highest: float) -> PortableSystem:
-    """A potential as data, with exits for energies up to `highest`, in its own units.
+    """Return a potential as data, with exits for energies up to `highest`, in its own units.
 
-    Takes up to a second the first time for each structure of a potential, and for exits that are not cached.
+    This takes up to a second when the structure of a potential is used first, and when exits are not cached.
     """
     well = potential.in_well_units
     definition, setting = well.form.definition, well.well.setting

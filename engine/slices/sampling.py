@@ -18,10 +18,10 @@ from engine.systems.potential import Potential
 LARGEST_SAMPLE = 10_000_000
 """Largest number of starts of one sample."""
 
-# Points that are drawn at once, at most and at least; of fewer than this share of the points inside, the window has no interior.
+# Largest and smallest number of points drawn at once; with fewer than this share inside, a window counts as without interior.
 _MOST, _LEAST = 1_000_000, 1_000
 _SMALLEST_SHARE = 1e-4
-# The speed at a point (x, y), over which the energy surface has one point for each direction of the velocity.
+# On the energy surface, each point (x, y) with its speed stands for all directions of the velocity.
 _LAUNCHED = Slice(*SPACE.axes, Coordinate.SPEED)
 
 
@@ -35,9 +35,9 @@ def sample_starts(
     window: GivenWindow | None = None,
     seed: int = 0,
 ) -> np.ndarray:
-    """Random starts inside all exits.
+    """Draw random starts inside all exits.
 
-    On the energy surface they follow the microcanonical measure δ(H − h) dx dy dpx dpy: with two degrees of freedom x and y are
+    On the energy surface they have the microcanonical measure δ(H − h) dx dy dpx dpy: with two degrees of freedom x and y are
     uniform where V ≤ h, and so is the direction of the velocity. On a slice they are uniform in the coordinates of its axes.
 
     Parameters
@@ -57,12 +57,12 @@ def sample_starts(
 
     Returns
     -------
-    (count, 4) x, y, px, py, all of that energy to rounding.
+    (count, 4) x, y, px, py, all with this energy to rounding.
 
     Raises
     ------
     ValueError
-        If a parameter is out of range, the slice has an axis h or a parameter, or nothing of the window is inside.
+        If a parameter is out of range, the slice has an axis h or a parameter, or no part of the window is inside.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def sample_starts(
 def _draw(
     potential: Potential, h: float, plane: Slice | None, window: Window, size: int, random: np.random.Generator
 ) -> np.ndarray:
-    """(n, 4) the starts inside among `size` random points of a window; `plane` None for the energy surface."""
+    """Return (n, 4) the starts inside among `size` random points of a window; without a plane, on the energy surface."""
     x = random.uniform(window.x_low, window.x_high, size)
     ordinate = random.uniform(window.ordinate_low, window.ordinate_high, size)
     states = (plane or _LAUNCHED).states(potential, h, x, ordinate)
@@ -104,7 +104,7 @@ def _draw(
 
 
 def _turned(states: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """States with velocities in random directions."""
+    """Return states with velocities in random directions."""
     speed: Any = np.hypot(states[:, 2], states[:, 3])
     angle = random.uniform(0.0, 2.0 * np.pi, len(states))
     return np.column_stack([states[:, :2], speed * np.cos(angle), speed * np.sin(angle)])

@@ -1,8 +1,8 @@
-"""Slices of phase space: which starts the points of a picture are.
+"""Slices of phase space, which assign a start to each point of a picture.
 
-A slice has two axes: coordinates, oblique directions, h, or a parameter of the system; it holds the other coordinates. The
-energy decides one momentum, whose sign the slice fixes, or the speed where an angle is given. Along an axis h every start has an
-energy and exits of its own, along a parameter also a potential.
+A slice has two axes, which are coordinates, oblique directions, h, or a parameter of the system, and fixed values of the other
+coordinates. The energy determines one momentum, whose sign the slice fixes, or the speed if an angle is given. With an axis h,
+every start has its own energy and exits; along a parameter, it also has its own potential.
 """
 
 from __future__ import annotations
@@ -33,18 +33,19 @@ class Slice:
     abscissa, ordinate
         The axes: two different coordinates, a `Direction`, or a `ParameterAxis`, at most one.
     solved
-        What the energy decides: a momentum, or with an angle the speed. None for the speed if an angle is used, px if py is,
-        else py.
+        The coordinate that the energy determines: a momentum, or with an angle the speed. The default, None, is the speed if an
+        angle is used, px if py is used, and otherwise py.
     sign
-        Sign of that momentum, 1 or −1; 1 for the speed.
+        Sign of this momentum, 1 or −1; 1 for the speed.
     fixed
-        ((coordinate, value), …): values of the other coordinates of the state, dimensionless; 0 for those left out.
+        ((coordinate, value), …): values of the other coordinates of the state, dimensionless; 0 for coordinates that are not
+        given.
 
     Raises
     ------
     ValueError
-        If a coordinate is used twice, the energy has nothing to decide, two directions are parallel, a value is not finite, or
-        the sign is not 1 or −1.
+        If a coordinate is used twice, nothing is left for the energy to determine, two directions are parallel, a value is not
+        finite, or the sign is not 1 or −1.
     """
 
     abscissa: Axis
@@ -53,7 +54,7 @@ class Slice:
     sign: int = 1
     fixed: tuple[tuple[Coordinate, float], ...] = ()
 
-    # Type checkers accept what is converted; fields have the types of what is kept.
+    # Type checkers accept the types that are converted; the fields have the types of the stored values.
     if TYPE_CHECKING:
 
         def __init__(
@@ -86,7 +87,8 @@ class Slice:
         values = {coordinate: checked_number(f"fixed {coordinate.key}", value) for coordinate, value in self.fixed}
         if self.decided is Coordinate.SPEED and not any(angle in used for angle in ANGLES):
             values[Coordinate.THETA] = 0.0
-        # Zeros are left out, so that equal slices compare equal; the zero of an angle stays, to tell which angle is held.
+        # Zeros are left out, so that equal slices compare equal; the zero of an angle stays, because it shows which angle is
+        # fixed.
         kept = sorted(((c, value) for c, value in values.items() if value or c in ANGLES), key=lambda pair: pair[0].key)
         object.__setattr__(self, "fixed", tuple(kept))
 
@@ -102,7 +104,7 @@ class Slice:
 
     @property
     def decided(self) -> Coordinate:
-        """What the energy decides: px, py or the speed."""
+        """The coordinate that the energy determines: px, py or the speed."""
         assert self.solved is not None
         return self.solved
 
@@ -113,18 +115,18 @@ class Slice:
 
     @property
     def axis_symbols(self) -> tuple[str, str]:
-        """The symbols of abscissa and ordinate in texts and at axes."""
+        """The symbols of abscissa and ordinate in texts and on axes."""
         return self.abscissa.symbol, self.ordinate.symbol
 
     @property
     def key(self) -> str:
-        """A name in file names, such as ``x_px`` or ``x_theta-y0.1``; with 6 digits of the fixed values."""
+        """A name for files, such as ``x_px`` or ``x_theta-y0.1``, with 6 digits of the fixed values."""
         held = "".join(f"-{coordinate.key}{value:.6g}" for coordinate, value in self.fixed)
         return "_".join(self.axis_names) + held + ("" if self.sign > 0 else "-negative")
 
     @property
     def title(self) -> str:
-        """The name in texts, such as "(x, px)": axes, fixed values, and the momentum decided where it is not the usual one."""
+        """The name in texts, such as "(x, px)": axes, fixed values, and the determined momentum if it is not the usual one."""
         held = [f"{coordinate.symbol} = {value:.6g}" for coordinate, value in self.fixed]
         usual = momentum_left(self.axes, [axis for axis in self.axes if isinstance(axis, Coordinate)])
         if self.sign < 0 or (self.decided is not usual and self.decided is not Coordinate.SPEED):
@@ -170,7 +172,7 @@ class Slice:
         return f"{kinetic}V{place} = h"
 
     def to_dict(self, units: WellUnits) -> dict[str, Any]:
-        """The slice as plain data in units of a well: see `Slice` in modules/engine/system.js of the page."""
+        """Return the slice as plain data in units of a well, see `Slice` in modules/engine/system.js of the page."""
         scaled = self.in_well_units(units)
         return {
             "axes": list(self.axis_names),
@@ -182,7 +184,7 @@ class Slice:
         }
 
     def axis_units(self, units: WellUnits) -> tuple[float, float]:
-        """The units of both axes in which their coordinates are numbers of the size of the well."""
+        """Return the units of both axes in which their coordinates are of the order of the size of the well."""
         return self.abscissa.unit(units), self.ordinate.unit(units)
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
@@ -195,7 +197,7 @@ class Slice:
         return replace(units.restore(result), x=x, ordinate=ordinate)  # type: ignore[type-var]
 
     def in_well_units(self, units: WellUnits) -> Slice:
-        """The same slice in units of a well; itself if it has neither fixed values nor directions."""
+        """Return the slice in units of a well; itself if it has neither fixed values nor directions."""
         if not self.fixed and not any(isinstance(axis, Direction) for axis in self.axes):
             return self
         fixed = tuple((coordinate, value / coordinate.unit(units)) for coordinate, value in self.fixed)
@@ -203,7 +205,7 @@ class Slice:
         return Slice(abscissa, ordinate, self.solved, self.sign, fixed)
 
     def checked_energy(self, energy: Any) -> Energy:
-        """An energy of this slice: one finite number, or the pair (low, high) along an axis h."""
+        """Return an energy of this slice: one finite number, or the pair (low, high) with an axis h."""
         if self.energy_axis is None:
             return checked_number("energy", energy, f"one finite number on {self.title}")
         values = checked_array("energy", energy).ravel()
@@ -214,19 +216,19 @@ class Slice:
         return float(values[0]), float(values[1])
 
     def energies(self, energy: Any, x: Any, ordinate: Any) -> Any:
-        """The energy of points of the slice: `energy`, or their coordinate on an axis h."""
+        """Return the energy of points of the slice: `energy`, or their coordinate on an axis h."""
         return energy if self.energy_axis is None else (x, ordinate)[self.energy_axis]
 
     def states(self, potential: Potential, energy: Any, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """(n, 4) the starts of points of the slice; parameters as in `start_states`."""
+        """Return (n, 4) the starts of points of the slice; parameters as in `start_states`."""
         return compute_states(self, potential, energy, x, ordinate)
 
     def required_energy(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """The lowest energy at which a start exists; with an axis h, the energy missing there, positive where forbidden."""
+        """Return the lowest energy of a start; with an axis h, the energy missing there, positive where it is forbidden."""
         return compute_required_energy(self, potential, x, ordinate)
 
     def of_system(self, system: System) -> Slice:
-        """The same slice with its parameter in another system; ValueError if this has not the parameter in its range."""
+        """Return the slice with its parameter in another system; ValueError if that system lacks it or its range."""
         if self.parameter is None or self.parameter.system == system:
             return self
         abscissa, ordinate = (replace(a, system=system) if isinstance(a, ParameterAxis) else a for a in self.axes)
@@ -238,21 +240,21 @@ class Slice:
             raise ValueError(f"{name}: is on {self.title}; must be on a slice of one potential, without a parameter as axis")
 
     def line(self, value: float) -> Slice:
-        """The slice of the starts at one value of the parameter that is an axis."""
+        """Return the slice of the starts at one value of the parameter that is an axis."""
         abscissa, ordinate = (axis.at(value) if isinstance(axis, ParameterAxis) else axis for axis in self.axes)
         return Slice(abscissa, ordinate, self.solved, self.sign, self.fixed)
 
     def system_at(self, system: System, x: float, ordinate: float) -> System:
-        """The system of a point: `system`, or the one at its value of a parameter."""
+        """Return the system of a point: `system`, or the one at the point's value of a parameter."""
         axis = self.parameter
         return system if axis is None else system.with_parameter(axis.key, (x, ordinate)[self.parameter_axis or 0])
 
     def potential_at(self, potential: Potential, x: float, ordinate: float) -> Potential:
-        """The potential of a point: `potential`, or the one at its value of a parameter; ValueError if there is none."""
+        """Return the potential of a point: `potential`, or the one at its value of a parameter; ValueError if there is none."""
         return potential if self.parameter is None else self.system_at(self.parameter.system, x, ordinate).potential
 
     def energy_groups(self, rows: int, columns: int) -> np.ndarray:
-        """(rows · columns,) the number of the energy of each pixel, in row-major order: its place along an axis h, else 0."""
+        """Return (rows · columns,) the number of the energy of each pixel, row by row: its place along an axis h, otherwise 0."""
         groups = np.zeros((rows, columns), np.int64)
         if self.energy_axis == 0:
             groups += np.arange(columns)
@@ -262,7 +264,7 @@ class Slice:
 
     @property
     def mirrored_axes(self) -> tuple[bool, bool] | None:
-        """For each axis, whether its sign changes under x → −x; None if this mirror image of the slice is another one."""
+        """For each axis, whether its sign changes under x → −x; None if the mirror image is a different slice."""
         parities = [axis.parity for axis in self.axes]
         # A coordinate that changes its sign is its own mirror image at 0.
         held = [coordinate.parity for coordinate, value in self.fixed if value or coordinate.parity != -1]
@@ -271,7 +273,7 @@ class Slice:
         return parities[0] == -1, parities[1] == -1
 
     def find_mirror_images(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray | None:
-        """For each pixel, the pixel whose orbit is its exact mirror image under x → −x.
+        """Find, for each pixel, the pixel whose orbit is its exact mirror image under x → −x.
 
         Parameters
         ----------
@@ -295,13 +297,13 @@ class Slice:
 
 
 def _coordinates(values: Mapping[Coordinate, float]) -> list[float]:
-    """Coordinates in the columns of `engine.integrator.kernels.slice_starts`; those left out are 0."""
+    """Return coordinates in the columns of `engine.integrator.kernels.slice_starts`; those not given are 0."""
     held = {"angle" if coordinate in ANGLES else coordinate.key: value for coordinate, value in values.items()}
     return [held.get(name, 0.0) for name in ("x", "y", "px", "py", "angle", "h")]
 
 
 def _decided(plane: Slice) -> int:
-    """What the energy decides, as a code of `engine.integrator.kernels.slice_starts`."""
+    """Return what the energy determines, as a code of `engine.integrator.kernels.slice_starts`."""
     if plane.decided is not Coordinate.SPEED:
         return slice_starts.PX if plane.decided is Coordinate.PX else slice_starts.PY
     used = {*plane.axes, *(coordinate for coordinate, _ in plane.fixed)}

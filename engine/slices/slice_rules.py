@@ -1,4 +1,4 @@
-"""What a slice needs of its coordinates, so that each point is one start."""
+"""Conditions on the coordinates of a slice, so that each point is one start."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from engine.slices.axes import ANGLES, MOMENTA, STATE, Axis, Coordinate, Directi
 
 
 def momentum_left(axes: tuple[Axis, Axis], used: Sequence[Coordinate]) -> Coordinate:
-    """What the energy decides by default."""
+    """Return the coordinate that the energy determines by default."""
     if any(angle in used for angle in ANGLES):
         return Coordinate.SPEED
     along = {c for axis in axes if isinstance(axis, Direction) for c in axis.components}
@@ -20,7 +20,7 @@ def momentum_left(axes: tuple[Axis, Axis], used: Sequence[Coordinate]) -> Coordi
 def check_coordinates(
     axes: tuple[Axis, Axis], used: Sequence[Coordinate], fixed: Sequence[tuple[Coordinate, float]], decided: Coordinate
 ) -> None:
-    """Raise ValueError unless the coordinates used and the decided one make one start for each point."""
+    """Raise ValueError unless the coordinates used and the determined one give one start for each point."""
     if decided not in (*MOMENTA, Coordinate.SPEED):
         raise ValueError(f"solved={decided.key}: must be px, py or v")
     known = ", ".join(coordinate.key for coordinate in Coordinate if coordinate is not Coordinate.SPEED)
@@ -49,6 +49,6 @@ def _moves_state(axis: Axis) -> bool:
 
 
 def _rows_of(axes: tuple[Axis, Axis]) -> np.ndarray:
-    """(2, 4) the directions of the axes in (x, y, px, py); zeros for axes of other kinds."""
+    """Return (2, 4) the directions of the axes in (x, y, px, py); zeros for axes of other kinds."""
     parts = [axis.components if isinstance(axis, Direction) else {axis: 1.0} for axis in axes]
     return np.array([[part.get(coordinate, 0.0) for coordinate in STATE] for part in parts])

@@ -1,4 +1,4 @@
-"""The starts of the points of a slice, and the energy that they need."""
+"""Starts at the points of a slice, and the energy that they need."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-    """(n, 4) the starts of points of a slice; parameters as in `start_states`."""
+    """Return (n, 4) the starts at points of a slice; for the parameters see `start_states`."""
     if plane.parameter is not None:
         states = np.full((*np.shape(x), len(STATE)), np.nan)
         for here, line, each in _lines(plane, x, ordinate):
@@ -40,7 +40,7 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
 
 
 def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-    """The lowest energy at which a start exists; with an axis h, the energy missing there, positive where forbidden."""
+    """Return the lowest energy of a start; with an axis h, the energy missing there, positive where the start is forbidden."""
     if plane.parameter is not None:
         required = np.full(np.shape(x), np.inf)
         for here, line, each in _lines(plane, x, ordinate):
@@ -53,7 +53,7 @@ def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, o
 
 
 def _lines(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> Iterator[tuple[np.ndarray, Slice, Potential]]:
-    """For each value of the parameter at which there is a system: where points have it, their slice, and their potential."""
+    """Yield, for each value of the parameter with a system, the positions of its points, their slice and their potential."""
     axis, place = plane.parameter, plane.parameter_axis
     assert axis is not None
     assert place is not None
@@ -66,17 +66,17 @@ def _lines(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> Iterator[tuple[
 
 
 def _coordinates(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> dict[Coordinate, np.ndarray]:
-    """Arrays of the coordinates of starts, where the momenta that the energy decides are not set yet."""
+    """Return arrays of the coordinates of starts; the momenta determined by the energy are not set yet."""
     held: Mapping[Coordinate, float] = dict(plane.fixed)
     start = {coordinate: np.full_like(x, held.get(coordinate, 0.0)) for coordinate in (*STATE, *held)}
-    # Coordinates are set, directions move from there.
+    # Coordinates are set first; directions move starts from there.
     for axis, along in sorted(zip(plane.axes, (x, ordinate), strict=True), key=lambda pair: isinstance(pair[0], Direction)):
         axis.move(start, along)
     return start
 
 
 def _held_momentum(plane: Slice, start: Mapping[Coordinate, np.ndarray]) -> Any:
-    """The momentum that the energy does not decide; 0 if it decides the speed."""
+    """Return the momentum that the energy does not determine; 0 if it determines the speed."""
     if plane.decided is Coordinate.SPEED:
         return 0.0
     (held,) = (start[momentum] for momentum in MOMENTA if momentum is not plane.decided)

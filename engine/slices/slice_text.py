@@ -1,4 +1,4 @@
-"""Slices as two texts, for addresses and the command line: axes "x,epsilon=0.5:2" and what is held, "y=0.1,py=-"."""
+"""Slices as two texts for addresses and the command line: axes, "x,epsilon=0.5:2", and fixed values, "y=0.1,py=-"."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _RANGE, _COMPONENTS = 2, len(STATE)
 
 
 def write_slice(chosen: Slice) -> tuple[str, str]:
-    """The texts of a slice at full precision; `read_slice` makes it again.
+    """Return the texts of a slice at full precision, from which `read_slice` restores it.
 
     Returns
     -------
-    The axes, or the key of a named slice, and what is held; the second text is empty if all of it is as by default.
+    The axes, or the key of a named slice, and the fixed values; the second text is empty if all are the default ones.
     """
     if isinstance(chosen, Plane):
         return chosen.key, ""
@@ -38,7 +38,7 @@ def write_slice(chosen: Slice) -> tuple[str, str]:
 
 
 def read_slice(axes: str, held: str, system: System) -> Slice:
-    """The slice of two texts, whose parameters are those of a system.
+    """Return the slice given by two texts, whose parameters are those of a system.
 
     Parameters
     ----------
@@ -46,14 +46,14 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
         The key of a named slice, "x_px", or abscissa and ordinate, "x,theta": x, y, px, py, theta, beta, h, a parameter of the
         system with its range, "epsilon=0.5:2", or a direction with its components along x, y, px and py, "u=1:0.3:0:0".
     held
-        Values of other coordinates, "y=0.1,px=0", 0 for those left out; "py=-" if the energy decides py, with a negative sign.
+        Values of the other coordinates, "y=0.1,px=0", by default 0; "py=-" if the energy determines py, with a negative sign.
     system
         The system of the picture.
 
     Raises
     ------
     ValueError
-        Naming the part, its value and what is legal.
+        The message names the part, its value and the legal values.
     """
     if axes in {plane.key for plane in Plane} and not held:
         return checked_slice(axes)
@@ -77,7 +77,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
 
 
 def default_range(system: System, name: str) -> tuple[float, float]:
-    """A legal range of a parameter about its value in a system: from half of it to twice as much, or from −1 to 1 about 0."""
+    """Return a legal range of a parameter: from half of its value in a system to twice its value, or from −1 to 1 about 0."""
     value = system.value_of(name)
     low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
     lowest, highest = system.range_of(name)

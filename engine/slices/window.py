@@ -33,22 +33,22 @@ class Window:
                 raise ValueError(f"window {name} range {low} … {high}: the lower edge must be below the upper edge")
 
     def scaled(self, x_factor: float, ordinate_factor: float) -> Window:
-        """The window with its edges multiplied by two factors."""
+        """Return the window with its edges multiplied by two factors."""
         x, ordinate = (self.x_low, self.x_high), (self.ordinate_low, self.ordinate_high)
         return Window(*(x_factor * edge for edge in x), *(ordinate_factor * edge for edge in ordinate))
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
-        """x (columns,) and ordinate (rows,) of the pixel centres; they are exactly symmetric if the window is."""
+        """Return x (columns,) and ordinate (rows,) of the pixel centres, which are exactly symmetric if the window is."""
         x = interval_centre(self.x_low, self.x_high, np.arange(columns), columns)
         return x, interval_centre(self.ordinate_low, self.ordinate_high, np.arange(rows), rows)
 
 
 type GivenWindow = Window | tuple[float, float, float, float]
-"""A window as functions take it: a `Window`, or (x_low, x_high, ordinate_low, ordinate_high)."""
+"""A window as functions accept it: a `Window`, or (x_low, x_high, ordinate_low, ordinate_high)."""
 
 
 def checked_window(window: Any) -> Window:
-    """A `Window`, given as one or as (x_low, x_high, ordinate_low, ordinate_high)."""
+    """Return a `Window`, given as one or as (x_low, x_high, ordinate_low, ordinate_high)."""
     if isinstance(window, Window):
         return window
     try:

@@ -1,4 +1,4 @@
-"""What stands for former functions that had other parameters or results, see `engine.foundations.former_names`."""
+"""Functions for former public names whose parameters or results have changed, see `engine.foundations.former_names`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def make_curves_spec(
     energy: float | None = None,
     refine: int = 0,
 ) -> SweepSpec:
-    """Make the request of a sweep from the parameters of `CurvesSpec`."""
+    """Make the request of a sweep from the parameters of the former `CurvesSpec`."""
     measures = CURVES if exponent else QUICK_CURVES
     return SweepSpec(
         potential, plane, values, resolution, t_max=t_max, measures=measures, along=along, energy=energy, refine=refine

@@ -27,35 +27,35 @@ if TYPE_CHECKING:
 
 
 def map_job(spec: MapSpec) -> Job[EscapeMap]:
-    """The job of a map; it continues an interrupted map, or one with a shorter t_max."""
+    """Return the job of a map; it continues an interrupted map, or a map with a smaller t_max."""
     columns, rows = spec.resolution
     orbits = min(columns * rows, LARGEST_RUN)
     return Job(compute_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
 
 
 def members_job(axis: ParameterAxis | None) -> Job[None] | None:
-    """The job that finds the potentials along a parameter of a typed formula within limits, before maps need them; else None."""
+    """Return the job that finds the potentials along a parameter of a typed formula, within limits; None for others."""
     if axis is None or axis.system.case != TYPED:
         return None
     return Job(find_members, (axis,), queue=Queue.LIMITED)
 
 
 def measure_job(spec: MapSpec, name: str, box: Window | None = None) -> Job[Any]:
-    """The job of a measure of a map, or of the starts in a box; slow ones make many short calls."""
+    """Return the job of a measure of a map, or of the starts in a box; slow measures make many short calls."""
     queue = Queue.BACKGROUND if MEASURES[name].slow else Queue.LONG_CALL
     return Job(measure_map, (map_job(spec), name, None if MEASURES[name].place else box), queue=queue)
 
 
 def sweep_job(spec: SweepSpec) -> Job[Sweep]:
-    """The job of a sweep; the measures at each value are cached separately."""
+    """Return the job of a sweep; the measures at each value are cached separately."""
     return Job(_compute_sweep, (spec,))
 
 
 def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
-    """The cached map that differs by the smallest reduction of t_max and can be resumed."""
+    """Return the cached map that can be resumed and whose t_max is smaller by the least amount."""
     (spec,) = job.arguments
     maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
-    # Compare energies first: cheap, and there may be thousands of maps.
+    # Energies are compared first, because this is cheap and there may be thousands of maps.
     same_energy = (key for key in maps if key.energy == spec.energy)
     shorter = [key for key in same_energy if key.t_max <= spec.t_max and replace(key, t_max=spec.t_max) == spec]
     found: EscapeMap | None = cache.get(map_job(max(shorter, key=lambda key: key.t_max))) if shorter else None

@@ -1,4 +1,4 @@
-"""A complete map as measures take it, and the measurement of one value of a sweep."""
+"""A complete map in the form that measures take, and the measurement of one value of a sweep."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
 
 MOST_JUDGED = 2000
-"""Most bounded starts, drawn at random, that are judged as regular or chaotic: enough for a 95 % interval of ± 2 %."""
+"""Largest number of bounded starts, drawn at random, that are judged as regular or chaotic; it gives a 95 % interval of ± 2 %."""
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredMap:
-    """A complete map, or a box in it, with what several measures need.
+    """A complete map, or a box in it, with quantities that several measures need.
 
     Attributes
     ----------
     frame
         The map.
     box
-        Only the starts in it count; None for all.
+        Only the starts in this box count; None for all.
     execution
-        How further orbits are computed.
+        How additional orbits are computed.
     effort
-        Share of the usual number of further orbits: a tenth makes intervals up to three times as wide.
+        Share of the usual number of additional orbits; a tenth makes intervals up to three times as wide.
     """
 
     frame: EscapeMap
@@ -60,13 +60,13 @@ class MeasuredMap:
         return compute_statistics(self.starts)
 
     def find_characters(self) -> np.ndarray:
-        """(n,) `Regularity` codes of bounded starts that count, from new orbits: of all, or of as many as `effort` allows."""
+        """Return (n,) `Regularity` codes of bounded starts that count, from new orbits, as many as `effort` allows."""
         place = np.s_[:, :] if self.box is None else read_starts("frame", self.frame).place(self.box)
         counts = np.zeros(self.frame.fate.shape, bool)
         counts[place] = self.starts.fate == Fate.BOUNDED
         pixels = np.flatnonzero(counts)
         most = round(self.effort * MOST_JUDGED)
-        # Along a parameter each line of pixels has its own mirror images.
+        # Along a parameter, each line of pixels has its own mirror images.
         if pixels.size > most and self.spec.plane.parameter is None:
             pixels = np.random.default_rng(0).choice(pixels, most, replace=False)
         regularity = compute_regularity(self._keep(pixels), execution=self.execution)
@@ -75,7 +75,7 @@ class MeasuredMap:
         return characters
 
     def _keep(self, pixels: np.ndarray) -> EscapeMap:
-        """The map in which only these pixels (n,) and their mirror images, which share an orbit with them, have a fate."""
+        """Return the map with fates only for these pixels (n,) and their mirror images, which share an orbit with them."""
         frame = self.frame
         kept = np.zeros(frame.fate.size, bool)
         kept[pixels] = True
@@ -96,7 +96,7 @@ class SweepPoint:
     measures
         Names of `MEASURES`.
     numbers
-        The fate in the sweep of each fate of the map, from 0 on; as in `ParameterFamily`.
+        The fate in the sweep for each fate of the map, from 0 on, as in `ParameterFamily`.
     outcomes
         The outcomes of the sweep.
     """

@@ -1,4 +1,4 @@
-"""The measures of maps, one entry each: the page, files, figures and the command line have what this table has."""
+"""The measures of maps as entries of one table, which the page, files, figures and the command line use."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _describe = methodcaller("describe")
 
 
 def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variables:
-    """Shares of the interior starts that are bounded, and of each outcome, with 95 % intervals (Wilson 1927).
+    """Return the shares of the interior starts that are bounded, and of each outcome, with 95 % intervals (Wilson 1927).
 
-    The intervals are those of independent random starts.
+    The intervals hold for independent random starts.
     """
     shares, low, high = np.zeros((3, len(point.outcomes) + 1))
     for fate, number in enumerate(point.numbers):
@@ -48,7 +48,7 @@ def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variabl
 
 
 def _describe_map(point: SweepPoint, frame: EscapeMap) -> Variables:
-    """All arrays of the map, as in `EscapeMap.to_xarray`; fates have the numbers of the sweep."""
+    """Return all arrays of the map, as in `EscapeMap.to_xarray`; fates have the numbers of the sweep."""
     dataset, fate = frame.to_xarray(), frame.fate
     renumbered = renumber(fate, np.array(point.numbers, fate.dtype))
     attributes = {**dataset["fate"].attrs, **_describe_fates(point)}
@@ -61,13 +61,13 @@ def _describe_fates(point: SweepPoint) -> dict[str, str]:
 
 
 def _read_decay_rate(laws: DecayLaws) -> tuple[float, float, float]:
-    """Of the exponential law; NaN where it is ruled out or the escapes are too few."""
+    """Return the rate of the exponential law and its interval; NaN if the law is ruled out or the escapes are too few."""
     fit = laws.exponential
     return (fit.rate, fit.low, fit.high) if fit is not None and fit.plausible else (math.nan,) * 3
 
 
 def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
-    """None if no exit is open."""
+    """Return the exponent; None if no exit is open."""
     spec = measured.spec
     if not spec.potential.well.open_channels(spec.common_energy or 0.0):
         return None
@@ -75,12 +75,12 @@ def _find_exponent(measured: MeasuredMap) -> UncertaintyExponent | None:
 
 
 def _find_chaotic_share(measured: MeasuredMap) -> ChaoticShare | None:
-    """None with gaps such as the discs of centres, near which deviation vectors are not computed."""
+    """Return the share; None with gaps such as the discs of centres, near which deviation vectors are not computed."""
     return None if measured.spec.potential.gaps else compute_chaotic_share(measured.find_characters())
 
 
 def _find_flux(measured: MeasuredMap) -> EscapeFlux | None:
-    """None on a slice of several energies or potentials, without exits over saddles, and in a frame that rotates."""
+    """Return the flux; None on a slice of several energies or potentials, without exits over saddles, and in a rotating frame."""
     spec = measured.spec
     if spec.common_energy is None or spec.plane.parameter is not None:
         return None
@@ -169,7 +169,7 @@ _ALL = (
         "there is nothing to measure.",
         terms={
             "Wada": "Basins have the Wada property if each point on the boundary of one of them is on the boundary of all "
-            "others, too."
+            "others."
         },
     ),
     Measure(
@@ -252,7 +252,7 @@ MEASURES: Mapping[str, Measure] = MappingProxyType({measure.name: measure for me
 """The measures by name."""
 
 CURVES = tuple(name for name, measure in MEASURES.items() if measure.curve != NO_CURVE)
-"""Names of all measures that are curves against the energy or a parameter."""
+"""Names of all measures that are drawn as curves against the energy or a parameter."""
 
 QUICK_CURVES = tuple(name for name in CURVES if not MEASURES[name].slow)
-"""Names of those that take little longer than the map."""
+"""Names of the measures that take little longer than the map."""

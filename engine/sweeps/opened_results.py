@@ -51,16 +51,16 @@ _KINDS: dict[str, Any] = {
         EscapeStatistics, DecayLaws, Islands, ChaoticShare, ExitMatching, Sweep, Potential, PotentialReview,
     )
 }  # fmt: skip
-# Readers of results that are no dataclasses of what their files hold.
+# Readers of results whose files do not contain the fields of a dataclass.
 _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     EscapeMap: read_map,
     Sweep: Sweep,
     Potential: lambda dataset: read_potential(dataset.attrs),
 }
-# Flags of finished energies in the stores of earlier versions, and the name of their curves: both are opened as plain datasets.
+# Flags of finished energies in the stores of earlier versions, and the name of their curves; both are opened as plain datasets.
 _FORMER_FLAGS, _FORMER_CURVES = "done", "Curves"
 _ZARR = "zarr.json"
-# How files of HDF5, and thus of NetCDF 4, begin.
+# First bytes of HDF5 files, and thus of NetCDF 4 files.
 _HDF5 = b"\x89HDF"
 
 
@@ -70,29 +70,28 @@ def open_result(path: str | os.PathLike[str]) -> Any: ...
 def open_result[Kind: Result](path: str | os.PathLike[str], kind: type[Kind]) -> Kind: ...
 @checks_types(path=(str, os.PathLike), kind=type)
 def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
-    """A result from a file.
+    """Open a result from a file.
 
     Parameters
     ----------
     path
-        A NetCDF file that `Result.save` wrote, or the folder of a Zarr store, to which ``result.to_xarray()`` was written, or the
+        A NetCDF file that `Result.save` wrote, the folder of a Zarr store to which ``result.to_xarray()`` was written, or the
         store of a sweep.
     kind
-        The class of the result, such as `EscapeMap`, which type checkers then know too; by default any.
+        The class of the result, such as `EscapeMap`, which also informs type checkers; by default any class.
 
     Returns
     -------
-    An equal result, of any kind. A map has no integration state and cannot be resumed. `compute_sweep` takes a `Sweep` as
-    `earlier`; the dataset of a sweep in a store is read on access, and measures and analyses take one of its maps,
-    ``sweep.dataset.sel(h=0.3)``.
-    Sweeps and curves of earlier versions are opened as datasets.
+    An equal result, of any kind. A map has no integration state and cannot be resumed. `compute_sweep` accepts a `Sweep` as
+    `earlier`. The dataset of a sweep in a store is read on access; measures and analyses accept one of its maps,
+    ``sweep.dataset.sel(h=0.3)``. Sweeps and curves of earlier versions are opened as datasets.
 
     Raises
     ------
     OSError
-        If there is no such file, or it cannot be read.
+        If the file does not exist or cannot be read.
     ValueError
-        If the file or folder holds no result, or one of another kind, which xarray can open.
+        If the file or folder contains no result, or another kind of result; xarray can open it.
 
     Examples
     --------
@@ -112,7 +111,7 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
 
 
 def _open(path: str | os.PathLike[str]) -> Any:
-    # Slow to import, and seldom used.
+    # The import is slow and seldom needed.
     import xarray as xr
 
     if not Path(path).exists():
@@ -135,8 +134,8 @@ def _open(path: str | os.PathLike[str]) -> Any:
     except OSError as error:
         raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: {error}") from error
     except ValueError:
-        # xarray found no engine.
-        raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: it is none") from None
+        # No engine of xarray recognises the file.
+        raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: its format is unknown") from None
     with dataset as opened:
         return _read(path, opened.load())
 
@@ -154,7 +153,7 @@ def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
 
 
 def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
-    """A result from its fields; those that the file does not hold have their default values, or are None."""
+    """Return a result from its fields; fields that the file does not contain have their default values, or are None."""
     hints, values = get_type_hints(kind), {}
     if kind is SampledOrbits:
         dataset = _with_times_of_each(dataset)
@@ -175,13 +174,13 @@ def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
 
 
 def _read_made_by(result: RecordedResult, dataset: xr.Dataset) -> dict[str, Any]:
-    """The attributes that are not what was computed."""
+    """Return the attributes that were not computed."""
     computed = {"result", "outcomes", *result.numbers(), *(each.name for each in fields(result))} - _REQUESTED
     return {name: value for name, value in plain_attributes(dataset.attrs).items() if name not in computed}
 
 
 def _with_times_of_each(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset of sampled orbits with the times of each of them."""
+    """Return the dataset of sampled orbits with the times of each orbit."""
     if "t" not in dataset.dims:
         return dataset
     dataset = dataset.rename_dims(t="sample")
@@ -189,12 +188,12 @@ def _with_times_of_each(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _with_names_of_axes(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset of an analysis of a map with the axes x and ordinate."""
+    """Return the dataset of an analysis of a map with the axes x and ordinate."""
     ordinate, abscissa = next(variable.dims for variable in dataset.data_vars.values() if variable.ndim == 2)
     return dataset.rename({abscissa: "x", ordinate: "ordinate"})
 
 
-# Fields that are several attributes or variables.
+# Fields that are stored as several attributes or variables.
 _HELD_OTHERWISE: Mapping[str, Callable[[xr.Dataset], Any]] = {
     "spec": read_spec,
     "potential": lambda dataset: read_potential(dataset.attrs) if "terms" in dataset.attrs else None,
@@ -202,5 +201,5 @@ _HELD_OTHERWISE: Mapping[str, Callable[[xr.Dataset], Any]] = {
     "arcs": lambda dataset: StableManifolds.arcs_of({str(name): each.values for name, each in dataset.variables.items()}),
     "made_by": lambda dataset: {},
 }
-# What a file says once, of the request and of the result.
+# Facts about the request and the result that files contain only once.
 _REQUESTED = {"potential", "energy", "t_max"}

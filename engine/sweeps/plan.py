@@ -17,22 +17,23 @@ from engine.maps.spec import MapSpec
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.warmup import prepare_for_evidence, prepare_for_maps
 
-# A plan is based on maps with these sides at this many values. The smaller maps show the cost that does not depend on the size.
+# Plans are based on maps with these sides at this number of values. The smaller maps show the cost that is independent of the
+# size.
 _COARSE_SIDES = (48, 96)
 _PLANNED_VALUES = 12
 
 MOST_CORES = 1_000_000
-"""Most workers of a plan."""
+"""Largest number of workers of a plan."""
 
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """Estimated cost of a sweep.
+    """The estimated cost of a sweep.
 
     Attributes
     ----------
     orbits
-        Starts at all values, including forbidden ones and those outside.
+        Number of starts at all values, including forbidden and outside starts.
     seconds
         Wall time in seconds if all cores are busy throughout.
     bytes
@@ -47,7 +48,7 @@ class SweepPlan:
     cores: int
 
     def describe(self) -> str:
-        """The plan in a sentence."""
+        """Return the plan in a sentence."""
         hours = self.seconds / 3600.0
         took = f"{hours:.3g} hours" if hours >= 1.0 else f"{self.seconds:.3g} s"
         spent = f"{hours * self.cores:.3g} core hours"
@@ -59,23 +60,23 @@ class SweepPlan:
 def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Execution = DEFAULT_EXECUTION) -> SweepPlan:
     """Estimate the cost of a sweep of maps from the processor time of coarse maps, 48 and 96 pixels a side, at twelve values.
 
-    For larger maps the cost grows at most linearly with the number of pixels, and more slowly where invariant curves enclose many
-    orbits. In trials with 40 maps the estimate was within a fifth. At t_max = 1e5 planning takes some seconds; a minute or more
-    where many orbits are bounded and there is evidence for few.
+    For larger maps the cost grows at most linearly with the number of pixels, and more slowly if invariant curves enclose many
+    orbits. In trials with 40 maps the estimate was correct to within a fifth. At t_max = 1e5 planning takes some seconds, or a
+    minute or more if many orbits are bounded and evidence is found for few.
 
     Parameters
     ----------
     spec
-        The request; the plan leaves out the cost of its measures.
+        The request; the plan does not include the cost of its measures.
     cores
-        Number of workers, 1 or more; None for those of `execution`.
+        Number of workers, 1 or more; by default that of `execution`.
     execution
         How the sweep will run. Only its number of workers is used; they are assumed to be as fast as this core.
 
     Returns
     -------
     The plan, with the number of `orbits`, the wall time in `seconds` if all `cores` are busy, and the `bytes` of the arrays of
-    the maps; `describe` says it in a sentence.
+    the maps; `describe` gives it in a sentence.
 
     Raises
     ------
@@ -105,12 +106,12 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
 
 
 def _predict_seconds(spec: MapSpec, execution: Execution) -> float:
-    """Processor time of one map in seconds, extrapolated linearly from two coarse ones."""
+    """Return the processor time of one map in seconds, extrapolated linearly from two coarse maps."""
     pixels = np.prod(spec.resolution)
     small, large = (side * side for side in _COARSE_SIDES)
     first, second = (_measure_seconds(replace(spec, resolution=(side, side)), execution) for side in _COARSE_SIDES)
     slope = (second - first) / (large - small)
-    # A slope that is not positive is measurement noise.
+    # A slope of 0 or less is measurement noise.
     rate = min(slope, second / large) if slope > 0.0 else second / large
     return second + rate * max(float(pixels) - large, 0.0)
 

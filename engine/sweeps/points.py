@@ -1,4 +1,4 @@
-"""Measures of one map, and of the map of one value of a sweep."""
+"""Measurement of one map, and of the map at one value of a sweep."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from engine.sweeps.measures import MEASURES
 if TYPE_CHECKING:
     import xarray as xr
 
-# Of the maps of sweeps: about ten times faster than a single map.
+# Effort for the maps of sweeps, which makes measures about ten times faster than for a single map.
 _EFFORT = 0.1
 
 
 def measure_map(frame: EscapeMap, name: str, box: Window | None = None, *, execution: Execution = DEFAULT_EXECUTION) -> Any:
-    """The result of the measure `name` of a complete map, or of a box in it; None where it is not defined."""
+    """Return the result of the measure `name` of a complete map, or of a box in it; None if it is not defined."""
     return MEASURES[name].compute(MeasuredMap(frame, box, execution))
 
 
@@ -38,14 +38,14 @@ def compute_point(point: SweepPoint, *, frame: EscapeMap | None = None, executio
 
     Returns
     -------
-    Dataset of the measures, whose first dimension, of size 1, is that of the values.
+    Dataset of the measures; its first dimension, of size 1, is that of the values.
 
     Raises
     ------
     concurrent.futures.CancelledError
         When cancelled.
     """
-    # Slow to import.
+    # This import is slow.
     import xarray as xr
 
     if frame is None:

@@ -1,4 +1,4 @@
-"""The request of a sweep: maps at many energies, or at many values of a parameter, and what is measured on them."""
+"""The request of a sweep: maps at many energies, or at many values of a parameter, and the measures of each."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_potential
 
 MOST_VALUES = 10_000
-"""Most energies, or values of a parameter, of one sweep."""
+"""Largest number of energies, or of values of a parameter, of one sweep."""
 
 MOST_REFINED = 1000
-"""Most further values of a sweep."""
+"""Largest number of refining values of a sweep."""
 
 EXTENT = ("requested", "refine", "count")
-"""Attributes of a sweep that only tell at which values, and at how many, it measures."""
+"""Attributes of a sweep that only describe its values and their number."""
 
 
 @with_former_fields
@@ -43,35 +43,35 @@ class SweepSpec:
     Parameters
     ----------
     potential
-        The `Potential`; along a parameter, that of its system.
+        The `Potential`; along a parameter, the potential of its system.
     plane
         A slice of one energy and one potential, such as (x, y) or (x, px).
     values
-        Energies h, or values of the parameter; finite, dimensionless, 1 to 10 000 of them; sorted and made unique.
+        Energies h, or values of the parameter; finite, dimensionless, 1 to 10 000 of them. They are sorted and made unique.
     resolution
         Columns and rows of the map at each value, each 1 to 4096.
     window
-        As in `MapSpec`, for all values. None for the default window of each map, which contains the whole interior; for the
-        measure "maps", whose arrays have common axes, that of the highest energy. In the three cases the interior grows with h on
-        both planes, so that this window contains the default windows of all other energies.
+        As in `MapSpec`, for all values. None for the default window of each map, which contains the whole interior. For the
+        measure "maps", whose arrays have common axes, None means the default window of the highest energy. In the three cases the
+        interior grows with h on both planes, so that this window contains those of all other energies.
     t_max
         Integration time, dimensionless, 0 < t_max ≤ 1e8; by default as in `MapSpec`.
     use_evidence
         As in `MapSpec`.
     measures
-        What is measured on each map: names of `MEASURES`, of which "maps" keeps the arrays of the map itself.
+        Names of `MEASURES` to compute for each map; "maps" stores the arrays of the map itself.
     along
-        The parameter; None for the energy. Outcomes have the numbers of its `ParameterAxis`.
+        The parameter; None for the energy. Outcomes have the numbers defined by `ParameterAxis`.
     energy
         h of all maps along a parameter; None otherwise.
     refine
-        Number of further values, 0 to 1000, chosen while the sweep runs: each is the middle of the two neighbours between which
-        the share of an exit, or of bounded starts, changes most. It needs the measure "shares".
+        Number of additional values, 0 to 1000, chosen while the sweep runs: each is the middle of the two neighbours between
+        which the share of an exit, or of bounded starts, changes most. The measure "shares" is required.
 
     Raises
     ------
     ValueError
-        Naming the parameter, its value and what is legal.
+        When a parameter is invalid; the message names it, its value and the legal values.
     """
 
     potential: Potential
@@ -86,7 +86,7 @@ class SweepSpec:
     energy: float | None = None
     refine: int = 0
 
-    # Type checkers accept what is converted; fields have the types of what is kept.
+    # Type checkers accept the types that are converted; the fields have the types of the stored values.
     if TYPE_CHECKING:
 
         def __init__(
@@ -109,11 +109,11 @@ class SweepSpec:
         if (self.along is None) != (self.energy is None):
             raise ValueError(f"energy={short_repr(self.energy)}: must be given along a parameter, and None along the energy")
         if self.along is not None:
-            # Validates the parameter, which must be one of the system of the potential.
+            # This validates the parameter, which must be one of the system of the potential.
             MapSpec(self.potential, Slice(Coordinate.X, self.along), self.energy or 0.0)
         plane, values, measures = _checked_plane(self.plane), _checked_values(self.values), _checked_measures(self.measures)
         if checked_count("refine", self.refine, 0, MOST_REFINED) and "shares" not in measures:
-            raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which tells where to refine")
+            raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which decides where to refine")
         if "maps" in measures and self.along is not None and self.window is None:
             raise ValueError("window=None: must be given for maps along a parameter, which have common axes")
         highest = MapSpec(
@@ -126,23 +126,23 @@ class SweepSpec:
 
     @property
     def count(self) -> int:
-        """Number of values, those of `refine` included; a single value cannot be refined."""
+        """Number of values, including those of `refine`; a single value cannot be refined."""
         return len(self.values) + (self.refine if len(self.values) > 1 else 0)
 
     @property
     def name(self) -> str:
-        """The name of what varies, in datasets: "h", or that of the parameter."""
+        """The name of the varied quantity in datasets: "h", or the name of the parameter."""
         return "h" if self.along is None else self.along.key
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """What is counted, after bounded orbits."""
+        """The outcomes whose shares are measured, besides bounded orbits."""
         if self.along is not None:
             return parameter_family(self.along).outcomes
         return self.potential.outcomes_at((self.values[0], self.values[-1]))
 
     def point(self, value: float) -> SweepPoint:
-        """The measurement at one value; ValueError if the system has no potential there."""
+        """Return the measurement at one value; ValueError if the system has no potential there."""
         potential, numbers, energy = self.potential, tuple(range(len(self.potential.outcomes) + 1)), self._energy_at(value)
         if self.along is not None:
             member = parameter_family(self.along).member(value)
@@ -152,7 +152,7 @@ class SweepSpec:
         return SweepPoint(map_spec, self.name, value, tuple(self.measures), numbers, self.outcomes)
 
     def attributes(self) -> dict[str, Any]:
-        """The request in plain values, with the integrator and the package version: the attributes of the dataset."""
+        """Return the request in plain values, with the integrator and the package version, as attributes of the dataset."""
         made_by = self.point(self.values[-1]).map_spec.provenance() | describe_potential(self.potential)
         differing = {"energy"} if self.along is None else {"terms"}
         if self._common_window() is None:
@@ -178,7 +178,7 @@ class SweepSpec:
         return value if self.energy is None else self.energy
 
     def _common_window(self) -> GivenWindow | None:
-        """The window of all maps; None where each has its default window."""
+        """Return the window of all maps; None if each has its default window."""
         if self.window is None and "maps" in self.measures:
             return map_window(self.potential, self.plane, self.values[-1], self.resolution)
         return self.window
@@ -193,7 +193,7 @@ def _checked_plane(plane: Any) -> Slice:
 
 
 def _checked_values(values: Any) -> tuple[float, ...]:
-    """The values, sorted and made unique."""
+    """Return the values, sorted and made unique."""
     try:
         checked = tuple(sorted({float(h) for h in values}))
     except (TypeError, ValueError, OverflowError):
@@ -204,7 +204,7 @@ def _checked_values(values: Any) -> tuple[float, ...]:
 
 
 def _checked_measures(measures: Any) -> tuple[str, ...]:
-    """The names, in the order of `MEASURES`."""
+    """Return the names, in the order of `MEASURES`."""
     try:
         given = {measures} if isinstance(measures, str) else set(measures)
     except TypeError:

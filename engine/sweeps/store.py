@@ -1,4 +1,4 @@
-"""The store of a sweep: a Zarr group on disk to which value after value is appended."""
+"""The store of a sweep: a Zarr group on disk to which values are appended one by one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from engine.foundations.output_lock import hold_lock
 if TYPE_CHECKING:
     import xarray as xr
 
-# Attribute of the group: number of values that are on the disk.
+# Attribute of the group with the number of values on the disk.
 _FINISHED = "finished"
 # Name of the temporary files of Zarr.
 _UNFINISHED = "*.partial"
@@ -27,16 +27,16 @@ _OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
 
 @contextmanager
 def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore]:
-    """Hold the store of a request, which is new or has some of its values, for this process.
+    """Open the store of a request, which is new or contains some of its values, and lock it for this process.
 
     Raises
     ------
     ValueError
-        If the folder holds another sweep or other files, or the folder that is to hold it does not exist.
+        If the folder contains another sweep or other files, or its parent folder does not exist.
     OSError
         If it cannot be written to.
     BlockingIOError
-        If another process holds it.
+        If another process has locked it.
     """
     require_package("zarr", "files")
     if not path.parent.exists():
@@ -48,8 +48,8 @@ def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore
 class SweepStore:
     """Values of a sweep on disk, in the order in which they were appended.
 
-    Arrays have one chunk, and thus one file, for each value. The number of finished values is written last, so that a killed run
-    loses only the value in progress.
+    Arrays have one chunk, and thus one file, for each value. The number of finished values is written last, so that a killed
+    process loses only the current value.
     """
 
     def __init__(self, path: Path, attributes: Mapping[str, Any]) -> None:
@@ -58,8 +58,8 @@ class SweepStore:
             self._open()
 
     def read(self) -> xr.Dataset:
-        """All values in ascending order; they are read from the disk on access."""
-        # Slow to import.
+        """Return all values in ascending order; they are read from the disk on access."""
+        # This import is slow.
         import xarray as xr
 
         axis = self._attributes["axis"]
@@ -70,7 +70,7 @@ class SweepStore:
         return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(axis)
 
     def append(self, point: xr.Dataset) -> None:
-        """Add a value: its arrays are on the disk before it counts, against power cuts, and to detect a full disk in time."""
+        """Add a value. Its arrays are on the disk before it counts, in case of power failure or a full disk."""
         import zarr
 
         how: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
@@ -84,7 +84,7 @@ class SweepStore:
         self._finished += 1
 
     def _open(self) -> None:
-        """Go on with the values of an earlier run, without what a killed one left."""
+        """Continue after the values of an earlier run, and remove what a killed run left."""
         import zarr
 
         if not (self._path / "zarr.json").exists():
@@ -96,7 +96,7 @@ class SweepStore:
         self._finished = int(group.attrs[_FINISHED])  # type: ignore[arg-type]
         if self._finished == self._attributes["count"]:
             return
-        # A store that is not writable fails before anything is computed.
+        # If the store is not writable, this fails before anything is computed.
         with tempfile.TemporaryFile(dir=self._path):
             pass
         for unfinished in self._path.rglob(_UNFINISHED):
@@ -108,15 +108,15 @@ class SweepStore:
 
 
 def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, but: Sequence[str] = ()) -> None:
-    """Raise a ValueError that names the difference if attributes are of another sweep; those of files have other types."""
-    # A default window follows from what else differs.
+    """Raise a ValueError that names the difference if attributes belong to another sweep; those of files have other types."""
+    # A default window follows from the other differences.
     for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
         if name not in but and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
             raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")
 
 
 def _consolidate(path: Path) -> None:
-    """Put the metadata of all arrays into one file, an extension of format 3 without which xarray warns and opens more slowly."""
+    """Collect the metadata of all arrays in one file, an extension of format 3; without it xarray warns and opens more slowly."""
     import zarr
 
     with warnings.catch_warnings():
@@ -132,7 +132,7 @@ def _sync_to_disk(file: Path) -> None:
 
 @contextmanager
 def _naming(path: Path) -> Iterator[None]:
-    """Add the path of the store to errors of the operating system that name no file, such as that of a full disk."""
+    """Add the path of the store to errors of the operating system that name no file, such as a full disk."""
     try:
         yield
     except OSError as error:

@@ -70,18 +70,18 @@ class Sweep(Result):
         return int(self.dataset.nbytes)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """A measure as an array, by the name of its variable."""
+        """Return a measure as an array, by the name of its variable."""
         return np.asarray(self.dataset[name].values)
 
     def interval(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper ends of a measure: of its 95 % interval, or one standard error away; the measure itself without any."""
+        """Return the ends of the 95 % interval of a measure, or one standard error away; without errors, the measure itself."""
         if f"{name}_low" in self.dataset:
             return self[f"{name}_low"], self[f"{name}_high"]
         error = self[f"{name}_error"] if f"{name}_error" in self.dataset else 0.0
         return self[name] - error, self[name] + error
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """All numbers by name, the energy or the parameter first; shares by outcome: ``share_bounded``, ``share_exit_1``."""
+        """Return all numbers by name, the energy or parameter first; shares by outcome: ``share_bounded``, ``share_exit_1``."""
         labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in self.outcomes)]
         found = {self.name: self.values}
         for name in map(str, self.dataset.data_vars):
@@ -92,11 +92,11 @@ class Sweep(Result):
         return found
 
     def to_xarray(self) -> xr.Dataset:
-        """The dataset, which can be written as NetCDF and Zarr."""
+        """Return the dataset, which can be written as NetCDF and Zarr."""
         return self.dataset
 
     def describe(self) -> str:
-        """How much is measured."""
+        """Describe how much is measured."""
         attributes = self.dataset.attrs
         return f"{self.values.size} of {attributes['count']} values of {self.symbol} on {attributes['plane']}."
 
@@ -105,7 +105,7 @@ class Kept(Protocol):
     """Where the measured values are: in memory, or in a store."""
 
     def read(self) -> xr.Dataset:
-        """All of them, in ascending order."""
+        """Return all of them, in ascending order."""
 
     def append(self, point: xr.Dataset) -> None:
         """Add one."""
@@ -233,7 +233,7 @@ class _InMemory:
 
 
 def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, object]) -> list[xr.Dataset]:
-    """The points of an earlier sweep: those of the values of the request, and then some to refine them."""
+    """Return the points of an earlier sweep: those of the values of the request, and then some to refine them."""
     check_same_sweep("earlier", earlier.dataset.attrs, attributes, but=EXTENT)
     values = earlier.values.tolist()
     inside = [value for value in values if value not in spec.values]
@@ -242,7 +242,7 @@ def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, obje
 
 
 def _next_value(spec: SweepSpec, found: xr.Dataset, order: Sequence[float]) -> float | None:
-    """The value to measure next: those of the request, then where the shares change most; None at the end."""
+    """Return the value to measure next: those of the request, then where the shares change most; None at the end."""
     values = found[spec.name].values
     missing = (value for value in order if value not in values)
     if (first := next(missing, None)) is not None:
@@ -255,7 +255,7 @@ def _next_value(spec: SweepSpec, found: xr.Dataset, order: Sequence[float]) -> f
 
 
 def _coarse_to_fine(values: Sequence[float]) -> list[float]:
-    """The ends first and then repeatedly the midpoints, so that the curves take shape early."""
+    """Return the ends first and then repeatedly the midpoints, so that the curves take shape early."""
     count = len(values)
     order, step = [0, count - 1], 1 << (count - 1).bit_length()
     while step > 1:

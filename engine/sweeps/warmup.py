@@ -1,8 +1,8 @@
-"""Compile kernels ahead of time, or load them from the kernel cache.
+"""Compilation of kernels ahead of time, or their loading from the kernel cache.
 
-Numba compiles one function at a time, whatever the number of threads, so the order matters: kernels of the first frame of a map,
-then those that look for evidence, which a complete map needs, then all others. Compilation in the background waits while kernels
-of maps are compiled.
+Numba compiles one function at a time, whatever the number of threads, so that the order matters: first the kernels of the first
+frame of a map, then those that look for evidence, which a complete map needs, then all others. Compilation in the background
+waits while kernels of maps are compiled.
 """
 
 from __future__ import annotations
@@ -36,26 +36,27 @@ from engine.trajectories.stable_manifolds import find_stable_manifolds
 # Integration time, in units of the well, of the calls that trigger compilation.
 _T_MAX = 10.0
 
-# Compiles in the calling thread, since the threads of pools have low priority.
+# The calling thread compiles, because the threads of pools have low priority.
 _EXECUTION = DEFAULT_EXECUTION.in_this_thread()
 
-# Kernels of the first frame of a map and of the Lyapunov orbits it needs, with the seconds that it takes to compile them on one
-# core of an AMD EPYC (Zen 4): those of each potential per operation, those of all potentials together. "propagate" includes the
-# kernel that finds starts outside.
+# Kernels of the first frame of a map and of its Lyapunov orbits, with the seconds of their compilation on one core of an AMD EPYC
+# (Zen 4): those of each potential per operation, and those of all potentials together. "propagate" includes the kernel that finds
+# starts outside.
 _SECONDS_PER_OPERATION = {"step": 3.0e-4, "jets": 2.5e-4, "potential_value": 2.5e-3}
 _SECONDS = {"shoot": 0.8, "propagate": 3.2}
-# Estimate while the number of operations is not known: that of a potential of eight terms.
+# Estimate for an unknown number of operations, which is the time for a potential of eight terms.
 _SECONDS_OF_NEW_POWERS = 4.0
 _MAP_KERNELS = (*_SECONDS_PER_OPERATION, *_SECONDS)
 
 
 class _Compilations:
-    """The compilations of kernels for maps that are under way.
+    """The running compilations of kernels for maps.
 
     Attributes
     ----------
     slowness
-        Measured over expected time of the last compilation; at least 1, because kernels from the cache take no time.
+        Measured time of the last compilation divided by the expected time; at least 1, because kernels from the cache take no
+        time.
     """
 
     def __init__(self) -> None:
@@ -64,7 +65,7 @@ class _Compilations:
         self._changed = threading.Condition()
 
     def run(self, potential: Potential, calls: tuple[Callable[[], object], ...]) -> None:
-        """Make the calls that compile the kernels for maps; background compilation waits meanwhile."""
+        """Make the calls that compile the kernels for maps; compilation in the background waits meanwhile."""
         # The estimates need the number of operations.
         kernels_of(potential.in_well_units)
         try:
@@ -82,12 +83,12 @@ class _Compilations:
                 self._changed.notify_all()
 
     def seconds_left(self, potential: Potential) -> float:
-        """Estimate from the kernels that are left and from the time since the compilation began."""
+        """Estimate the time left from the remaining kernels and from the time since the compilation began."""
         left, end = self.slowness * _expected_seconds(potential), self._ends.get(potential)
         return left if end is None else min(left, max(end - time.monotonic(), 0.0))
 
     def wait(self) -> None:
-        """Wait until no compilation for maps is under way."""
+        """Wait until no compilation for maps is running."""
         with self._changed:
             self._changed.wait_for(lambda: not self._ends)
 
@@ -96,7 +97,7 @@ _for_maps = _Compilations()
 
 
 def _expected_seconds(potential: Potential) -> float:
-    """Time to compile the kernels of maps that are not compiled yet."""
+    """Return the time to compile those kernels of maps that are not compiled yet."""
     kernels = _known_kernels(potential)
     if kernels is None:
         return _SECONDS_OF_NEW_POWERS
@@ -108,7 +109,7 @@ def _expected_seconds(potential: Potential) -> float:
 
 
 def _known_kernels(potential: Potential) -> ModuleType | None:
-    """The kernels of a potential; None if they are not generated yet, or cannot be compiled any more."""
+    """Return the kernels of a potential; None if they are not generated yet, or can no longer be compiled."""
     well = potential.in_well_units
     if not is_generated(well.form.definition, well.well.setting):
         return None
@@ -119,13 +120,13 @@ def _known_kernels(potential: Potential) -> ModuleType | None:
 
 
 def is_ready_for_maps(potential: Potential) -> bool:
-    """Whether the kernels of maps are compiled; potentials with the same powers of x and y and as many channels share kernels."""
+    """Return whether the kernels of maps are compiled; potentials with equal powers and number of channels share them."""
     kernels = _known_kernels(potential)
     return kernels is not None and all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
 
 def seconds_until_ready_for_maps(potential: Potential) -> float:
-    """Estimated time until the kernels of maps are compiled.
+    """Estimate the time until the kernels of maps are compiled.
 
     Parameters
     ----------
@@ -134,9 +135,9 @@ def seconds_until_ready_for_maps(potential: Potential) -> float:
 
     Returns
     -------
-    Seconds, from the number of operations of the kernels that are left, once it is known, and the speed of earlier
-    compilations in this process; 0 when they are compiled, or take longer than expected. Kernels that the cache contains take a
-    fraction of a second instead.
+    Seconds, estimated from the operations of the remaining kernels, once their number is known, and from the speed of earlier
+    compilations in this process; 0 if they are compiled, or take longer than expected. Kernels in the cache take only a fraction
+    of a second.
     """
     return _for_maps.seconds_left(potential)
 
@@ -186,7 +187,7 @@ def prepare_for_analyses(potential: Potential) -> None:
         lambda: compute_lagrangian_descriptor(_compute_small_map(potential, _open_energy(potential)), execution=_EXECUTION)
     )
     if potential.channels and not potential.gaps:
-        # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
+        # Below the escape energy all orbits are bounded, as `compute_regularity` requires.
         call_after_maps(
             lambda: compute_regularity(_compute_small_map(potential, potential.well.energy_at(0.5)), execution=_EXECUTION)
         )
@@ -200,7 +201,7 @@ def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> N
     Parameters
     ----------
     operations
-        The account of compiled code; by default that of this process.
+        The count of compiled code; by default that of this process.
     """
     wells = [potential.in_well_units for potential in POTENTIALS.values()]
     operations.reserve(code_digest(well.form.definition, well.well.setting) for well in wells)
@@ -212,19 +213,19 @@ def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
 
 
 def _open_energy(potential: Potential) -> float:
-    """An energy at which orbits can escape."""
+    """Return an energy at which orbits can escape."""
     return potential.well.energy_at(1.01) if potential.escape_radius is None else potential.well.bottom + potential.units.energy
 
 
 def _start(potential: Potential) -> np.ndarray:
-    """(1, 4) a state of low energy in the middle of a well, or, without a well, one at the typical radius."""
+    """Return (1, 4) a state of low energy in the middle of a well or, without a well, at the typical radius."""
     if potential.well.is_minimum and potential.escape_radius is None:
         return SECTION.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
     return SECTION.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
 
 
 def call_after_maps(*calls: Callable[[], object]) -> None:
-    """Make calls that compile kernels one after the other, each while no kernels for maps are compiled."""
+    """Make calls that compile kernels one after the other, each at a time when no kernels for maps are compiled."""
     for call in calls:
         _for_maps.wait()
         call()

@@ -12,11 +12,11 @@ _FIXED_STEP = 1.0 / 3.0
 
 
 def kernels_of(potential: Potential) -> ModuleType:
-    """The compiled kernels of a potential in units of its well, from `load_kernels`."""
+    """Return the compiled kernels of a potential in units of its well, from `load_kernels`."""
     channels, sides, _ = potential.well.setting
     return load_kernels(potential.form.definition, channels, sides=sides, rotation=potential.rotation)
 
 
 def fixed_step_size(potential: Potential) -> float:
-    """The time step of fixed-step integration, dimensionless."""
+    """Return the time step of fixed-step integration, dimensionless."""
     return _FIXED_STEP / max(1.0, potential.well.fastest_frequency)

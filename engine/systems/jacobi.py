@@ -13,10 +13,10 @@ _MIXED = multiply(X, Y)
 
 
 def squared_speed_of_origin(form: Form, rotation: float) -> float:
-    """The square of the speed Ω d with which the origin moves about the axis of the frame.
+    """Return the square of the speed Ω d with which the origin moves around the axis of the frame.
 
-    A uniform field in Φ = … + a x + b y − ½ Ω² (x² + y²) is the centrifugal force about an axis at (a, b)/Ω², as in the problem
-    of three bodies seen from one of them. If other terms are quadratic, the axis is at the origin.
+    A uniform field in Φ = … + a x + b y − ½ Ω² (x² + y²) is the centrifugal force about an axis at (a, b)/Ω², as in the
+    three-body problem in the coordinates of one body. If there are other quadratic terms, the axis is at the origin.
     """
     definition: Any = form.definition
     if not isinstance(definition, Sum) or not rotation:

@@ -30,7 +30,7 @@ POTENTIALS: Mapping[str, Potential] = ByName(
 
 
 def channel_family(n: int) -> Potential:
-    """The C_n family: V = r²/2 − (1/n) rⁿ cos nθ, with n exit channels at θ = 2πk/n, k = 0 … n − 1.
+    """Make a potential of the C_n family: V = r²/2 − (1/n) rⁿ cos nθ, with n exit channels at θ = 2πk/n, k = 0 … n − 1.
 
     The saddles lie at r = 1 and the escape energy is 1/2 − 1/n. The potential has the symmetry of a regular polygon with n
     corners. n = 3 is case II.

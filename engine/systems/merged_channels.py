@@ -1,6 +1,6 @@
-"""Exits of several channels: above a maximum of V between channels no wall separates these, and they are one exit.
+"""Exits of several channels: above a maximum of V between channels there is no wall between them, and they form one exit.
 
-Such an exit has the lowest of the numbers of its channels as its number, and all of them in its name: "1+3".
+The number of such an exit is the lowest number of its channels; its name contains all of them: "1+3".
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 
 class ChannelMerger(NamedTuple):
-    """A maximum (x, y) between exits: above V = `energy` there, the `channels` around it are one channel."""
+    """A maximum (x, y) between exits; above V = `energy` there, the `channels` around it form one exit."""
 
     energy: float
     x: float
@@ -21,7 +21,7 @@ class ChannelMerger(NamedTuple):
 
 
 class MergedExit(NamedTuple):
-    """The numbers of two or more channels that are one exit, rising, and whether it leads all around the well."""
+    """The increasing numbers of two or more channels that form one exit, and whether it leads all around the well."""
 
     channels: tuple[int, ...]
     closes_ring: bool
@@ -33,18 +33,18 @@ class MergedExit(NamedTuple):
 
 
 def name_channels(channels: Sequence[int], names: Sequence[str] = ()) -> str:
-    """The name of an exit from the names of all channels, or else their numbers: "1", or "1+3" if it has several channels."""
+    """Return the name of an exit from the names, by default the numbers, of all channels: "1", or "1+3" for several channels."""
     return "+".join(names[channel - 1] if names else str(channel) for channel in channels)
 
 
 def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[MergedExit, ...]:
-    """The exits of several channels at an energy, the lowest number first."""
+    """Return the exits of several channels at an energy, the lowest number first."""
     merged = [merger.channels for merger in mergers if energy > merger.energy]
     groups: list[set[int]] = []
     for channels in merged:
         joined = [group for group in groups if not group.isdisjoint(channels)]
         groups = [group for group in groups if group not in joined] + [set(channels).union(*joined)]
-    # The maxima surround the well if there are at least as many of them as channels.
+    # The maxima surround the well if there are at least as many maxima as channels.
     connections = [sum(len(channels) - 1 for channels in merged if group.issuperset(channels)) for group in groups]
     return tuple(
         sorted(MergedExit(tuple(sorted(group)), count >= len(group)) for group, count in zip(groups, connections, strict=True))
@@ -52,7 +52,7 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
 
 
 def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
-    """(mergers + 1, outcomes + 1) the number of the exit that each outcome is part of, above the first k of sorted mergers."""
+    """Return (mergers + 1, outcomes + 1) the number of the exit of each outcome above the first k of sorted mergers."""
     numbers = np.tile(np.arange(outcomes + 1, dtype=np.int8), (len(mergers) + 1, 1))
     for k in range(len(mergers)):
         for merged in merged_exits(mergers[: k + 1], np.inf):
@@ -61,10 +61,10 @@ def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
 
 
 def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float, names: Sequence[str] = ()) -> str:
-    """The name of the exit that a channel is, or is part of, at the energies from `low` to `high`.
+    """Return the name of the exit to which a channel belongs at the energies from `low` to `high`.
 
-    Without the names of all channels their numbers are used: "1", "1+3" for the lowest of the numbers, "3 in 1+3" for another
-    one, "1, 1+3 above h = 0.3" for a range of energies.
+    By default the channels have their numbers as names: "1"; "1+3" for the lowest of the numbers and "3 in 1+3" for another one;
+    "1, 1+3 above h = 0.3" for a range of energies.
     """
     changes = [(low, _name_at(channel, mergers, low, names))]
     for energy in sorted(merger.energy for merger in mergers if low <= merger.energy < high):

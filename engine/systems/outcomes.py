@@ -1,7 +1,8 @@
-"""What orbits end at: exits over saddles, and besides these centres with a radius of collision, and an escape circle.
+"""The ends of orbits: exits over saddles, centres with a radius of collision, and an escape circle.
 
-A kind of outcome is a class, an entry of `KINDS`: its words, and for an end besides the exits its place, its row for the kernels,
-its clause after a formula and its attribute in files. The colours of each kind are in `plots.pictures.palette`.
+Each kind of outcome is a class and an entry of `KINDS` with its texts. A kind of end besides the exits also has its place, its
+row for the kernels, its clause after a formula and its attribute in files. The colours of each kind are in
+`plots.pictures.palette`.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from engine.foundations.wording import format_number
 from engine.integrator.kernels import events
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 1e-6, 1e6
-"""Legal radii of centres and of escape, dimensionless: steps near the singularity of a smaller disc would not change t."""
+"""Legal radii of centres and of escape, dimensionless; near the singularity of a smaller disc, steps would not change t."""
 
 
 class Kind:
@@ -31,13 +32,13 @@ class Kind:
     key
         Its name in files and in palettes.
     word
-        What one that orbits end at is called: "exit", "centre".
+        The word for the place where orbits end: "exit", "centre".
     label, action
-        Those of its outcomes, with the name of one for {}; the verb of the action ends with e.
+        Label and action of its outcomes, where {} stands for the name of one; the verb of the action ends with e.
     event
-        What ends an orbit in a word: "escape", "collision".
+        The event that ends an orbit, in a word: "escape", "collision".
     origin
-        How an orbit began that ends so backward in time, with {label} and {present} of the outcome.
+        The beginning of an orbit that ends so backward in time, with {label} and {present} of the outcome.
     """
 
     key: ClassVar[str]
@@ -49,13 +50,13 @@ class Kind:
 
     @classmethod
     def outcome(cls, number: int, name: str = "", *, occurs: bool = True) -> Outcome:
-        """The outcome of orbits that end at the one of this number, which has a name or is called "exit 1"."""
+        """Return the outcome of orbits that end at the exit, centre, … of a number, by default with a name such as "exit 1"."""
         name = name or f"{cls.word} {number}"
         return Outcome(cls, cls.label.format(name), cls.action.format(name), occurs, number)
 
 
 class Exit(Kind):
-    """Through an exit over a saddle, the curve or line across a channel; see `engine.exits`."""
+    """An exit over a saddle, the curve or line across a channel; see `engine.exits`."""
 
     key = word = "exit"
     label, action = "{}", "escape through {}"
@@ -64,20 +65,20 @@ class Exit(Kind):
 
 @dataclass(frozen=True)
 class End(Kind):
-    """An end besides the exits over saddles: the edge of a disc, and of a subclass any other circle.
+    """An end besides the exits over saddles: the edge of a disc, or another circle in a subclass.
 
     Attributes
     ----------
     side
-        On which side of the circle orbits have ended: −1 within, 1 beyond.
+        The side of the circle on which orbits have ended: −1 inside, 1 outside.
     clause, syntax, spellings
-        Its clause after a formula: the pattern of its parameters, how errors describe it, and other spellings of its word.
+        Its clause after a formula: the pattern of its parameters, their description in errors, and other spellings of its word.
     most
-        How many a formula can have.
+        Largest number of such ends of a formula.
     attribute
         Its attribute in files.
     x, y, radius, name
-        As of `Centre`.
+        As in `Centre`.
     """
 
     side: ClassVar[int] = -1
@@ -99,7 +100,7 @@ class End(Kind):
         object.__setattr__(self, "radius", self._checked_radius(f"{self.word} radius"))
 
     def _checked_radius(self, name: str) -> float:
-        """The radius as a float, if it is legal."""
+        """Return the radius as a float; ValueError if it is not legal."""
         radius = checked_number(name, self.radius, f"a number from {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g}")
         if not SMALLEST_RADIUS <= radius <= LARGEST_RADIUS:
             raise ValueError(f"{name}={radius!r}: must be from {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g}")
@@ -107,27 +108,27 @@ class End(Kind):
 
     @classmethod
     def match(cls, clause: str) -> re.Match[str] | None:
-        """The parameters in a clause, if it is one of the kind."""
+        """Match a clause of this kind and return its parameters; None for other clauses."""
         return re.match(rf"\s*(?:{'|'.join((cls.word, *cls.spellings))}){cls.clause}", clause)
 
     @property
     def text(self) -> str:
-        """Its clause, to be read back exactly."""
+        """Its clause as text that can be read exactly."""
         return f"{self.word} {self.name + ' ' if self.name else ''}({self.x!r}, {self.y!r}) {self.radius!r}"
 
     @property
     def geometry(self) -> str:
-        """The circle in words."""
+        """A description of the circle."""
         return f"disc of radius {format_number(self.radius)} around ({format_number(self.x)}, {format_number(self.y)})"
 
     @classmethod
     def write(cls, ends: Sequence[End]) -> Any:
-        """All ends of the kind as their attribute in files."""
+        """Return all ends of the kind as their attribute in files."""
         return json.dumps([asdict(end) for end in ends])
 
     @classmethod
     def read(cls, attribute: Any) -> list[Self]:
-        """The ends of an attribute."""
+        """Return the ends described by an attribute."""
         return [cls(**values) for values in json.loads(attribute)]
 
     @property
@@ -139,23 +140,23 @@ class End(Kind):
         return row
 
     def scaled(self, factor: float) -> Self:
-        """The same end in other units of length; a power of 2 as factor is exact."""
-        # Legal radii are in the units of the system.
+        """Return the end in other units of length; a factor that is a power of 2 is exact."""
+        # Legal radii apply to the units of the system.
         return replace_unchecked(self, x=self.x * factor, y=self.y * factor, radius=self.radius * factor)
 
     def moved(self, x: float, y: float) -> Self:
-        """The same end with the origin of the axes moved to (x, y)."""
+        """Return the end with the origin of the axes moved to (x, y)."""
         return replace(self, x=self.x - x, y=self.y - y)
 
     def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Whether points of any shape lie where orbits have ended."""
+        """Return whether points of any shape lie where orbits have ended."""
         distance = np.hypot(x - self.x, y - self.y)
         ended: np.ndarray = distance < self.radius if self.side < 0 else distance > self.radius
         return ended
 
 
 class Centre(End):
-    """A body: an orbit that enters the disc around it has collided with it.
+    """A body; an orbit that enters the disc around it has collided with it.
 
     Parameters
     ----------
@@ -164,7 +165,7 @@ class Centre(End):
     radius
         Radius of the disc, 1e-6 to 1e6, dimensionless.
     name
-        Its name in texts, such as "the Moon"; empty for its number.
+        Its name in texts, such as "the Moon"; empty to use its number.
 
     Raises
     ------
@@ -179,7 +180,7 @@ class Centre(End):
 
 @dataclass(frozen=True)
 class EscapeCircle(End):
-    """The circle around the origin beyond which orbits have escaped; with it saddles are no exits."""
+    """The circle around the origin beyond which orbits have escaped; with it, saddles are not exits."""
 
     key, word, attribute = "escape", "escape", "escape_radius"
     label, action = "escape", "escape beyond the escape radius"
@@ -203,12 +204,12 @@ class EscapeCircle(End):
         return f"escape radius {format_number(self.radius)}"
 
     def moved(self, x: float, y: float) -> Self:
-        """The same circle: it is around any origin."""
+        """Return the circle itself, because it is around any origin."""
         return self
 
     @classmethod
     def write(cls, ends: Sequence[End]) -> float:
-        """The radius; 0 for none."""
+        """Return the radius; 0 if there is no circle."""
         return ends[0].radius if ends else 0.0
 
     @classmethod
@@ -222,26 +223,26 @@ KINDS: dict[str, type[Kind]] = {kind.key: kind for kind in (Exit, Centre, Escape
 
 
 def end_kinds() -> list[type[End]]:
-    """The kinds of ends besides the exits, in the order of fates."""
+    """Return the kinds of ends besides the exits, in the order of fates."""
     return [kind for kind in KINDS.values() if issubclass(kind, End)]
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How orbits of a fate of 1 or more end.
+    """The end of orbits with a fate of 1 or more.
 
     Attributes
     ----------
     kind
-        Through an exit over a saddle, by a collision with a centre, or beyond the escape radius: a class with its words.
+        The class of the outcome, with its texts: an exit over a saddle, a collision with a centre, or the escape circle.
     label
-        In legends and tables: "exit 1", "collision with the Moon", "escape".
+        Its name in legends and tables: "exit 1", "collision with the Moon", "escape".
     action
-        What orbits do: "escape through exit 1", "collide with the Moon", "escape beyond the escape radius".
+        The action of orbits: "escape through exit 1", "collide with the Moon", "escape beyond the escape radius".
     occurs
-        Whether orbits can have it: not a channel that is part of an exit of a lower number.
+        Whether orbits can have it; False for a channel that belongs to an exit of a lower number.
     number
-        Its number among those of its kind, from 1 on, which decides its colour.
+        Its number among the outcomes of its kind, from 1 on, which determines its colour.
     """
 
     kind: type[Kind]
@@ -252,34 +253,34 @@ class Outcome:
 
     @property
     def present(self) -> str:
-        """What an orbit does: "escapes through exit 1"."""
+        """The action of an orbit in the present tense: "escapes through exit 1"."""
         verb, rest = self.action.split(" ", 1)
         return f"{verb}s {rest}"
 
     @property
     def past(self) -> str:
-        """What an orbit has done, as the beginning of a sentence: "Escaped through exit 1"."""
+        """The action of an orbit in the past, as the beginning of a sentence: "Escaped through exit 1"."""
         verb, rest = self.action.split(" ", 1)
         return f"{verb.capitalize()}d {rest}"
 
     @property
     def event(self) -> str:
-        """What ends an orbit: "escape" or "collision"."""
+        """The event that ends an orbit: "escape" or "collision"."""
         return self.kind.event
 
     @property
     def origin(self) -> str:
-        """How an orbit began that ends so backward in time: "entered through exit 1"."""
+        """The beginning of an orbit that ends so backward in time: "entered through exit 1"."""
         return self.kind.origin.format(label=self.label, present=self.present)
 
     @property
     def sentence(self) -> str:
-        """What an orbit has done, as a sentence: "Escaped through exit 1."."""
+        """The action of an orbit as a sentence: "Escaped through exit 1."."""
         return f"{self.past}."
 
 
 def outcomes_of(channels: int, ends: Iterable[End]) -> tuple[Outcome, ...]:
-    """The outcomes of a system with ends in the order of fates; the fate of an orbit is 1 for the first one."""
+    """Return the outcomes of a system in the order of fates; the first one has the fate 1."""
     groups = [list(group) for _, group in groupby(ends, type)]
     return (
         *(Exit.outcome(channel) for channel in range(1, channels + 1)),
@@ -288,12 +289,12 @@ def outcomes_of(channels: int, ends: Iterable[End]) -> tuple[Outcome, ...]:
 
 
 def write_outcomes(outcomes: Sequence[Outcome]) -> str:
-    """Outcomes as an attribute of files."""
+    """Write outcomes as an attribute of files."""
     return json.dumps([[each.kind.key, each.label, each.action, each.occurs] for each in outcomes])
 
 
 def read_outcomes(text: str) -> tuple[Outcome, ...]:
-    """The outcomes of an attribute."""
+    """Read outcomes from an attribute."""
     rows = json.loads(text)
     keys = [key for key, *_ in rows]
     numbers = [keys[:place].count(key) + 1 for place, key in enumerate(keys)]

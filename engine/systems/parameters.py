@@ -10,7 +10,7 @@ from engine.foundations.validation import LARGEST_NUMBER
 
 
 class Parameter(NamedTuple):
-    """The symbol of a parameter in texts, the value that leaves a potential as it is, and the legal values, dimensionless."""
+    """The symbol of a parameter in texts, its neutral value, and its legal values, dimensionless."""
 
     symbol: str
     default: float
@@ -32,5 +32,5 @@ WELL_PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
 
 
 def symbol_of(name: str) -> str:
-    """The symbol of a parameter; a letter of a formula is its own."""
+    """Return the symbol of a parameter; a letter of a formula is its own symbol."""
     return WELL_PARAMETERS[name].symbol if name in WELL_PARAMETERS else name

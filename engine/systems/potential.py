@@ -1,6 +1,7 @@
-"""Potentials: a formula, the rotation of its frame, and what orbits end at besides its exits.
+"""Potentials: a formula, the rotation of its frame, and the ends of orbits besides its exits.
 
-All else is derived from these: critical points, exits and units by `engine.systems.well`, the integrator by `engine.integrator`.
+Everything else is derived from these: critical points, exits and units by `engine.systems.well`, the integrator by
+`engine.integrator`.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 Terms = tuple[tuple[int, int, float], ...]
 
-# Stands for the centres, or the escape radius, that are among the ends.
+# Marks centres or an escape radius that are given in `ends`.
 _OF_ENDS: Any = ...
 
 # In units of 1/Ω.
@@ -47,16 +48,16 @@ class Potential(Result):
     In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for the velocities ẋ and ẏ, and H for
     the Jacobi integral (ẋ² + ẏ²)/2 + Φ: ẍ = 2Ωẏ − Φ_x, ÿ = −2Ωẋ − Φ_y. See `in_rotating_frame`.
 
-    Without an escape radius orbits leave a well, or a centre, at the origin through the exits over its saddles. With one, saddles
-    are no exits, and orbits end beyond this radius. See `with_outcomes`.
+    Without an escape radius, orbits leave a well, or a centre, at the origin through the exits over its saddles. With an escape
+    radius, saddles are not exits, and orbits end beyond this radius. See `with_outcomes`.
 
     Parameters
     ----------
     name
-        Display name; it has no influence on any result, and potentials of different name can be equal.
+        Display name, which has no influence on any result; potentials with different names can be equal.
     form
-        What V is. For a polynomial Σ c x^i y^j its terms ((i, j, c), …): exponents i, j from 0 to 12 and coefficient c, at most
-        1e90 in magnitude, of each term, each (i, j) only once. `parse_formula` makes the forms of other formulas.
+        The function V. For a polynomial Σ c x^i y^j, its terms ((i, j, c), …): exponents i, j from 0 to 12 and coefficient c, at
+        most 1e90 in magnitude, of each term, each (i, j) only once. `parse_formula` makes the forms of other formulas.
     rotation
         Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
     centres
@@ -66,15 +67,14 @@ class Potential(Result):
     origin
         (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`; it has no influence on any result.
     lineage
-        How its well is found.
+        The way in which its well is found.
     system
-        The `System` whose potential it is; None for one that was made otherwise.
+        The `System` of this potential; None if it was made in another way.
     ends
-        What orbits end at besides exits, such as a `Centre`; `centres` and `escape_radius` replace those of
-        their kinds.
+        Ends of orbits besides exits, such as a `Centre`; `centres` and `escape_radius` replace those of their kinds.
     exit_names
-        Names of the exits in channel order, such as ("L2", "L1"), which have no influence on any result; they are used where
-        there are as many exits.
+        Names of the exits in channel order, such as ("L2", "L1"), which have no influence on any result; they are used if there
+        are as many exits as names.
 
     Raises
     ------
@@ -145,7 +145,7 @@ class Potential(Result):
 
     @cached_property
     def well(self) -> Well:
-        """What follows from the potential: critical points, exits, symmetries, units."""
+        """Quantities derived from the potential: critical points, exits, symmetries, units."""
         return self.lineage.make_well(self.form, self.rotation, self.ends)
 
     @property
@@ -165,7 +165,7 @@ class Potential(Result):
 
     @property
     def critical_points(self) -> np.ndarray:
-        """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). ValueError if they form a curve."""
+        """(n, 2) all points with ∇V = 0; a critical point at the origin is exactly (0, 0). ValueError if they form a curve."""
         return self.well.critical_points
 
     @property
@@ -188,11 +188,11 @@ class Potential(Result):
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """What orbits can end at: the exits in channel order, then `ends`; the first one is fate 1."""
+        """The possible ends of orbits: the exits in channel order, then `ends`; the first one is fate 1."""
         return self.outcomes_at(-np.inf) if self.exit_names else self.well.outcomes
 
     def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
-        """The outcomes as `outcomes`, named as exits are at an energy, or in a range of energies (low, high)."""
+        """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high)."""
         return self.well.outcomes_at(energy, self.exit_names if len(self.exit_names) == self.channels else ())
 
     @property
@@ -202,14 +202,14 @@ class Potential(Result):
 
     @cached_property
     def in_well_units(self) -> Potential:
-        """The same system in units of the well: V(L x, L y) / E, for units L of length and E of energy.
+        """Return the system in units of the well: V(L x, L y) / E, with units L of length and E of energy.
 
-        The potential itself if both are 1.
+        If both units are 1, it is the potential itself.
         """
         units = self.units
         if units == WellUnits():
             return self
-        # Legal ranges are for the potential's own units.
+        # Legal ranges apply to the units of the potential.
         return replace_unchecked(
             self,
             form=self.form.scaled(units.length, units.energy),
@@ -224,11 +224,11 @@ class Potential(Result):
         return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
 
     def _changed(self, **values: Any) -> Potential:
-        """Another potential, whose well is searched."""
+        """Return another potential, whose well is searched."""
         return replace(self, lineage=SEARCHED, system=None, **values)
 
     def in_rotating_frame(self, rotation: float) -> Potential:
-        """The potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).
+        """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).
 
         Parameters
         ----------
@@ -238,7 +238,7 @@ class Potential(Result):
         Raises
         ------
         ValueError
-            If the rate is out of range, or the potential is one of a rotating frame already.
+            If the rate is out of range, or the frame of the potential already rotates.
         """
         if self.rotation:
             raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
@@ -246,7 +246,7 @@ class Potential(Result):
         return self._changed(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
 
     def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
-        """The potential with its axes moved to the minimum nearest to a place, so that orbits leave the well there.
+        """Return the potential with its axes moved to the minimum nearest to a place, so that orbits leave the well there.
 
         Energies are unchanged. A frame that rotates turns about the new origin.
 
@@ -258,7 +258,7 @@ class Potential(Result):
         Raises
         ------
         ValueError
-            If V has no minimum, or it is not known.
+            If V has no minimum, or it was not found.
 
         Examples
         --------
@@ -284,49 +284,49 @@ class Potential(Result):
 
     @cached_property
     def reversed_in_time(self) -> Potential:
-        """The potential whose orbits, with the velocities reversed, are those of this one backward in time: Ω is reversed."""
+        """Return the potential whose orbits are those of this one backward in time, with reversed velocities and Ω."""
         return self._changed(rotation=-self.rotation) if self.rotation else self
 
     def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
-        """`t_max` as a float, 0 < t_max ≤ longest; in units of the well where its unit of time is longer than 1.
+        """Return `t_max` as a float, 0 < t_max ≤ longest, in units of the well if its unit of time is longer than 1.
 
-        None stands for 1e5, or a shorter time where bounded orbits are followed to the end.
+        None stands for 1e5, or for a shorter time if bounded orbits are integrated to the end.
         """
         if t_max is None:
             t_max = 1e5 if self.tori_are_evidence else _SHORT_TIME / (abs(self.rotation) or 1.0)
         return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
 
     def check_at_rest(self, what: str) -> None:
-        """Raise ValueError in a rotating frame, for what rests on the symmetry of time reversal."""
+        """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""
         if self.rotation:
             raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")
 
     def check_without_gaps(self, what: str) -> None:
-        """Raise ValueError around `gaps`, for what is integrated with fixed steps."""
+        """Raise ValueError if there are `gaps`, for computations with fixed steps."""
         if self.gaps:
             bodies = f"{self.gaps[0].word}s"
             raise ValueError(
-                f"potential={self.name}: has {bodies}; {what} are computed with fixed steps, which cannot pass close to one"
+                f"potential={self.name}: has {bodies}; {what} are computed with fixed steps, which cannot pass close to them"
             )
 
     @property
     def tori_are_evidence(self) -> bool:
-        """Whether an invariant torus counts as evidence that its orbits are bounded for ever: only in a well at rest.
+        """Whether an invariant torus counts as evidence that its orbits are bounded for ever, which holds only in a well at rest.
 
-        In a rotating frame and with ends besides the exits this evidence is not tested.
+        In a rotating frame, and with ends besides the exits, this evidence has not been tested.
         """
         return not self.rotation and not self.ends
 
     def provenance(self) -> dict[str, Any]:
-        """The potential in plain values, and the version."""
+        """Return the potential in plain values, and the version."""
         return super().provenance() | describe_potential(self)
 
     def numbers(self) -> dict[str, Any]:
-        """The name, the escape energy and the number of channels."""
+        """Return the name, the escape energy and the number of channels."""
         return {"name": self.name, "escape_energy": self.escape_energy, "channels": self.channels}
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Number, place and energy of each exit saddle."""
+        """Return number, place and energy of each exit saddle."""
         x, y = self.saddles.T
         return {"channel": np.arange(1, self.channels + 1), "x": x, "y": y, "energy": self.well.saddle_energies}
 
@@ -338,31 +338,32 @@ class Potential(Result):
         return self.form.terms
 
     def value(self, x: Any, y: Any) -> Any:
-        """V at (x, y); arrays broadcast."""
+        """Return V at (x, y); arrays broadcast."""
         return self.form.value(x, y)
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """(V_x, V_y) at (x, y); arrays broadcast."""
+        """Return (V_x, V_y) at (x, y); arrays broadcast."""
         return self.form.gradient(x, y)
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
-        """(V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
+        """Return (V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
         return self.form.hessian(x, y)
 
     def hessian_matrix(self, x: float, y: float) -> np.ndarray:
-        """(2, 2) the Hessian matrix of V at one point."""
+        """Return (2, 2) the Hessian matrix of V at one point."""
         return hessian_matrix(self.form, x, y)
 
     def energy(self, states: Any) -> Any:
-        """H of states (…, 4) = x, y, px, py."""
+        """Return H of states (…, 4) = x, y, px, py."""
         x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
         return 0.5 * (px * px + py * py) + self.value(x, y)
 
     def jacobi_constant(self, energy: Any) -> Any:
-        """The Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays have the same shape.
+        """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays have the same shape.
 
-        C = −2H about the axis of the frame, in the problem of three bodies the barycentre, where U = Σ m/r + ½ (x² + y²). In
-        the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Where authors add μ(1 − μ) to C, theirs is larger by it.
+        C = −2H about the axis of the frame, which is the barycentre in the three-body problem, where U = Σ m/r + ½ (x² + y²). In
+        the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C, so that their values are
+        larger by this amount.
 
         Raises
         ------
@@ -379,7 +380,7 @@ class Potential(Result):
         return self._squared_speed_of_origin - 2.0 * energy
 
     def jacobi_energy(self, constant: Any) -> Any:
-        """The energy H of Jacobi constants, see `jacobi_constant`."""
+        """Return the energy H of Jacobi constants, see `jacobi_constant`."""
         return 0.5 * (self._squared_speed_of_origin - constant)
 
     @property
@@ -389,12 +390,12 @@ class Potential(Result):
         return squared_speed_of_origin(self.form, self.rotation)
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Potential:
-        """This potential with other frequencies of its well and another strength of its perturbation.
+        """Return this potential with other frequencies of its well and another strength of its perturbation.
 
-        V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 is the terms of degree 3 and higher.
-        In general V1 is all but the constant, linear and quadratic terms of the expansion about the origin, x² is multiplied by
-        ω1², y² by ω2² and x y by ω1 ω2, also if the quadratic terms are not ½ (x² + y²), so that the default values give the
-        potential itself. Constant and linear terms are unchanged.
+        V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 consists of the terms of degree 3 and higher.
+        In general V1 is V without the constant, linear and quadratic terms of its expansion about the origin. The term with x² is
+        multiplied by ω1², that with y² by ω2² and that with x y by ω1 ω2, also if the quadratic terms are not ½ (x² + y²), so
+        that the default values give the potential itself. Constant and linear terms are unchanged.
 
         Parameters
         ----------
@@ -422,7 +423,7 @@ class Potential(Result):
 
 
 def _checked[T](ends: Sequence[T], name: str, kind: type[T]) -> Sequence[T]:
-    """Ends, each of which must be of a kind."""
+    """Return the ends after checking that all are of one kind."""
     check_type(name, ends, Iterable)
     for end in ends:
         check_type(name, end, kind)

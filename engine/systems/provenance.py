@@ -1,4 +1,4 @@
-"""How a result was made, in plain values: the potential, what was asked for, the integrator and the version."""
+"""The provenance of a result in plain values: the potential, the request, the integrator and the version."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def describe_potential(potential: Potential) -> dict[str, Any]:
 
 
 def describe_run(potential: Potential, **request: Any) -> dict[str, Any]:
-    """How a computation with a potential was made: the potential, what was asked for, the integrator and the version."""
+    """Return the provenance of a computation with a potential: the potential, the request, the integrator and the version."""
     energy = request.get("energy")
     constant = {"jacobi_constant": potential.jacobi_constant(energy)} if potential.rotation and isinstance(energy, float) else {}
     return {

@@ -1,4 +1,4 @@
-"""Wells whose exits are known from those of another potential, and are not searched again."""
+"""Wells whose exits follow from those of another potential, without a search."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ class ScaledWell(Well):
     Attributes
     ----------
     stated
-        The same well in the units in which the potential was given; exits are those of this one, divided by powers of 2.
+        The same well in the units of the original potential; exits are those of this well, divided by powers of 2.
     """
 
     stated: Well
 
     @cached_property
     def units(self) -> WellUnits:
-        """1."""
+        """Units of 1."""
         return WellUnits()
 
     @property
     def stated_units(self) -> WellUnits:
-        """The units of the potential as it was given."""
+        """The units of the original potential."""
         return self.stated.units
 
     @cached_property
@@ -58,7 +58,7 @@ class ScaledWell(Well):
 
 @dataclass(frozen=True, eq=False)
 class ContinuedWell(Well):
-    """A well whose exits were continued from those of a potential nearby.
+    """A well whose exits were continued from those of a nearby potential.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class ContinuedWell(Well):
     maxima
         (m, 2) the maxima between exits.
     around
-        For each maximum the places of its exits among the saddles.
+        For each maximum, the indices of its exits among the saddles.
     """
 
     found: np.ndarray
@@ -88,15 +88,15 @@ class ContinuedWell(Well):
 
 @dataclass(frozen=True)
 class Lineage:
-    """How the well of a potential is found.
+    """The way in which the well of a potential is found.
 
     Attributes
     ----------
     family
         Name of the family from which the exits were continued (`ParameterFamily`), or empty. Continued exits may differ in the
-        last bit from exits found from the critical points, so caches keep the results of both apart.
+        last bit from exits found from the critical points, so that caches keep the results of both apart.
     make_well
-        Makes the well of form, rotation and ends; it has no influence on any result.
+        Makes the well from form, rotation and ends; it has no influence on any result.
     """
 
     family: str = ""

@@ -1,4 +1,4 @@
-"""A potential as users choose it: a name of the catalogue or a formula, with parameters by name."""
+"""A potential chosen by users: a name of the catalogue or a formula, with parameters by name."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from engine.systems.parameters import ROTATION, WELL_PARAMETERS, symbol_of
 from engine.systems.potential import Potential
 
 TYPED = "typed"
-"""Case of a potential that is given by a formula."""
+"""The case of a potential that is given by a formula."""
 
 SHOWN_DIGITS = 12
-"""Significant digits of the coefficients in formulas, where 1.46²/2 is 1.0658 without the rounding error of the product."""
+"""Significant digits of the coefficients in formulas; with these, 1.46²/2 is 1.0658 without the rounding error of the product."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class System:
     case
         A key of `POTENTIALS`, or "typed" for a formula.
     formula
-        V(x, y) as text for a formula, else empty.
+        V(x, y) as text for a formula; otherwise empty.
     parameters
         Values by name: omega_1, omega_2 and epsilon as in `Potential.with_parameters`, rotation as in
-        `Potential.in_rotating_frame`, and the letters of the formula as in `parse_formula`. Those that have their default value,
+        `Potential.in_rotating_frame`, and the letters of the formula as in `parse_formula`. Parameters with their default value,
         `default_of`, are left out.
 
     Raises
@@ -54,7 +54,7 @@ class System:
         check_type("formula", self.formula, str)
         check_type("parameters", self.parameters, Mapping)
         _ = self.entry
-        # Sorted, so that the order in which they were chosen changes neither titles nor links.
+        # The parameters are sorted, so that the order in which they were chosen changes neither titles nor links.
         places = {name: place for place, name in enumerate(WELL_PARAMETERS)}
         ordered = sorted(self.parameters, key=lambda name: (places.get(name, len(places)), name))
         changed = {name: self.parameters[name] for name in ordered if self.parameters[name] != self.default_of(name)}
@@ -65,7 +65,7 @@ class System:
 
     @classmethod
     def from_formula(cls, formula: str, **parameters: float) -> System:
-        """The system of a formula, with values of its letters, of omega_1, omega_2 and epsilon, and of the rotation.
+        """Make the system of a formula, with values of its letters, of omega_1, omega_2 and epsilon, and of the rotation.
 
         Examples
         --------
@@ -78,7 +78,7 @@ class System:
 
     @property
     def entry(self) -> CatalogueEntry:
-        """Its entry of the catalogue; of a typed formula what its entry would be."""
+        """Its entry of the catalogue; for a typed formula, an equivalent entry."""
         return CatalogueEntry("", "Typed potential", self.formula) if self.case == TYPED else CATALOGUE[self.case]
 
     @property
@@ -97,24 +97,24 @@ class System:
         return (*self.entry.adjustable, *self.letters)
 
     def default_of(self, name: str) -> float:
-        """The value of a parameter that is not given."""
+        """Return the default value of a parameter."""
         return self.entry.parameters.get(name, 1.0)
 
     def range_of(self, name: str) -> tuple[float, float]:
-        """The smallest and the largest legal value of a parameter."""
+        """Return the smallest and the largest legal value of a parameter."""
         return WELL_PARAMETERS[name].range if name in WELL_PARAMETERS else (-LARGEST_VALUE, LARGEST_VALUE)
 
     def value_of(self, name: str) -> float:
-        """The value of a parameter."""
+        """Return the value of a parameter."""
         return self.parameters.get(name, self.default_of(name))
 
     def with_parameter(self, name: str, value: float) -> System:
-        """The system with another value of one parameter."""
+        """Return the system with another value of one parameter."""
         return replace(self, parameters={**self.parameters, name: value})
 
     @property
     def as_typed(self) -> System:
-        """The same system given by a formula: a well with its coefficients, another system with its letters."""
+        """Return the same system given by a formula: a well with its coefficients, any other system with its letters."""
         if self.case == TYPED:
             return self
         if self.entry.is_well:
@@ -124,23 +124,23 @@ class System:
 
     @property
     def well_parameters(self) -> dict[str, float]:
-        """Those of ω1, ω2 and ε that are not 1."""
+        """The values of ω1, ω2 and ε that are not 1."""
         return {name: value for name, value in self.parameters.items() if name in WELL_PARAMETERS and name != ROTATION}
 
     @property
     def letter_parameters(self) -> dict[str, float]:
-        """The values of letters that are not given by default."""
+        """The values of letters that are not the default ones."""
         return {name: value for name, value in self.parameters.items() if name not in WELL_PARAMETERS}
 
     @property
     def title(self) -> str:
-        """Name of the potential, with the parameters that are not 1."""
+        """Name of the potential, with the parameters that do not have their default values."""
         changed = ", ".join(f"{symbol_of(name)} = {value:.6g}" for name, value in self.parameters.items())
         return f"{self.entry.title} with {changed}" if changed else self.entry.title
 
     @property
     def formula_shown(self) -> str:
-        """V(x, y) as text, with the values of the parameters; of systems with letters with these, and where axes are moved."""
+        """V(x, y) as text, with the values of the parameters, and of letters, and with any shift of the axes."""
         if self.case != TYPED and not (self.parameters and self.entry.is_well):
             return self.entry.formula
         if self.value_of(ROTATION):

@@ -20,19 +20,19 @@ from engine.systems.outcomes import End, EscapeCircle, Exit, Outcome, outcomes_o
 from engine.systems.well_units import WellUnits, nearest_power_of_two
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
-"""Saddles whose energies differ by less count as equally high; in units of the well's energy."""
+"""Saddles whose energies differ by less than this, in units of the energy of the well, count as equally high."""
 
-# Coordinates below this share of the distance are rounding errors of zero: on the +x axis the sign of such an error would change
-# the channel numbers.
+# Coordinates below this share of the distance are rounding errors of zero, whose sign would change the channel numbers on the +x
+# axis.
 _ROUNDING = 1e-13
 
-# Radius of a circle of typical size, in units of the escape radius, and points on it.
+# Radius of a circle of typical size, in units of the escape radius, and number of points on it.
 _TYPICAL_SHARE, _CIRCLE_POINTS = 0.1, 64
 
 
 @dataclass(frozen=True, eq=False)
 class Well(ReadOnlyArrays):
-    """The well, or the centre, at the origin of a potential, and its exits.
+    """The well, or the centre, at the origin of a potential, with its exits.
 
     Lengths and energies are in the units of the potential.
 
@@ -72,9 +72,9 @@ class Well(ReadOnlyArrays):
     def saddles(self) -> np.ndarray:
         """(n, 2) saddle points (∇V = 0, V_xx V_yy − V_xy² < 0) that lead out of the well at the origin.
 
-        In counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from which exactly one
-        of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test without the
-        square of V_xy, which is a misprint. With an escape radius there are none.
+        They are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from which
+        exactly one of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test without
+        the square of V_xy, which is a misprint. With an escape radius there are no exit saddles.
         """
         if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
@@ -85,7 +85,7 @@ class Well(ReadOnlyArrays):
         return self._in_channel_order(points[leads_out])
 
     def _in_channel_order(self, points: np.ndarray) -> np.ndarray:
-        """Exit saddles (n, 2), counterclockwise from the +x axis, without rounding errors of zero and exactly symmetric."""
+        """Return exit saddles (n, 2) counterclockwise from the +x axis, without rounding errors of zero, exactly symmetric."""
         points = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
         angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
         points = points[np.argsort(angle, kind="stable")]
@@ -114,16 +114,16 @@ class Well(ReadOnlyArrays):
         return float(self.saddle_energies.min(initial=np.inf))
 
     def open_channels(self, energy: float) -> tuple[int, ...]:
-        """Numbers of the channels whose saddle lies below `energy`; empty at or below the escape energy."""
+        """Return the numbers of the channels whose saddle lies below `energy`; empty at or below the escape energy."""
         return tuple(
             int(k) + 1 for k in np.flatnonzero(self.saddle_energies < energy - EQUAL_ENERGY_TOLERANCE * self.units.energy)
         )
 
     def is_closed_at(self, energy: Any) -> Any:
-        """Whether no orbit of the well ends at these energies, because they are below all saddles and there are no other ends.
+        """Return whether no orbit of the well ends at these energies: they are below all saddles and there are no other ends.
 
-        Always False with an escape radius. It also holds in a rotating frame, where orbits cannot pass the zero-velocity curve
-        V = h.
+        With an escape radius the result is always False. The statement also holds in a rotating frame, where orbits cannot pass
+        the zero-velocity curve V = h.
         """
         return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.ends)
 
@@ -166,18 +166,18 @@ class Well(ReadOnlyArrays):
         return self._mergers_at(points[maxima], [np.flatnonzero(beside[:, k]) + 1 for k in maxima])
 
     def _mergers_at(self, maxima: np.ndarray, channels: Sequence[np.ndarray]) -> tuple[ChannelMerger, ...]:
-        """The mergers at maxima (n, 2) between channels, the lowest first."""
+        """Return the mergers at maxima (n, 2) between channels, the lowest first."""
         places = zip(maxima.tolist(), channels, strict=True)
         return tuple(
             sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(around.tolist())) for (x, y), around in places)
         )
 
     def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
-        """The exits of several channels above the maximum between these; each exit has the lowest of their numbers."""
+        """Return the exits of several channels above the maxima between them; each has the lowest number of its channels."""
         return merged_exits(self.channel_mergers, energy)
 
     def exit_numbers(self, energy: Any) -> np.ndarray:
-        """(…, outcomes + 1) the number of the exit that each fate is part of at energies (…); entry 0 is 0."""
+        """Return (…, outcomes + 1) the number of the exit to which each fate belongs at energies (…); entry 0 is 0."""
         below = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
         numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[below]
         return numbers
@@ -185,7 +185,7 @@ class Well(ReadOnlyArrays):
     def outcomes_at(self, energy: float | tuple[float, float], given: Sequence[str] = ()) -> tuple[Outcome, ...]:
         """Return `outcomes` with the names that exits have at an energy, or in a range of energies (low, high).
 
-        given: the names of all channels; without them an exit is called "exit 1".
+        given: the names of all channels; by default an exit is called "exit 1".
         """
         low, high = energy if isinstance(energy, tuple) else (energy, energy)
         if not (given or self.merged_exits(high)):
@@ -225,7 +225,7 @@ class Well(ReadOnlyArrays):
         return read_only(np.concatenate(images).astype(np.int8))
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
-        """(…, outcomes + 1) the image of each fate under x → −x at energies (…); entry 0 is 0. Only valid if `mirror_in_x`."""
+        """Return (…, outcomes + 1) the image of each fate under x → −x at energies (…); entry 0 is 0. Requires `mirror_in_x`."""
         numbers: np.ndarray = self.exit_numbers(energy)[..., self.mirror_channels]
         return numbers
 
@@ -252,7 +252,8 @@ class Well(ReadOnlyArrays):
     def fastest_frequency(self) -> float:
         """The higher frequency of small oscillations in the well at the origin; NaN if there is neither well nor centre.
 
-        Without a well it is that of a circular orbit of typical radius: the square is the mean slope of V over the radius.
+        Without a well it is the frequency of a circular orbit of typical radius, whose square is the mean slope of V over the
+        radius.
         """
         if self.is_minimum or not self.typical_radius:
             matrix = hessian_matrix(self.form, 0.0, 0.0)
@@ -263,7 +264,7 @@ class Well(ReadOnlyArrays):
 
     @property
     def exact_time_unit(self) -> float:
-        """The unit of time of the well before it is rounded: 1/ω of the fastest small oscillation; 1 without a frequency."""
+        """The unit of time of the well before rounding: 1/ω of the fastest small oscillation; 1 without a frequency."""
         frequency = self.fastest_frequency
         return 1.0 / frequency if np.isfinite(frequency) and frequency > 0.0 else 1.0
 
@@ -271,9 +272,9 @@ class Well(ReadOnlyArrays):
     def units(self) -> WellUnits:
         """The units of the well, rounded to powers of 2; both are 1 for the three cases of Zotos (2014).
 
-        The unit of length is the distance of the nearest exit saddle, the unit of time 1/ω of the fastest small oscillation in
-        the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of that; without exits it is the
-        length of the form.
+        The unit of length is the distance of the nearest exit saddle, and the unit of time is 1/ω of the fastest small
+        oscillation in the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of this radius;
+        without exits it is the length of the form.
         """
         frequency = self.fastest_frequency
         time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
@@ -285,7 +286,7 @@ class Well(ReadOnlyArrays):
 
     @property
     def stated_units(self) -> WellUnits:
-        """Units in which errors state energies and positions: those in which the potential was given, see `ScaledWell`."""
+        """Units in which errors state energies and positions: those of the original potential, see `ScaledWell`."""
         return WellUnits()
 
     @cached_property
@@ -300,7 +301,7 @@ class Well(ReadOnlyArrays):
         return float(value[np.isfinite(value)].mean())
 
     def energy_at(self, multiple: float) -> float:
-        """The energy at a multiple of the depth of the well: 0 at the bottom, 1 at the escape energy."""
+        """Return the energy at a multiple of the depth of the well: 0 at the bottom, 1 at the escape energy."""
         return self.bottom + multiple * (self.escape_energy - self.bottom)
 
 

@@ -1,7 +1,8 @@
-"""Units of length and time of a well: powers of 2, so that numbers are converted without rounding.
+"""Units of length and time of a well, which are powers of 2, so that numbers are converted without rounding.
 
-Under x → L x and V → E V, times scale as L/√E. In units of the well, every such potential is the same one. All tolerances and
-all time and length constants of the engine are in these units; for the three cases of Zotos (2014) they are 1.
+Under x → L x and V → E V, times scale as L/√E, and potentials that differ only by such a scaling are equal in units of the well.
+All tolerances and all constants of time and length of the engine are in these units; for the three cases of Zotos (2014) the
+units are 1.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 
 def _quantity(length: int, time: int) -> dict[str, tuple[int, int]]:
-    """Metadata of a dataclass field: the powers of length and time in the unit of its value, for `WellUnits.restore`."""
+    """Return metadata of a dataclass field: the powers of length and time in the unit of its value, for `WellUnits.restore`."""
     return {_UNIT: (length, time)}
 
 
@@ -54,11 +55,11 @@ class WellUnits:
 
     @property
     def inverse(self) -> WellUnits:
-        """The units in which `restore` does the opposite: from the units of the potential to those of the well."""
+        """Return the units with which `restore` converts from the units of the potential to those of the well."""
         return WellUnits(1.0 / self.length, 1.0 / self.time)
 
     def restore[Computed](self, result: Computed) -> Computed:
-        """A result that was computed in these units, in the units in which the potential was given, without rounding.
+        """Convert a result from these units to the units of the potential, without rounding.
 
         Fields whose metadata is a quantity, such as `TIME`, are converted; arrays stay read-only.
         """
@@ -76,6 +77,6 @@ class WellUnits:
 
 
 def nearest_power_of_two(value: float) -> float:
-    """The power of 2 nearest to a finite value above 0 on a logarithmic scale; scaled by a power of 2 exactly as `value` is."""
+    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale; it scales exactly with powers of 2."""
     mantissa, exponent = math.frexp(value)
     return math.ldexp(1.0, exponent if mantissa * mantissa >= 0.5 else exponent - 1)

@@ -1,4 +1,4 @@
-"""Birkhoff digits of one orbit: to how many digits averages over two consecutive windows of time agree."""
+"""Birkhoff digits of one orbit: the number of digits to which averages over two consecutive windows of time agree."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from engine.systems.well_units import TIME
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BirkhoffDigits(RecordedResult):
-    """Number of digits to which weighted averages over two consecutive windows agree, by window length; arrays are read-only.
+    """Digits to which weighted averages over two consecutive windows agree, by window length; arrays are read-only.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class BirkhoffDigits(RecordedResult):
     digits
         (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is 8 or more.
     time_unit
-        Unit of time of the well before rounding, 1/ω, of which the windows are multiples.
+        Unit of time of the well before rounding, 1/ω; the windows are multiples of it.
     """
 
     windows: np.ndarray = field(metadata=TIME)
@@ -51,7 +51,7 @@ def compute_birkhoff_digits(
 ) -> BirkhoffDigits:
     """Compare weighted Birkhoff averages of x² and y² over two consecutive windows, for increasing window lengths.
 
-    The number of agreeing digits rises fast with the window length on a torus and stays at 1 to 3 along a chaotic orbit (Das,
+    The number of agreeing digits rises quickly with the window length on a torus and stays at 1 to 3 along a chaotic orbit (Das,
     Saiki, Sander & Yorke 2017, Nonlinearity 30, 4111; Sander & Meiss 2020, Physica D 411, 132569; Duignan & Meiss 2023, Physica D
     449, 133749). `engine.evidence.birkhoff_averages` describes the weight function. The computation runs in the calling
     thread and stops at the first window with `TORUS_DIGITS` digits.
@@ -69,9 +69,9 @@ def compute_birkhoff_digits(
 
     Returns
     -------
-    The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for
-    2T ≤ t_max. They end early if the averages cannot be compared: on an orbit along an axis one coordinate is 0 throughout.
-    There are none around bodies, which the fixed steps of the averages cannot pass.
+    The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for 2T ≤
+    t_max. There are fewer if the averages cannot be compared: on an orbit along an axis one coordinate is always 0. There are
+    none around bodies, because the fixed steps of the averages cannot pass close to them.
 
     Raises
     ------
@@ -93,12 +93,12 @@ def compute_birkhoff_digits(
 
 
 def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:
-    """`compute_birkhoff_digits` of a state (1, 4) in units of the well."""
+    """Apply `compute_birkhoff_digits` to a state (1, 4) in units of the well."""
     curves = exits_of_orbit(potential, float(potential.energy(start)[0]))[0][None]
     orbit = OrbitBatch.from_starts(start, np.zeros(1, np.int64))
     orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []
-    # Not in units of the well, which are rounded: verdicts must not depend on the user's units.
+    # Units of the well are rounded and are not used here: verdicts must not depend on the user's units.
     unit = potential.well.exact_time_unit
     windows = [window * unit for window in WINDOWS]
     for window in windows:
@@ -115,7 +115,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
 
 
 def _stays_inside(potential: Potential, curves: np.ndarray, orbit: OrbitBatch, t_end: float, execution: Execution) -> bool:
-    """Continue a batch of one orbit; whether it has not escaped by `t_end`."""
+    """Continue a batch of one orbit, and return whether it has not escaped by `t_end`."""
     propagate_batch(potential, curves, orbit, np.arange(1), t_end, final=False, execution=execution.in_this_thread())
     execution.raise_if_cancelled()
     return bool(orbit.fate[0] == Fate.NOT_COMPUTED)

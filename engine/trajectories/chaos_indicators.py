@@ -1,9 +1,9 @@
 """Chaos indicators of one orbit, the entries of `INDICATORS`: SALI, the finite-time Lyapunov exponent and Birkhoff digits.
 
 Each indicator judges a bounded orbit by its own rule. SALI and the exponent come from deviation vectors, which can show chaos.
-Where they do not, there is no sign of chaos until then: sticky orbits follow a torus for a long time before they leave it. Only
-averages that agree as on a torus make an orbit regular. An escaping orbit can be chaotic while it is inside; there is no other
-verdict on it.
+If they do not, there is no sign of chaos so far: sticky orbits follow a torus for a long time before they leave it. Only averages
+that agree as on a torus make an orbit regular. An escaping orbit can be chaotic while it is inside; no other verdict on it is
+possible.
 
 The thresholds below were calibrated on 850 orbits bounded until t = 1e5 on six maps (I at h = 0.12 and 0.13, II at 0.16 and 0.17,
 III at 0.24 and 0.26). "Tori" are the orbits among them with 8 agreeing digits. `benchmarks.verdicts` counts how many of
@@ -32,7 +32,7 @@ On tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30.
 """
 
 REGULAR_SALI = 1e-5
-"""A SALI above this is no sign of chaos. Between this and `CHAOS_THRESHOLD` are few tori, and orbits that turn chaotic later."""
+"""A SALI above this is no sign of chaos. Between it and `CHAOS_THRESHOLD` lie few tori, and orbits that become chaotic later."""
 
 CHAOTIC_POWER = 2.0
 """A deviation vector that grew beyond t to this power is chaotic. On tori ln|w|/ln t stayed below 1.5 from t = 100 to 1e5."""
@@ -41,7 +41,7 @@ REGULAR_POWER = 1.5
 """Fastest growth from t/10 to t, as a power of t, that is no sign of chaos. On a torus a deviation vector grows like t."""
 
 CHAOTIC_DIGITS = dict(zip(WINDOWS, (1.0, 2.0, 3.0, 4.0), strict=True))
-"""An orbit with fewer digits than this is chaotic, by window T. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
+"""Numbers of digits by window T; an orbit with fewer is chaotic. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
 
 _GROWTH_FIT_SAMPLES = 200
 
@@ -97,13 +97,13 @@ class Indicator:
     value
         Its value at the end of an orbit.
     judge
-        The verdict on a bounded orbit, and the reason in words.
+        Returns the verdict on a bounded orbit, and its reason in words.
     judge_inside
-        The verdict on an orbit that escapes; None if the indicator shows no chaos before that.
+        Returns the verdict on an orbit that escapes; None if the indicator cannot show chaos before the escape.
     applies
-        Whether an orbit has this indicator.
+        Returns whether an orbit has this indicator.
     of_deviations
-        Whether it follows from deviation vectors, which show chaos; other indicators recognise tori.
+        Whether it is computed from deviation vectors, which can show chaos; other indicators recognise tori.
     """
 
     name: str
@@ -127,10 +127,10 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
 
     Returns
     -------
-    One `IndicatorVerdict` each for SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
-    given, the digits; `OrbitVerdict.findings` has them. An orbit that escapes is chaotic while inside where SALI or the growth of
-    a deviation vector reached the threshold of chaos before; otherwise it gets values but no conclusion, as does a start
-    outside: no orbit that escapes is regular, and one that escapes early may not show its chaos.
+    An `IndicatorVerdict` each for SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
+    given, the digits; `OrbitVerdict.findings` contains them. An orbit that escapes is chaotic while inside if SALI or the growth
+    of a deviation vector reached the threshold of chaos before. Otherwise it gets values but no conclusion, and so does a start
+    outside: no escaping orbit is regular, and an orbit that escapes early may not show its chaos.
     """
     return tuple(_evaluate(indicator, orbit, digits) for indicator in INDICATORS if indicator.applies(orbit, digits))
 
@@ -156,7 +156,7 @@ def _describe_end(orbit: Orbit) -> str:
 
 
 def _judge_sali_inside(orbit: Orbit) -> _Judged | None:
-    """Verdict on an orbit that escapes, whose history ends there; None without one."""
+    """Return the verdict on an orbit that escapes, whose history ends there; None if it is not chaotic."""
     least = float(np.min(orbit.sali))
     if not is_chaotic(least):
         return None
@@ -167,7 +167,7 @@ def _judge_sali_inside(orbit: Orbit) -> _Judged | None:
 
 
 def _judge_growth_inside(orbit: Orbit) -> _Judged | None:
-    """The same from the growth of a deviation vector."""
+    """Return the verdict from the growth of a deviation vector; None if it is not chaotic."""
     t_end = float(orbit.t[-1])
     log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
     if t_end < MIN_GROWTH_TIME * orbit.time_unit or log_growth <= _growth_limit(t_end, orbit.time_unit):
@@ -180,7 +180,7 @@ def _judge_growth_inside(orbit: Orbit) -> _Judged | None:
 
 
 def _growth_limit(t_end: float, time_unit: float) -> float:
-    """Logarithm of the largest growth of a deviation vector that is not chaotic."""
+    """Return the logarithm of the largest growth of a deviation vector that is not chaotic."""
     return CHAOTIC_POWER * float(np.log(t_end / time_unit))
 
 
@@ -208,7 +208,7 @@ def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judged:
 
 
 def _judge_growth(log_growth: float, power: float, t_end: float, time_unit: float) -> tuple[Verdict, str]:
-    """Verdict and reason from the logarithm of the growth until `t_end` and the recent growth as a power of t."""
+    """Return verdict and reason from the logarithm of the growth until `t_end` and the recent growth as a power of t."""
     limit = _growth_limit(t_end, time_unit)
     if log_growth > limit:
         return Verdict.CHAOTIC, f"more than t^{CHAOTIC_POWER:g} = e^{limit:.3g}, which no torus reaches"
@@ -229,7 +229,7 @@ def _undecided_too_short(t_end: float) -> tuple[Verdict, str]:
 
 
 def _fit_growth_power(orbit: Orbit) -> float:
-    """Power of t by which the first deviation vector grew over the last nine tenths of the orbit."""
+    """Return the power of t with which the first deviation vector grew over the last nine tenths of the orbit."""
     last = orbit.t.size - 1
     sample = np.unique(np.geomspace(0.1 * last, last, _GROWTH_FIT_SAMPLES).astype(int))
     t = orbit.t[sample]
@@ -267,7 +267,7 @@ def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judged:
 
 
 def _reason_without_windows(orbit: Orbit) -> str:
-    """Why a bounded orbit has no Birkhoff digits, see `compute_birkhoff_digits`."""
+    """Return why a bounded orbit has no Birkhoff digits, see `compute_birkhoff_digits`."""
     if orbit.potential is not None and orbit.potential.gaps:
         return "the fixed steps of these averages cannot pass close to a body"
     shortest = 2.0 * WINDOWS[0] * orbit.time_unit

@@ -1,4 +1,4 @@
-"""Random orbits that enter a well through its exits: their times inside are the gap times of transition state theory."""
+"""Random orbits that enter a well through its exits. Their times inside are the gap times of transition state theory."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from engine.foundations.validation import checked_count, checked_number, checks_
 from engine.slices.sampling import LARGEST_SAMPLE
 from engine.systems.potential import Potential
 
-# Places along half a Lyapunov orbit at which the flux is added up.
+# Number of points along half a Lyapunov orbit at which the flux is summed.
 _PLACES = 2001
-# Distance of the starts from the Lyapunov orbit, in shares of its length: on it, rounding would decide what is inside.
+# Distance of the starts from the Lyapunov orbit, as a share of its length; on it, rounding would decide what is inside.
 _SHIFT = 1e-7
 
 
 @checks_types(potential=Potential)
 def sample_entrances(potential: Potential, energy: float, count: int, *, seed: int = 0) -> np.ndarray:
-    """Random states on the Lyapunov orbits that move into the well, distributed as the flux.
+    """Draw random states on the Lyapunov orbits that move into the well, with the distribution of the flux.
 
-    They are the orbits that enter from outside, as many through each exit as its share of the flux. The times until they leave
-    are the gap times (Ezra, Waalkens & Wiggins 2009, J. Chem. Phys. 130, 164118); their mean is `EscapeFlux.mean_passage_time`
-    where no volume is enclosed by orbits that never leave. An orbit that is still inside at t_max has no time, but NaN; counted
-    with t_max, as in the example, such orbits make the mean a lower bound.
+    They are the orbits that enter from outside; the share of each exit in them is its share of the flux. The times until they
+    leave are the gap times (Ezra, Waalkens & Wiggins 2009, J. Chem. Phys. 130, 164118). Their mean is
+    `EscapeFlux.mean_passage_time` if no volume is enclosed by orbits that never leave. The time of an orbit that is still inside
+    at t_max is NaN; if it is replaced by t_max, as in the example, the mean is a lower bound.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
 
     Returns
     -------
-    (count, 4) x, y, px, py, all of that energy to rounding, just inside the exits.
+    (count, 4) x, y, px, py, all with this energy to rounding, just inside the exits.
 
     Raises
     ------
@@ -62,24 +62,24 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
 
 @checks_types(potential=Potential)
 def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Random states as of `sample_entrances`, with the exit of each.
+    """Draw random states like `sample_entrances`, with the exit of each.
 
     Parameters
     ----------
     potential, energy, count, seed
-        As of `sample_entrances`.
+        As in `sample_entrances`.
 
     Returns
     -------
     entrances
         (count,) int64, number of the exit through which each orbit enters.
     states
-        (count, 4) those of `sample_entrances`.
+        (count, 4) states as in `sample_entrances`.
 
     Raises
     ------
     ValueError
-        As of `sample_entrances`.
+        As in `sample_entrances`.
 
     Examples
     --------
@@ -105,10 +105,10 @@ def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *,
 
 
 class _HalfOrbit:
-    """Half a Lyapunov orbit, the line across its exit: the flux ∫ p·dq up to each time, and states that cross it inward."""
+    """Half a Lyapunov orbit, the line across its exit, with the flux ∫ p·dq up to each time and states that cross it inward."""
 
     def __init__(self, potential: Potential, orbit: LyapunovOrbit) -> None:
-        # Slow to import, and seldom used.
+        # The import is slow and seldom needed.
         from scipy.interpolate import CubicSpline
 
         self._potential, self._energy = potential, orbit.energy
@@ -122,7 +122,7 @@ class _HalfOrbit:
         self._inward = self._find_side()
 
     def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
-        """(count, 4) states, uniform in the flux: along the line as p·dq, and in the momentum along it."""
+        """Draw (count, 4) states, uniform in the flux: along the line as p·dq, and in the momentum along it."""
         times = np.interp(random.uniform(0.0, self.flux[-1], count), self.flux, self.times)
         points, along, inward = self._frame(times)
         points = points + _SHIFT * self._length * inward
@@ -132,13 +132,13 @@ class _HalfOrbit:
         return np.column_stack([points, momentum[:, None] * directions])
 
     def _frame(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Points of the line, and unit vectors along it and into the well."""
+        """Return points of the line, and unit vectors along it and into the well."""
         velocity: Any = self._path(times, 1)
         along = velocity / np.maximum(np.hypot(*velocity.T), np.finfo(float).tiny)[:, None]
         return self._path(times), along, self._inward * np.column_stack([-along[:, 1], along[:, 0]])
 
     def _find_side(self) -> float:
-        """1 if the well is at the left of the line, else −1."""
+        """Return 1 if the well is to the left of the line, otherwise −1."""
         self._inward = 1.0
         points, _, normal = self._frame(self.times[[_PLACES // 2]])
         point = points + 1e3 * _SHIFT * self._length * normal

@@ -1,4 +1,4 @@
-"""Flux through the exits of a well, and the phase-space volume inside: the decay rate of a well in which motion is mixed."""
+"""Flux through the exits of a well and the phase-space volume inside, which give the decay rate of a well with mixed motion."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from engine.slices.planes import SPACE
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 
-# Rows and columns of the points between which the edge of the interior is searched, and halvings of the distance to it. Of each
-# three rows the middle one serves the estimate of the error.
+# Rows and columns of the points between which the edge of the interior is searched, and halvings of the distance to it. The
+# middle one of each three rows serves to estimate the error.
 _ROWS, _COLUMNS = 513, 256
 _HALVINGS = 40
 
 
 @dataclass(frozen=True, eq=False)
 class EscapeFlux(RecordedResult):
-    """Flux through each open exit at one energy, and the volume of the energy surface inside; dimensionless, arrays read-only.
+    """Flux through each open exit at one energy, and volume of the energy surface inside; dimensionless, arrays are read-only.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class EscapeFlux(RecordedResult):
     )
 
     def numbers(self) -> dict[str, Any]:
-        """The energy, the volume, the total flux, and the decay rate and mean passage time of mixed motion."""
+        """Return the energy, the volume, the total flux, and the decay rate and mean passage time of mixed motion."""
         return {
             "energy": self.energy,
             "volume": self.volume,
@@ -63,7 +63,7 @@ class EscapeFlux(RecordedResult):
         }
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Channel, flux and share of the flux of each open exit."""
+        """Return channel, flux and share of the flux of each open exit."""
         return {"channel": self.channels, "flux": self.flux, "share": self.shares}
 
     @property
@@ -78,24 +78,24 @@ class EscapeFlux(RecordedResult):
 
     @property
     def shares(self) -> np.ndarray:
-        """(n,) shares of the exits in the flux: of escapes if orbits forget their start before they leave."""
+        """(n,) shares of the exits in the flux, which are those of escapes if orbits forget their start before they leave."""
         return self.flux / self.total if self.flux.size else self.flux
 
     @property
     def decay_rate(self) -> float:
-        """Flux over volume: the initial decay rate of starts spread evenly over the energy surface."""
+        """Flux over volume: the initial decay rate of starts uniform on the energy surface."""
         return self.total / self.volume
 
     @property
     def mean_passage_time(self) -> float:
-        """Volume over flux: the mean time from entrance to exit of all orbits that enter; infinite if all exits are closed.
+        """Volume over flux: the mean time from entrance to exit of all entering orbits; infinite if all exits are closed.
 
-        It is exact where orbits that never leave take no volume; otherwise those count as volume too.
+        It is exact if orbits that never leave occupy no volume; otherwise their volume is included.
         """
         return self.volume / self.total if self.flux.size else math.inf
 
     def describe(self) -> str:
-        """The decay rate and the mean passage time in one sentence."""
+        """Return the decay rate and the mean passage time in one sentence."""
         if not self.flux.size:
             return f"All exits are closed at h = {self.energy:.6g}."
         return (
@@ -108,9 +108,9 @@ class EscapeFlux(RecordedResult):
 def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     """Compute the flux through all open exits and the volume of the energy surface inside them.
 
-    The flux through an exit is the action ∮ p·dq of its Lyapunov orbit (Waalkens, Burbanks & Wiggins 2005, J. Phys. A 38, L759;
-    for two degrees of freedom MacKay 1990, Phys. Lett. A 145, 425): the smallest one of all curves that close the exit. With two
-    degrees of freedom the momenta of each point inside have the volume 2π.
+    The flux through an exit is the action ∮ p·dq of its Lyapunov orbit, the smallest of all curves that close the exit (Waalkens,
+    Burbanks & Wiggins 2005, J. Phys. A 38, L759; for two degrees of freedom MacKay 1990, Phys. Lett. A 145, 425). With two
+    degrees of freedom the momenta at each point inside have the volume 2π.
 
     Parameters
     ----------
@@ -121,13 +121,13 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
 
     Returns
     -------
-    The `EscapeFlux`; without exits at or below the escape energy.
+    The `EscapeFlux`; it has no exits at or below the escape energy.
 
     Raises
     ------
     ValueError
-        If `energy` is not finite or below the well, or exits are not defined at it; see `find_lyapunov_orbits`. If the frame
-        rotates.
+        If `energy` is not finite or below the bottom of the well, the exits are not defined at it (see `find_lyapunov_orbits`),
+        or the frame rotates.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
 
 
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
-    """Area of the interior and its error, from the lengths of its parts on evenly spaced lines."""
+    """Return the area of the interior and its error, from the lengths of its parts on evenly spaced lines."""
     box = default_window(potential, SPACE, h)
     height = (box.ordinate_high - box.ordinate_low) / _ROWS
     y = box.ordinate_low + height * (np.arange(_ROWS) + 0.5)
@@ -163,11 +163,11 @@ def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
     within, _ = bisect(lambda middle: ~_is_inside(potential, h, middle, y[row]), within, beyond, _HALVINGS)
     np.add.at(lengths, row, np.where(inside[row, column], within, -within))
     area = float(lengths.sum()) * height
-    # The lengths end in square roots, so that a third of the rows has 3^1.5 times the error.
+    # The lengths behave like square roots at their ends, so that a third of the rows has 3^1.5 times the error.
     return area, abs(area - 3.0 * height * float(lengths[1::3].sum())) / (3.0**1.5 - 1.0)
 
 
 def _is_inside(potential: Potential, h: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether points are in the well, below the energy and inside all exits."""
+    """Return whether points are in the well, below the energy and inside all exits."""
     inside: np.ndarray = (potential.value(x, y) <= h) & (find_outside_channels(potential, h, x, y) == 0)
     return inside

@@ -1,4 +1,4 @@
-"""The nearest start with a different exit: how precisely a start must be known to predict its exit."""
+"""The nearest start with a different exit, which shows how precisely a start must be known to predict its exit."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH
 
-# Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
+# Smallest distance, a few hundred units in the last place of coordinates of order 1. Lengths and times are in units of the well.
 _MIN_DISTANCE = 1e-13
 _DIRECTIONS = 16
 _STARTS_PER_DECADE = 80
 # Rings are classified in batches of this size, from the inside out. An orbit that escapes late has a divergent start on one of
-# the first rings, so the many neighbours further out, some of them bounded for much longer, need not be integrated.
+# the first rings, so that many neighbours further out, some of them bounded for much longer, need not be integrated.
 _BATCH_SIZE = 128
-# Two refinements into 10 sections reduce the gap between two rings, at most a factor of 1.6, to under 1 %.
+# Two refinements into 10 sections reduce the gap between two rings, a factor of at most 1.6, to less than 1 %.
 _REFINEMENTS = 2
 _SECTIONS = 10
 # Neighbours are integrated for this multiple of the escape time of the given start, but at least for `_SHORTEST_HORIZON`.
@@ -44,13 +44,13 @@ class DivergentStart(OrbitResult):
     x, ordinate
         Position in the plane of initial conditions.
     distance
-        Distance from the given start in that plane, with momenta in units in which the well's time unit is 1.
+        Distance from the given start in that plane, with momenta in units in which the unit of time of the well is 1.
     fate
         Fate of this orbit, k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k.
     reference_fate
         Fate of the given start: another outcome, or a `Fate`.
     outcomes
-        Those of the potential, see `Potential.outcomes`; empty if they are not known.
+        The outcomes of the potential, see `Potential.outcomes`; empty if they are not known.
     """
 
     x: float
@@ -74,7 +74,7 @@ def find_divergent_start(
     furthest: float | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> DivergentStart | None:
-    """Find the nearest neighbour of a start that has another outcome, or any if the start is bounded.
+    """Find the nearest neighbour of a start with a different outcome; if the start is bounded, the nearest with any outcome.
 
     Neighbours lie on rings around the start: 16 directions on rings that grow by a factor of 1.6, or, with an axis h, the two
     directions of constant energy on rings that grow by a factor of 1.06. Between the first ring with a divergent start and the
@@ -144,7 +144,7 @@ def find_divergent_start(
 
 
 def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:
-    """Energy h of the start; ValueError unless it and the coordinates are finite numbers."""
+    """Return the energy h of the start; ValueError unless it and the coordinates are finite numbers."""
     for name, value in zip(plane.axis_names, (x, ordinate), strict=True):
         checked_number(name, value)
     if plane.energy_axis is not None:
@@ -156,7 +156,7 @@ def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> 
 class _Bracket:
     """Bounds of the distance to the nearest divergent start along some directions (m, 2).
 
-    There is none at radius `low`. At radius `high` the start in each direction has its entry of `fates` (m,).
+    There is no divergent start at radius `low`. At radius `high`, `fates` (m,) has the fate of the start in each direction.
     """
 
     low: float
@@ -187,7 +187,7 @@ class _Search:
         self.horizon = min(t_max, max(_SHORTEST_HORIZON, scaled_time))
 
     def find_nearest(self, furthest: float) -> DivergentStart | None:
-        """The nearest divergent start, from the inside out."""
+        """Find the nearest divergent start, from the inside out."""
         directions = _directions(self.plane)
         brackets = (self.find_bracket(radii, directions) for radii in _ring_radii(furthest, len(directions)))
         bracket = next(filter(None, brackets), None)
@@ -201,7 +201,7 @@ class _Search:
         return DivergentStart(x, ordinate, distance, int(bracket.fates[0]), self.centre_fate, self.potential.outcomes_at(self.h))
 
     def find_bracket(self, radii: np.ndarray, directions: np.ndarray) -> _Bracket | None:
-        """The smallest of the increasing radii with a divergent start, if any; the first radius is known to have none."""
+        """Find the smallest of the increasing radii with a divergent start, if any; the first radius is known to have none."""
         fate = self.classify(self.centre + radii[1:, None, None] * directions, self.horizon)[0]
         divergent = (fate >= 1) & (fate != self.centre_fate)
         if not divergent.any():
@@ -211,7 +211,7 @@ class _Search:
         return _Bracket(float(radii[ring]), float(radii[ring + 1]), directions[found], fate[ring, found])
 
     def classify(self, points: np.ndarray, t_max: float) -> tuple[np.ndarray, np.ndarray]:
-        """Fates and escape times (…) of points (…, 2)."""
+        """Return fates and escape times (…) of points (…, 2)."""
         x, ordinate = points.reshape(-1, 2).T
         states = self.plane.states(self.potential, self.h, x, ordinate)
         exists = np.isfinite(states).all(axis=1)
@@ -223,17 +223,17 @@ class _Search:
 
 
 def _directions(plane: Slice) -> np.ndarray:
-    """(m, 2) unit vectors; with an axis h the two directions of constant energy."""
+    """Return (m, 2) unit vectors; with an axis h, the two directions of constant energy."""
     if not all(plane.free_axes):
         along = np.array(plane.free_axes, float)
         return np.array([along, -along])
     angle = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    # Rounded, so that the neighbours of mirror images are exact mirror images.
+    # They are rounded, so that the neighbours of mirror images are exact mirror images.
     return np.round(np.column_stack([np.cos(angle), np.sin(angle)]), 12)
 
 
 def _ring_radii(furthest: float, directions: int) -> Iterator[np.ndarray]:
-    """Batches of logarithmically spaced, increasing radii; each batch begins with the last radius of the previous one."""
+    """Yield batches of logarithmically spaced, increasing radii; each batch begins with the last radius of the previous one."""
     count = int(np.ceil(_STARTS_PER_DECADE / directions * np.log10(furthest / _MIN_DISTANCE))) + 1
     radii = np.concatenate([[0.0], np.geomspace(_MIN_DISTANCE, furthest, count)])
     rings = _BATCH_SIZE // directions

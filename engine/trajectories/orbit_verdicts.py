@@ -1,4 +1,4 @@
-"""The verdict on one orbit, which all texts about it follow: escaped or bounded, until when, and regular or chaotic."""
+"""The verdict on one orbit, on which all texts about it are based: escaped or bounded, until when, and regular or chaotic."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _OF_DEVIATIONS = {indicator.name for indicator in INDICATORS if indicator.of_dev
 @with_former_fields
 @dataclass(frozen=True)
 class OrbitVerdict(OrbitResult):
-    """What is known of one orbit.
+    """The facts known about one orbit.
 
     Attributes
     ----------
@@ -34,17 +34,17 @@ class OrbitVerdict(OrbitResult):
     crossings
         Upward crossings of y = 0 until then.
     evidence
-        Why the orbit is called bounded: ``INTEGRATED`` holds until `t_end` only, ``CLOSED`` for ever, and ``QUASI_PERIODIC`` is
-        evidence of a torus, on which it would stay for ever. ``NONE`` if it is not bounded.
+        The reason why the orbit is called bounded: ``INTEGRATED`` holds only until `t_end`, ``CLOSED`` for ever, and
+        ``QUASI_PERIODIC`` is evidence of a torus, on which the orbit would stay for ever. ``NONE`` if it is not bounded.
     character
-        If the orbit is bounded, what its indicators show until `t_end`: "regular", "chaotic", "no sign of chaos", like a regular
-        orbit but without evidence of a torus, or "undecided". If it is not, "chaotic while inside" or None.
+        If the orbit is bounded, what its indicators show until `t_end`: "regular", "chaotic", "no sign of chaos" (like a regular
+        orbit but without evidence of a torus), or "undecided". If it is not, "chaotic while inside" or None.
     indicators
-        The indicators that decide on the character, with their values; empty if none does.
+        The indicators that determine the character, with their values; empty if none does.
     outcomes
-        Those of the potential, see `Potential.outcomes`; empty if they are not known.
+        The outcomes of the potential, see `Potential.outcomes`; empty if they are not known.
     exits_unknown
-        Why the exits over saddles are not known at its energy, see `Orbit`; empty if they are.
+        The reason why the exits over saddles are not known at its energy, see `Orbit`; empty if they are known.
     findings
         The indicators one by one: SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
         given, the digits of windows. Each has a `name`, its `value` at the end of the orbit, NaN if not available, a
@@ -64,7 +64,7 @@ class OrbitVerdict(OrbitResult):
 
     @property
     def is_bounded_for_ever(self) -> bool:
-        """Whether the orbit can never escape, which its energy proves."""
+        """Whether its energy proves that the orbit can never escape."""
         return self.evidence is Evidence.CLOSED
 
     @property
@@ -73,7 +73,7 @@ class OrbitVerdict(OrbitResult):
         return "not known" if self._may_have_left else name_fate(self.fate, self.outcomes)
 
     def describe(self) -> str:
-        """The verdict in one sentence, and in a second one why exits are not known, where they are not."""
+        """Describe the verdict in one sentence, and in a second sentence why exits are not known, if so."""
         unknown = f" Exits are not known at this energy: {self.exits_unknown}." if self.exits_unknown else ""
         return self._describe_fate() + unknown
 
@@ -94,7 +94,7 @@ class OrbitVerdict(OrbitResult):
                 return f"{self._stays.capitalize()} until t = {time}{self._decided}, with {crossings}."
 
     def summarize(self) -> str:
-        """The verdict in a few words, for lists."""
+        """Return the verdict in a few words, for lists."""
         if self.fate >= 1:
             return f"{name_fate(self.fate, self.outcomes)} at t = {format_time(self.t_end, digits=5)}{self._inside}"
         if self.character is None:
@@ -103,7 +103,7 @@ class OrbitVerdict(OrbitResult):
         return f"{self._stays} {until}, {self.character}"
 
     def headline(self) -> str:
-        """The verdict in a short sentence without its reasons."""
+        """Return the verdict in a short sentence without its reasons."""
         if self.fate >= 1:
             return f"{outcome_of(self.fate, self.outcomes).past} at t = {format_time(self.t_end)}{self._inside}"
         words = self.summarize()
@@ -111,7 +111,7 @@ class OrbitVerdict(OrbitResult):
 
     @property
     def _may_have_left(self) -> bool:
-        """Whether it has not ended, but may have passed an exit that is not known."""
+        """Whether the orbit has not ended, but may have passed an exit that is not known."""
         return self.fate == Fate.BOUNDED and bool(self.exits_unknown)
 
     @property
@@ -120,7 +120,7 @@ class OrbitVerdict(OrbitResult):
 
     @property
     def _decided(self) -> str:
-        """What follows on the character in a sentence on a bounded orbit."""
+        """The part of a sentence on the character of a bounded orbit."""
         match self.character:
             case Verdict.UNDECIDED:
                 return ", undecided whether regular or chaotic"
@@ -131,19 +131,19 @@ class OrbitVerdict(OrbitResult):
 
     @property
     def _inside(self) -> str:
-        """What follows in a sentence on an escape."""
+        """The part of a sentence on the character of an escaping orbit."""
         return f", {self.character}" if self.character is not None else ""
 
 
 @checks_types(orbit=Orbit, digits=(BirkhoffDigits, type(None)))
 def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerdict:
-    """The verdict on an orbit, from its energy, its outcome and its chaos indicators.
+    """Judge an orbit by its energy, its outcome and its chaos indicators.
 
-    A bounded orbit is regular or chaotic if an indicator concludes so and none concludes the opposite.
-    Without either, it shows no sign of chaos until the end if none of its deviation vectors does, and is undecided otherwise.
-    It is bounded for ever if its energy is below every saddle; Birkhoff averages that agree as on an invariant torus are
-    evidence for that in a well at rest (`Potential.tori_are_evidence`), unless another indicator shows chaos. One that escapes is
-    chaotic while inside if an indicator says so.
+    A bounded orbit is regular or chaotic if an indicator concludes so and none concludes the opposite. Otherwise it shows no sign
+    of chaos until the end if none of its deviation vectors does, and is undecided if one does. It is bounded for ever if its
+    energy is below every saddle. Birkhoff averages that agree as on an invariant torus are evidence for that in a well at rest
+    (`Potential.tori_are_evidence`), unless another indicator shows chaos. An escaping orbit is chaotic while inside if an
+    indicator says so.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def _character_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:
 
 
 def _deciding_indicators(indicators: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
-    """The indicators that conclude what the character is, with their values."""
+    """Return the indicators that conclude this character, with their values."""
     deciding = [one for one in indicators if character is not None and one.conclusion is character]
     return ", ".join(f"{one.name} {one.value:.2g}" for one in deciding)
 

@@ -43,7 +43,7 @@ class SampledOrbits(OrbitResult):
     energy
         (n,) h of each orbit.
     outcomes
-        Those of the potential, see `Potential.outcomes`; empty if they are not known.
+        The outcomes of the potential, see `Potential.outcomes`; empty if they are not known.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -61,13 +61,13 @@ class SampledOrbits(OrbitResult):
     held_as: ClassVar = OrbitResult.held_as | {name: name for name in ("t", "x", "y", "px", "py")}
 
     def columns(self) -> dict[str, np.ndarray]:
-        """The outcome and the energy of each orbit."""
+        """Return the outcome and the energy of each orbit."""
         return {name: getattr(self, name) for name in ("fate", "escape_time", "crossings", "energy")}
 
     def to_xarray(self) -> xr.Dataset:
-        """All orbits with the dimensions (orbit, t), or (orbit, sample) if each has times of its own.
+        """Return all orbits with the dimensions (orbit, t), or (orbit, sample) if each has its own times.
 
-        It can be written as NetCDF and Zarr.
+        The dataset can be written as NetCDF and Zarr.
         """
         unit = {"units": "1"}
         are_common = bool((self.t == self.t[0]).all() and (np.diff(self.t[0]) > 0.0).all())
@@ -80,7 +80,7 @@ class SampledOrbits(OrbitResult):
 @shows_progress("orbits")
 @checks_types(potential=Potential, execution=Execution)
 def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: Execution = DEFAULT_EXECUTION) -> SampledOrbits:
-    """Integrate many orbits, of any energies, and give their states at chosen times.
+    """Integrate many orbits, of any energies, and return their states at chosen times.
 
     The states are those of the Taylor series of the steps, without interpolation; fates and escape times are those of
     `classify_orbits`.
@@ -98,7 +98,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
 
     Returns
     -------
-    `SampledOrbits`. `to_xarray` has the dimensions (orbit, t), or (orbit, sample) if each orbit has times of its own.
+    The `SampledOrbits`. `to_xarray` has the dimensions (orbit, t), or (orbit, sample) if each orbit has its own times.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     states, times = _checked_starts(states), checked_array("times", times)
     times = _checked_times(times, len(states), potential)
     units, well = potential.units, potential.in_well_units
-    # Compiled before the threads begin.
+    # The kernels are compiled before the threads begin.
     kernels_of(well)
     futures = [
         execution.submit(_sample_orbit, well, start / units.state, row / units.time)
@@ -140,7 +140,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
 
 
 def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
-    """(4, m) states of one orbit, and its outcome; in units of the well."""
+    """Return (4, m) states of one orbit, and its outcome, in units of the well."""
     curves = exit_curves(potential, float(potential.energy(start)))
     recorded = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION)
     path = np.full((_STATE, times.size), np.nan)
@@ -148,13 +148,13 @@ def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) ->
         reached = int(np.searchsorted(times, recorded.t_end, side="right"))
         path[:, :reached] = sample_path(kernels_of(potential), recorded.steps, times[:reached])
     else:
-        # It starts outside.
+        # This orbit starts outside.
         path[:, times == 0.0] = start[:, None]
     return path, recorded.outcomes
 
 
 def _join(potential: Potential, states: np.ndarray, times: np.ndarray, rows: list[Any]) -> SampledOrbits:
-    """The results of all orbits in units of the well."""
+    """Join the results of all orbits, in units of the well."""
     paths = np.array([path for path, _ in rows]).reshape(len(rows), _STATE, times.shape[1])
     ends = (np.concatenate([getattr(outcome, name) for _, outcome in rows]) for name in ("fate", "escape_time", "crossings"))
     arrays = (times, *paths.transpose(1, 0, 2), *ends, np.atleast_1d(potential.energy(states)))
@@ -172,7 +172,7 @@ def _checked_starts(states: Any) -> np.ndarray:
 
 
 def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.ndarray:
-    """(n, m) times."""
+    """Return (n, m) times."""
     rows = np.array(np.broadcast_to(times, (count, times.size))) if times.ndim == 1 else times
     has_shape = rows.ndim == 2 and len(rows) == count and rows.size > 0
     if not has_shape:

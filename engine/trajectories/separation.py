@@ -18,7 +18,7 @@ from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH, TIME
 
 LONGEST_SEPARATION = 2000.0
-"""Longest time over which two orbits are compared, in units of the well: neighbours in a chaotic sea separate long before."""
+"""Longest time over which two orbits are compared, in units of the well; neighbours in a chaotic sea separate much earlier."""
 
 _SAMPLES = 2000
 
@@ -32,8 +32,8 @@ class Separation(RecordedResult):
     t
         (n,) times, evenly spaced from 0.
     distance
-        (n,) √(Δx² + Δy² + Δpx² + Δpy²), with momenta in units in which the well's time unit is 1; 0 where both states are equal
-        to the last digit.
+        (n,) √(Δx² + Δy² + Δpx² + Δpy²), with momenta in units in which the unit of time of the well is 1; 0 where both states are
+        equal to the last digit.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -52,7 +52,7 @@ def compute_separation(
 ) -> Separation:
     """Compute the distance of two orbits at 2000 evenly spaced times.
 
-    Both states come from the dense output of their own integration at the same times, so small distances are accurate to the
+    Both states come from the dense output of their own integration at the same times, so that small distances are accurate to the
     rounding of the states, about 1e-16.
 
     Parameters

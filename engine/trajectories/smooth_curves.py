@@ -1,4 +1,4 @@
-"""Smooth curves through the passages of the orbits of a tube: how far apart their points are, and where there must be more."""
+"""Smooth curves through the passages of the orbits of a tube: the spacing of their points, and where more points are needed."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ SPACING = 1 / 200
 # Curves in a window extend beyond its edges by this share of its sides.
 _WINDOW_MARGIN = 0.1
 
-# Largest distance of a point from the chord of its neighbours, and how much of it thinning may remove, as shares of the spacing.
+# Largest distance of a point from the chord of its neighbours, and the part of it that thinning may remove, as shares of the
+# spacing.
 _MAX_SAGITTA, _THINNING_TOLERANCE = 0.05, 0.025
 # Largest difference in passage time between neighbouring points of an arc.
 _MAX_TIME_GAP = 0.3
-# Orbits of a tube have phases from 0 to 1: the number of first intervals, and the smallest widths to which intervals are refined,
-# each for all images before the next. Below the last width rounding errors of the start states are visible.
+# Orbits of a tube have phases from 0 to 1. Initial number of intervals, and smallest widths to which intervals are refined, each
+# for all images before the next. Below the last width, rounding errors of the start states are visible.
 _FIRST_INTERVALS = 512
 _MIN_WIDTHS = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 _MAX_PARTS = 8
@@ -42,7 +43,7 @@ class PointSpacing:
 
     @classmethod
     def for_window(cls, whole: Window, window: Window | None) -> PointSpacing:
-        """The spacing for the whole interior, or for a window in it, both on the plane of the stable manifold."""
+        """Return the spacing for the whole interior, or for a window in it, both on the plane of the stable manifold."""
         coarse = SPACING * (whole.x_high - whole.x_low)
         if window is None:
             return cls(coarse, coarse)
@@ -52,7 +53,7 @@ class PointSpacing:
         return cls(coarse, fine, low - _WINDOW_MARGIN * sides, high + _WINDOW_MARGIN * sides)
 
     def between(self, points: np.ndarray) -> np.ndarray:
-        """(n − 1,) largest distance allowed between neighbours of the points (n, 2)."""
+        """Return (n − 1,) largest allowed distances between neighbours of the points (n, 2)."""
         if self.low is None or self.high is None:
             return np.full(len(points) - 1, self.fine)
         # Between two points, a curve may bulge by as much as their distance.
@@ -63,7 +64,7 @@ class PointSpacing:
         return spacing
 
     def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
-        """The (m, 2) lines of a piece within the window, without points that their neighbours imply."""
+        """Yield the (m, 2) lines of a piece within the window, without points that follow from their neighbours."""
         import shapely
 
         line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
@@ -75,7 +76,7 @@ class PointSpacing:
 def refine_passages(
     find_passages: Callable[[np.ndarray], np.ndarray], count: int, spacing: PointSpacing, max_orbits: int
 ) -> np.ndarray:
-    """(n, count, 3) passages of orbits of rising phase, refined until curves are smooth or `max_orbits` have been added."""
+    """Return (n, count, 3) passages of orbits of rising phase, refined until curves are smooth or `max_orbits` are added."""
     phases = np.linspace(0.0, 1.0, _FIRST_INTERVALS + 1)
     passages = find_passages(phases)
     for min_width, passage in itertools.product(_MIN_WIDTHS, range(count)):
@@ -92,7 +93,7 @@ def refine_passages(
 
 
 def _subdivide(phases: np.ndarray, width: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For each new phase, the interval it lies in and its value, when intervals are split into equal `parts` (n,)."""
+    """Return for each new phase its interval and its value, if intervals are split into equal `parts` (n,)."""
     interval = np.repeat(np.arange(parts.size), parts - 1)
     position = np.arange(interval.size) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1) + 1
     return interval, phases[interval] + width[interval] * position / parts[interval]
@@ -107,7 +108,7 @@ def _affordable(parts: np.ndarray, width: np.ndarray, min_width: float, max_orbi
 
 
 def _parts_needed(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
-    """(n − 1,) number of parts into which to split the intervals between neighbours of (n, 3) x, px, time; 1 to keep one."""
+    """Return (n − 1,) the number of parts into which to split the intervals between (n, 3) x, px, time; 1 keeps an interval."""
     allowed = spacing.between(points[:, :2])
     exists = np.isfinite(points[:, 0])
     step = np.diff(points, axis=0)
@@ -121,7 +122,7 @@ def _parts_needed(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
 
 
 def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Distance of each inner point from the chord of its neighbours; where the curve reverses, from the farther neighbour.
+    """Return the distance of each inner point from the chord of its neighbours; from the farther one where the curve reverses.
 
     step, length: (n − 1, 2) and (n − 1,) differences between neighbouring points and their lengths; NaN distances become 0.
     """
@@ -134,7 +135,7 @@ def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
 
 
 def split_curve(curve: np.ndarray, spacing: PointSpacing, closed: bool) -> list[np.ndarray]:
-    """The (m, 2) pieces, m ≥ 2, of a curve (n, 3) between its gaps; on a closed curve the last piece is joined to the first."""
+    """Return the (m, 2) pieces, m ≥ 2, of a curve (n, 3) between its gaps; a closed curve's last and first piece are joined."""
     step = np.diff(curve, axis=0)
     short = np.hypot(step[:, 0], step[:, 1]) <= 2.0 * spacing.between(curve[:, :2])
     joined = short & (np.abs(step[:, 2]) <= 2.0 * _MAX_TIME_GAP)

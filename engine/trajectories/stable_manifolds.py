@@ -82,11 +82,11 @@ class StableManifolds(Result):
     held_as: ClassVar = {"arcs": "arc"}
 
     def provenance(self) -> dict[str, Any]:
-        """The potential, the energy, the slice, the integrator and the version."""
+        """Return the potential, the energy, the slice, the integrator and the version."""
         return describe_run(self.potential, energy=self.energy, plane=SECTION.title)
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """All points, with the number of their arc from 1, its channel and its image."""
+        """Return all points, with the number of their arc from 1, its channel and its image."""
         labels = [(number, arc.channel, arc.image) for number, arc in enumerate(self.arcs, 1)]
         sizes = [arc.x.size for arc in self.arcs]
         points = (np.concatenate([np.empty(0), *(getattr(arc, name) for arc in self.arcs)]) for name in ("x", "px"))
@@ -95,7 +95,7 @@ class StableManifolds(Result):
 
     @staticmethod
     def arcs_of(columns: Mapping[str, np.ndarray]) -> tuple[ManifoldArc, ...]:
-        """The arcs of such `columns`."""
+        """Return the arcs stored in the result of `columns`."""
         starts = np.flatnonzero(np.diff(columns["arc"], prepend=0))
         parts = [np.split(columns[name], starts[1:]) for name in ("channel", "image", "x", "px")] if starts.size else [[]] * 4
         return tuple(
@@ -104,7 +104,7 @@ class StableManifolds(Result):
         )
 
     def describe(self) -> str:
-        """The numbers of arcs and points in one sentence."""
+        """Return the numbers of arcs and points in one sentence."""
         images = sorted({arc.image for arc in self.arcs})
         shown = f"images {', '.join(map(str, images))}" if len(images) > 1 else f"image {images[0]}" if images else "no image"
         points = sum(arc.x.size for arc in self.arcs)
@@ -149,9 +149,9 @@ def find_stable_manifolds(
 
     Returns
     -------
-    `StableManifolds`; no arcs at or below the escape energy. An arc ends where the tube, backward in time, leaves through an
-    exit: it winds towards another manifold's section in infinitely many turns, of which the first few are given. Points lie on
-    the manifold to 1e-10.
+    The `StableManifolds`, without arcs at or below the escape energy. An arc ends where the tube, backward in time, leaves
+    through an exit. It then winds infinitely often around the section of another manifold, and only the first few turns are
+    given. Points lie on the manifold to 1e-10.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def find_stable_manifolds(
     mirror = potential.well.mirror_in_x and window is None
     image = potential.well.mirror_numbers(energy) if mirror else np.arange(potential.channels + 1)
     firsts = [channel for channel in orbits if channel <= image[channel]]
-    # Each thread waits for the tiles of its channel most of the time.
+    # Each thread mostly waits for the tiles of its channel.
     with ThreadPoolExecutor(max(len(firsts), 1)) as threads:
         found = threads.map(lambda channel: _find_arcs(orbits[channel], images, spacing, execution), firsts)
         arcs = dict(zip(firsts, found, strict=True))
@@ -193,19 +193,19 @@ def find_stable_manifolds(
 
 
 def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], image: int) -> list[ManifoldArc]:
-    """The arcs of a channel, or the images of those of its mirror channel."""
+    """Return the arcs of a channel, or the mirror images of the arcs of its mirror channel."""
     if channel in arcs:
         return arcs[channel][0]
     return [_mirrored(arc, channel) for arc in arcs[image][0]]
 
 
 def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
-    """The image under x → −x, which maps (x, px) to (−x, −px)."""
+    """Return the image under x → −x, which maps (x, px) to (−x, −px)."""
     return ManifoldArc(channel, arc.image, read_only(-arc.x), read_only(-arc.px))
 
 
 def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, execution: Execution) -> tuple[list[ManifoldArc], bool]:
-    """The arcs of one channel, and whether any of them is incomplete."""
+    """Return the arcs of one channel, and whether any of them is incomplete."""
     try:
         tube = UnstableManifold.from_orbit(orbit)
     except ValueError as error:
@@ -227,6 +227,6 @@ def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, executi
 
 
 def _arc(channel: int, image: int, line: np.ndarray) -> ManifoldArc:
-    """The arc of the stable manifold given by a line (m, 2) of the unstable one: its momenta are reversed."""
+    """Return the arc of the stable manifold that follows from a line (m, 2) of the unstable one by reversing its momenta."""
     x, px = line.T
     return ManifoldArc(channel, image, read_only(x.copy()), read_only(-px))

@@ -27,7 +27,7 @@ from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
 
 MAX_ORBIT_TIME = 1e7
-"""Largest t_max of `integrate_orbit`, whose samples then take 3 GB."""
+"""Largest t_max of `integrate_orbit`; its samples then take 3 GB."""
 
 # In units of the well.
 _SAMPLE_INTERVAL = 0.02
@@ -40,7 +40,7 @@ _MAX_SAMPLES = 500_000
 class Orbit(OrbitResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
 
-    An orbit at rest on a saddle at exactly its energy is bounded; it ends where rounding carries it off the saddle.
+    An orbit exactly at rest on a saddle is bounded; it ends where rounding carries it off the saddle.
 
     Attributes
     ----------
@@ -68,10 +68,10 @@ class Orbit(OrbitResult):
     time_unit
         Unit of time of the well before rounding, 1/ω, in which the chaos indicators measure the length of an orbit.
     potential
-        The `Potential`; None for an orbit that was not integrated here, which has no picture of its path.
+        The `Potential`; None for an orbit that was not integrated here, whose path cannot be drawn.
     exits_unknown
-        Why the exits over saddles are not known at its energy; empty if they are. Without them no fate is an exit, and
-        `Fate.BOUNDED` only means that the orbit has no other outcome by t_max.
+        The reason why the exits over saddles are not known at its energy; empty if they are known. If they are not, no fate is an
+        exit, and `Fate.BOUNDED` only means that the orbit has no other outcome by t_max.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -95,24 +95,24 @@ class Orbit(OrbitResult):
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:  # type: ignore[override]
-        """Those of the potential; empty without it."""
+        """The outcomes of the potential; empty without a potential."""
         return () if self.potential is None else self.potential.outcomes_at(self.energy)
 
     @cached_property
     def digits_of_halves(self) -> float:
-        """The digits, 0 to 16, to which Birkhoff averages over both halves of the orbit agree: many on a torus."""
+        """The digits, 0 to 16, to which Birkhoff averages over both halves of the orbit agree; many on a torus."""
         return compare_halves(self.x, self.y)
 
     def numbers(self) -> dict[str, Any]:
-        """The scalars by name; why exits are unknown where they are."""
+        """Return the scalars by name, with the reason if exits are not known."""
         return {name: value for name, value in super().numbers().items() if name != "exits_unknown" or value}
 
     def find_section_crossings(self) -> np.ndarray:
-        """(n, 2) x and px at the upward crossings of y = 0, dimensionless, in order of time; n equals `crossings`.
+        """Return (n, 2) x and px at the upward crossings of y = 0, dimensionless, in order of time; n equals `crossings`.
 
-        The start is not counted. Between two samples on either side of y = 0 the Taylor series of the first is used; where steps
-        are shorter than the distance of the samples, as near a body, that of the step. Raises ValueError if the orbit has no
-        potential.
+        The start is not counted. Between two samples on different sides of y = 0 the Taylor series of the first is used. If steps
+        are shorter than the distance of the samples, as near a body, the series of the step is used. Raises ValueError if the
+        orbit has no potential.
 
         Examples
         --------
@@ -133,7 +133,7 @@ class Orbit(OrbitResult):
         return find_crossings(kernels, path, every_time) * [units.length, units.momentum]
 
     def compute_birkhoff_digits(self, *, execution: Execution = DEFAULT_EXECUTION) -> BirkhoffDigits:
-        """To how many digits averages over two consecutive windows of the orbit agree, for windows up to half its length.
+        """Compute the digits to which averages over two consecutive windows of the orbit agree, for windows to half its length.
 
         The computation runs in this thread. Raises CancelledError if it is cancelled, and ValueError if the orbit has no
         potential.
@@ -162,13 +162,13 @@ class Orbit(OrbitResult):
 
 @checks_types(potential=Potential, execution=Execution)
 def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, execution: Execution = DEFAULT_EXECUTION) -> Orbit:
-    """Integrate one orbit until it escapes or `t_max`.
+    """Integrate one orbit until it escapes or up to `t_max`.
 
     Fate, escape time and crossings are identical to those of a map pixel with the same start. The deviation vectors obey eq. 4 of
     Zotos (2014), and SALI is its eq. 9. The growth of the first vector gives the finite-time Lyapunov exponent (Benettin,
     Galgani, Giorgilli & Strelcyn 1980, Meccanica 15, 9; Skokos 2010, Lect. Notes Phys. 790, 63). The deviation vectors have no
-    influence on the integration steps. Where the exits are not defined at its energy, see `find_lyapunov_orbits`, the orbit is
-    followed without them, and `Orbit.exits_unknown` says why.
+    influence on the integration steps. If the exits are not defined at its energy, see `find_lyapunov_orbits`, the orbit is
+    integrated without them, and `Orbit.exits_unknown` has the reason.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
 
 
 def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
-    """`integrate_orbit` in units of the well."""
+    """Apply `integrate_orbit` in units of the well."""
     energy = float(potential.energy(start))
     curves, exits_unknown = exits_of_orbit(potential, energy)
     recorded = record_orbit(potential, start, curves, t_max, execution)
@@ -226,7 +226,7 @@ def _find_evidence(potential: Potential, energy: float, fate: int) -> Evidence:
 def _sample_orbit(
     potential: Potential, start: np.ndarray, recorded: OrbitSteps, execution: Execution
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from 0 to the end, all in units of the well."""
+    """Return times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from 0 to the end, all in units of the well."""
     steps, t_end = recorded.steps, recorded.t_end
     if t_end == 0.0:
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
@@ -245,7 +245,7 @@ def _sample_orbit(
 
 
 def _starts_of_short_steps(times: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """The starts (m,) of the steps in those intervals between samples that contain whole steps, as near a body.
+    """Return the starts (m,) of the steps in those intervals between samples that contain whole steps, as near a body.
 
     Deviation vectors are carried over each interval by one series, which is valid for about one step.
     """
@@ -255,5 +255,5 @@ def _starts_of_short_steps(times: np.ndarray, starts: np.ndarray) -> np.ndarray:
 
 
 def _sample_count(t_end: float, steps: int) -> int:
-    """Number of samples: at least one per integration step, and more for short orbits."""
+    """Return the number of samples: at least one per integration step, and more for short orbits."""
     return max(int(np.clip(t_end / _SAMPLE_INTERVAL, _MIN_SAMPLES, _MAX_SAMPLES)), steps) + 1

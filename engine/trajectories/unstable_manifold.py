@@ -18,15 +18,17 @@ from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Largest displacement from the Lyapunov orbit at which orbits of the tube start. The distance of such a start from the manifold,
-# by the time the tube has grown to the size of the well, scales with its third power: 4e-8 for 1e-2, 3e-11 for 1e-3, so 3e-13.
+# Largest displacement from the Lyapunov orbit at which orbits of the tube start. When the tube has grown to the size of the well,
+# the distance of such an orbit from the manifold scales with the third power of the displacement: 4e-8 for 1e-2, 3e-11 for 1e-3,
+# and thus 3e-13 for this one.
 _MAX_DISPLACEMENT = 2e-4
-# Between two section passages an orbit may stay near another Lyapunov orbit; longer stays than this many periods are not needed.
+# Between two section passages an orbit may stay near another Lyapunov orbit; stays longer than this many periods are not needed.
 _MAX_PERIODS_PER_PASSAGE = 12.0
-# Lyapunov orbits over a saddle have multipliers of 38 and more; an orbit with multiplier 1 is about to become stable.
+# Lyapunov orbits over a saddle have multipliers of 38 and more; with a multiplier near 1, an orbit is about to become stable.
 _MIN_MULTIPLIER = 1.5
-# A Lyapunov orbit that crosses y = 0 is itself a point of the section, from which one endless curve starts. Its first image ends
-# where a displacement that kept growing by the multiplier would reach this multiple of the saddle's distance from the origin.
+# A Lyapunov orbit that crosses y = 0 is itself a point of the section, from which one infinite curve starts. Its first image ends
+# where a displacement that continued to grow by the multiplier would reach this multiple of the distance of the saddle from the
+# origin.
 _FIRST_IMAGE_END = 6.0
 # A tile takes about 0.3 ms.
 _TILES_PER_TASK = 16
@@ -45,7 +47,7 @@ class UnstableManifold:
     orbit
         The Lyapunov orbit of a potential in units of its well.
     direction
-        (4,) unit vector in phase space at the orbit's first point, where it is at rest: the unstable direction, inward.
+        (4,) unit vector in phase space at the first point of the orbit, where it is at rest: the unstable direction, inward.
     multiplier
         Unstable eigenvalue of the monodromy matrix, above 1.
     min_displacement, max_displacement
@@ -95,7 +97,7 @@ class UnstableManifold:
         return self.orbit.potential
 
     def _displacement_after_period(self, left_eigenvector: np.ndarray) -> float:
-        """The displacement that the orbit of phase 0 has after one period; nonlinear terms make it differ from the linear one.
+        """Return the displacement of the orbit of phase 0 after one period, which nonlinear terms change.
 
         The product of left_eigenvector (4,), which belongs to the multiplier, with a displacement is proportional to the
         unstable component.
@@ -124,7 +126,7 @@ class UnstableManifold:
 
         Returns
         -------
-        (n, count, 3) x, px and time; NaN for missing passages. Time 0 is when the displacement, growing exponentially at its
+        (n, count, 3) x, px and time; NaN for missing passages. At time 0 the displacement, if it grew exponentially at its
         initial rate, would be 1, so that phases 0 and 1 give the same times.
 
         Raises
@@ -145,12 +147,12 @@ class UnstableManifold:
         return passages
 
     def displacements(self, phases: np.ndarray) -> np.ndarray:
-        """(n,) displacements of the orbits with phases (n,), in geometric progression."""
+        """Return (n,) displacements of the orbits with phases (n,), in geometric progression."""
         displacements: np.ndarray = self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
         return displacements
 
     def start_states(self, displacements: np.ndarray) -> np.ndarray:
-        """(n, 4) states displaced by (n,) from the Lyapunov orbit's point of rest, projected back onto its energy."""
+        """Return (n, 4) states displaced by (n,) from the Lyapunov orbit's point of rest, projected back onto its energy."""
         states: np.ndarray = self.orbit.start + displacements[:, None] * self.direction
         for _ in range(3):
             gradient = np.column_stack([*self.potential.gradient(states[:, 0], states[:, 1]), states[:, 2:]])
@@ -160,7 +162,7 @@ class UnstableManifold:
 
 
 def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:
-    """The eigenvalue of largest modulus and its unit eigenvector; real parts."""
+    """Return the eigenvalue of largest modulus and its unit eigenvector, as real parts."""
     values, vectors = np.linalg.eig(matrix)
     leading = int(np.argmax(np.abs(values)))
     return float(values[leading].real), vectors[:, leading].real.copy()
@@ -169,7 +171,7 @@ def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:
 def _passages(
     potential: Potential, tile: np.ndarray, count: int, curves: np.ndarray, gates: np.ndarray, duration: float
 ) -> np.ndarray:
-    """(lanes, count, 3) passages of the orbits in a tile (4, lanes)."""
+    """Return (lanes, count, 3) passages of the orbits in a tile (4, lanes)."""
     passages = np.full((tile.shape[1], count, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
     kernels_of(potential).find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, found)

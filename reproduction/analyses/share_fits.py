@@ -1,4 +1,4 @@
-"""Fits of the forms of Zotos (2014) to shares of escapes against energy, with intervals; deviation of a curve from shares."""
+"""Fits of the forms of Zotos (2014) to shares of escapes against energy, with intervals, and deviations of curves from shares."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SATURATED = 0.01
 _MIN_UNSATURATED = 3
 # Tolerance of the least-squares solver, at the level of rounding.
 _TOLERANCE = 1e-14
-# An energy with a leverage above this determines a parameter alone and leaves no residual.
+# An energy with a leverage above this determines a parameter alone and has no residual.
 _MAX_LEVERAGE = 1.0 - 1e-9
 
 
@@ -126,9 +126,9 @@ def measure_deviation(curve: Callable[[Any], Any], h: np.ndarray, shares: np.nda
 def _fit(
     curve: Callable[[np.ndarray], np.ndarray], guess: np.ndarray, degree: int, h: np.ndarray, shares: np.ndarray
 ) -> tuple[list[float], np.ndarray]:
-    """Fit `curve` of a polynomial in h to the shares: coefficients, lowest power first, and half widths of their intervals.
+    """Fit `curve` of a polynomial in h to shares; return coefficients, lowest power first, and half widths of their intervals.
 
-    It starts from the polynomial closest to `guess` (m,).
+    The fit begins with the polynomial closest to `guess` (m,).
     """
     powers = np.vander(h, degree + 1, increasing=True)
     found = optimize.least_squares(
@@ -139,7 +139,7 @@ def _fit(
 
 
 def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray) -> np.ndarray:
-    """(p,) half widths of the intervals of the parameters with Jacobian J (m, p).
+    """Return (p,) half widths of the intervals of the parameters with Jacobian J (m, p).
 
     Their covariance is the sandwich (JᵀJ)⁻¹ Jᵀ diag(r² / (1 − leverage)²) J (JᵀJ)⁻¹.
     """

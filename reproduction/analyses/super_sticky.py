@@ -20,8 +20,8 @@ from engine.results import RegularityMap
 class SuperStickySearch:
     """The chaotic bounded starts of a map, integrated beyond its t_max.
 
-    The starts are ordered row by row. If the map is mirror symmetric, both mirror images are listed but only one of each pair
-    was integrated: the other escapes at the same time through the opposite channel.
+    The starts are ordered row by row. If the map is mirror symmetric, both starts of a mirror pair are listed, but only one is
+    integrated: the other escapes at the same time through the opposite exit.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class SuperStickySearch:
         return in_order
 
     def describe(self) -> str:
-        """The result in two sentences."""
+        """Describe the result in two sentences."""
         if not self.fate.size:
             return f"None of the {self.bounded} bounded starts is chaotic."
         counted = ", both mirror images counted" if self.images > 1 else ""
@@ -103,8 +103,8 @@ def find_super_sticky_orbits(
 
     Returns
     -------
-    `SuperStickySearch`, bit-identical for every executor. At such times rounding errors have grown to order 1: which orbit
-    escapes when is arbitrary, but how many escape is not.
+    `SuperStickySearch`, bit-identical for every executor. After such long times rounding errors have grown to order 1: rounding
+    determines which orbit escapes when, but not how many escape.
 
     Raises
     ------

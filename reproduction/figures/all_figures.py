@@ -39,7 +39,7 @@ class FigureEntry:
     draw: Callable[[MapCache], Figure]
 
     def files(self, cache: MapCache) -> dict[str, bytes]:
-        """Draw the figure and return the content of its files by file name, with caption and quality in their metadata."""
+        """Draw the figure; return the content of its files by file name, with caption and quality in their metadata."""
         figure, quality = self.draw(cache), cache.quality
         keywords = f"{quality.name} quality, {quality.resolution} x {quality.resolution} starts, t_max {quality.t_max:g}"
         facts = {"Title": self.name, "Description": self.caption, "Comment": keywords}

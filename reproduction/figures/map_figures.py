@@ -30,7 +30,7 @@ _SIDE = 3
 
 
 def draw_nine_maps(case: str, cache: MapCache, *, plane: Plane, picture: str) -> Figure:
-    """One picture of `TITLES` at the paper's nine energies, all in one window."""
+    """Draw one picture of `TITLES` at the paper's nine energies, all in one window."""
     frames = [cache.map(case, plane, energy) for energy in nine_energies(case)]
     shown, times = _common_window(frames), common_scale(frames)
     title = f"Case {case}, {plane_label(plane)} plane: {TITLES[picture]}"
@@ -50,7 +50,7 @@ def draw_nine_maps(case: str, cache: MapCache, *, plane: Plane, picture: str) ->
 
 
 def draw_energy_plane(case: str, cache: MapCache) -> Figure:
-    """Basins on (x, h)."""
+    """Draw the basins on (x, h)."""
     frame = cache.map(case, Plane.X_H, plane_energies(case))
     figure = new_figure(replace(SCREEN, width=19.3), 16.8, f"Case {case}, {plane_label(Plane.X_H)} plane: basins of escape")
     axes = figure.subplots()
@@ -71,8 +71,8 @@ def draw_map_panel(
 ) -> None:
     """Draw a map with its limiting curve and exits.
 
-    Starts outside are white like forbidden ones, so that panels of different windows look alike; in the picture of regular and
-    chaotic orbits so are escaping starts.
+    Starts outside are white like forbidden ones, so that panels with different windows look alike. In the picture of regular and
+    chaotic orbits, escaping starts are white as well.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def draw_map_panel(
     shown
         Window of the panel.
     times
-        Upper end of the scale of escape times; None for the one of the map.
+        Upper end of the scale of escape times; None for that of the map.
     analyses
         Regularity of bounded orbits, if the picture shows it.
     equal

@@ -1,4 +1,4 @@
-"""The potential: equipotentials, channels with Lyapunov orbits, and an orbit through each channel."""
+"""The potential: equipotentials, exits with Lyapunov orbits, and an orbit through each exit."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LABEL_PLACE = 1.22
 
 
 def draw_potential(case: str, cache: MapCache) -> Figure:
-    """Three panels with the same window."""
+    """Draw three panels with the same window."""
     potential, energy = CASES[case], CHANNEL_ENERGIES[case]
     window = enlarge(default_window(potential, Plane.X_Y, energy))
     figure = new_figure(
@@ -74,7 +74,7 @@ def _draw_escapes(axes: Axes, cache: MapCache, case: str, window: Window) -> Non
 
 
 def _draw_arrow(axes: Axes, x: float, y: float, px: float, py: float, colour: str, window: Window) -> None:
-    """Arrow at the end of an orbit, in its direction."""
+    """Draw an arrow at the end of an orbit, in its direction."""
     length = 0.05 * (window.x_high - window.x_low) / np.hypot(px, py)
     arrow = {"arrowstyle": "-|>,head_width=0.25,head_length=0.5", "color": colour, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (x + length * px, y + length * py), (x, y), arrowprops=arrow)

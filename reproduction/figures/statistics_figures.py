@@ -1,4 +1,4 @@
-"""Statistics of the paper: shares against energy, escapes by number of crossings, and starts left after a time."""
+"""Statistics of the paper: shares against energy, escapes by number of crossings, and starts that remain after a time."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from reproduction.notation import plane_label
 from reproduction.paper_ranges import nine_energies, three_energies
 
 MOST_CROSSINGS = 40
-"""Upper end of the axis of crossings; only few orbits escape later."""
+"""Upper end of the axis of crossings; few orbits escape later."""
 
 FEWEST_REMAINING = 50
-"""Minimal number of remaining starts for which p_n is drawn; with fewer it depends on the grid."""
+"""p_n is drawn if at least this many starts remain; with fewer it depends on the grid."""
 
-# Part of the colour scale of escape times that differs from white and black.
+# Part of the colour scale of escape times that contrasts with white and black.
 _LIGHTEST, _DARKEST = 50, 255
 _SAMPLES = 400
 
 
 def draw_statistics(case: str, cache: MapCache) -> Figure:
-    """Ne/N0 and Nde/N0 against h with the paper's fits and new ones; dN_n/N0 and p_n against n."""
+    """Draw Ne/N0 and Nde/N0 against h with the paper's fits and new ones, and dN_n/N0 and p_n against n."""
     figure = new_figure(SCREEN, 21.8, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
     table = cache.curves(case, Plane.X_PX)
@@ -63,7 +63,7 @@ def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: ShareCurve,
 
 
 def _draw_crossings(shares: Axes, chances: Axes, statistics: Mapping[float, EscapeStatistics]) -> None:
-    """Both panels against n, one line per energy; lower energies are darker."""
+    """Draw both panels against n, one line per energy; lower energies are darker."""
     places = np.linspace(_DARKEST, _LIGHTEST, len(statistics)).astype(int)
     for (energy, counted), place in zip(statistics.items(), places, strict=True):
         style: dict[str, Any] = {"color": PAPER.escape_time[place], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
@@ -83,7 +83,7 @@ def _draw_crossings(shares: Axes, chances: Axes, statistics: Mapping[float, Esca
 
 
 def draw_percentages(case: str, cache: MapCache) -> Figure:
-    """Percentages of the interior starts on (x, y) and (x, px)."""
+    """Draw percentages of the interior starts on (x, y) and (x, px)."""
     figure = new_figure(SCREEN, 11.7, f"Case {case}: percentages of bounded and escaping starts")
     panels = list(figure.subplots(1, 2, sharey=True))
     planes = (Plane.X_Y, Plane.X_PX)
@@ -97,7 +97,7 @@ def draw_percentages(case: str, cache: MapCache) -> Figure:
 
 
 def draw_survival(case: str, cache: MapCache) -> Figure:
-    """One panel per energy, on (x, px)."""
+    """Draw one panel per energy, on (x, px)."""
     energies = three_energies(case)
     figure = new_figure(
         replace(SCREEN, width=32.0), 11.7, f"Case {case}, {plane_label(Plane.X_PX)} plane: share of the starts not yet escaped"

@@ -30,20 +30,20 @@ from reproduction.notation import plane_label
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 
 LONGEST_DRAWN = 4e6
-"""Latest escape time of a drawn orbit; the integration takes a second per 1e5 time units."""
+"""Latest escape time of a drawn orbit; integration takes a second per 1e5 time units."""
 
-# Intervals of time in each panel for which the minimum and the maximum of R² are drawn, and samples in each. R² oscillates with
-# a period of about π: the samples of an interval meet all its phases.
+# Number of time intervals in each panel for which the minimum and the maximum of R² are drawn, and of samples in each. R²
+# oscillates with a period of about π, so the samples of an interval cover all its phases.
 _INTERVALS, _SAMPLES = 1000, 1000
-# Share of the time that the second panel shows, before the escape.
+# Last part of the time before the escape that the second panel shows, as a share.
 _LAST = 0.01
 _TIME_UNIT = 1e5
-# Upper end of the axis of R² in units of its value at the exits; leaves room for the legend.
+# Upper end of the axis of R² in units of its value at the exits; it leaves room for the legend.
 _ABOVE = 1.4
 
 
 def draw_characters(cache: MapCache) -> Figure:
-    """Bounded orbits on (x, px): regular cyan, chaotic magenta, escaping white."""
+    """Draw bounded orbits on (x, px): regular cyan, chaotic magenta, escaping white."""
     frame = cache.map(STICKY_CASE, Plane.X_PX, STICKY_ENERGY)
     regularity = cache.regularity(frame)
     title = f"Case {STICKY_CASE}, {plane_label(Plane.X_PX)} plane, $h = {STICKY_ENERGY}$: bounded orbits"
@@ -55,7 +55,7 @@ def draw_characters(cache: MapCache) -> Figure:
 
 
 def draw_super_sticky(cache: MapCache) -> Figure:
-    """R²(t) of an orbit that escapes long after the paper's 1e5 time units: the whole orbit, and its end."""
+    """Draw R²(t) of an orbit that escapes long after the paper's 1e5 time units: the whole orbit, and its end."""
     search = cache.super_sticky()
     place = find_shown(search)
     figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, place)}")
@@ -75,7 +75,7 @@ def draw_super_sticky(cache: MapCache) -> Figure:
 
 
 def find_shown(search: SuperStickySearch) -> int | None:
-    """Index of the orbit to draw: the last to escape by `LONGEST_DRAWN`, else the first to escape; None if none escapes."""
+    """Index of the orbit to draw: the last that escapes by `LONGEST_DRAWN`, else the first that escapes; None if none escapes."""
     escapers = search.escapers
     if not escapers.size:
         return None

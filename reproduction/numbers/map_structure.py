@@ -7,22 +7,22 @@ import numpy as np
 from engine import EscapeMap, Fate, compute_wada_test
 
 BOUNDARY_PIXELS = 2
-"""Largest distance of a start on a boundary from the boundaries of all basins, in pixels, that counts as next to them."""
+"""A start on a boundary counts as next to all basins if no boundary of a basin is farther away than this, in pixels."""
 
 # A start and its eight neighbours.
 _NEIGHBOURHOOD = (3, 3)
 
 
 def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
-    """Percentage of the starts that escape through the same channel as their eight neighbours.
+    """Percentage of the starts that escape through the same exit as their eight neighbours.
 
     Parameters
     ----------
     frame
         A complete map.
     count_outside
-        Whether starts outside count as escaped through the channel they lie in. Otherwise they count neither as starts nor as
-        neighbours.
+        Whether starts outside count as escaped through the exit beyond which they lie. Otherwise they count neither as starts nor
+        as neighbours.
     """
     from scipy import ndimage
 
@@ -34,9 +34,9 @@ def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
 
 
 def share_next_to_all_basins(frame: EscapeMap) -> float:
-    """Percentage of the starts on a basin boundary within `BOUNDARY_PIXELS` of the boundary of each basin; 100 if it is Wada.
+    """Percentage of the starts on a basin boundary within `BOUNDARY_PIXELS` of the boundary of each basin; 100 for Wada basins.
 
-    0 if the basins do not touch, NaN for fewer than three basins.
+    The value is 0 if the basins do not touch, and NaN for fewer than three basins.
     """
     test = compute_wada_test(frame)
     if not test.is_applicable:
@@ -45,9 +45,9 @@ def share_next_to_all_basins(frame: EscapeMap) -> float:
 
 
 def orders_of_escape_times(frame: EscapeMap) -> float:
-    """log10 of the median escape time of the neighbours of bounded starts over that of the neighbours of starts outside.
+    """log10 of the ratio of median escape times: of neighbours of bounded starts to neighbours of starts outside.
 
-    NaN without such neighbours.
+    The value is NaN if there are no such neighbours.
 
     Parameters
     ----------

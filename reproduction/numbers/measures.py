@@ -1,4 +1,4 @@
-"""Computed values of the quantities of which the paper states numbers: `Measures(cache, search).values(number)`."""
+"""Computed values of the quantities for which the paper states numbers: `Measures(cache, search).values(number)`."""
 
 from __future__ import annotations
 
@@ -33,33 +33,33 @@ class Measures:
         self.cache, self.search = cache, search
 
     def values(self, number: StatedNumber) -> tuple[float, ...]:
-        """Computed values in the unit of the stated one, as in `Comparison.computed`."""
+        """Return the computed values in the unit of the stated one, as in `Comparison.computed`."""
         return _MEASURES[number.quantity](self, number)
 
     def maps(self, number: StatedNumber) -> list[EscapeMap]:
-        """Maps of a number, one per energy."""
+        """Return the maps of a number, one per energy."""
         assert number.plane is not None
         return [self.cache.map(number.case, number.plane, energy) for energy in number.energies]
 
     def searches(self, number: StatedNumber) -> list[SuperStickySearch]:
-        """Continuations of the chaotic bounded orbits at each energy of a number."""
+        """Return the continuations of the chaotic bounded orbits at each energy of a number."""
         if number.case == STICKY_CASE:
             return [self.search]
         return [self.cache.late_escapes(number.case, energy) for energy in number.energies]
 
     def energy_plane(self, case: str) -> EscapeMap:
-        """Map on (x, h)."""
+        """Return the map on (x, h)."""
         return self.cache.map(case, Plane.X_H, plane_energies(case))
 
     def last_bounded(self, case: str) -> float:
-        """Highest h on (x, h) with a bounded start; NaN if there is none."""
+        """Return the highest h on (x, h) with a bounded start; NaN if there is none."""
         frame = self.energy_plane(case)
         rows = np.flatnonzero((frame.fate == Fate.BOUNDED).any(axis=1))
         return float(frame.ordinate[rows[-1]]) if rows.size else float("nan")
 
 
 def counted_codes(number: StatedNumber) -> tuple[int, ...]:
-    """Fates that a share counts."""
+    """Return the fates that a share counts."""
     if number.quantity is Quantity.BOUNDED:
         return (int(Fate.BOUNDED),)
     return number.channels or tuple(range(1, CASES[number.case].channels + 1))
@@ -70,7 +70,7 @@ Measure = Callable[[Measures, StatedNumber], tuple[float, ...]]
 
 
 def _of_each_map(measure: Callable[[EscapeMap], float]) -> Measure:
-    """The values of a measure of one map."""
+    """Return the values of a measure of one map."""
     return lambda measures, number: tuple(measure(frame) for frame in measures.maps(number))
 
 

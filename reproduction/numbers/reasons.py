@@ -16,7 +16,7 @@ from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 
 
 def explain(measures: Measures, number: StatedNumber) -> str:
-    """The remark of a number with its fields filled in; each field is a name of `FACTS`."""
+    """Return the remark of a number with its fields filled in; each field is a name of `FACTS`."""
     names = [name for _, name, _, _ in Formatter().parse(number.remark) if name]
     return number.remark.format(**{name: FACTS[name](measures, number) for name in names})
 

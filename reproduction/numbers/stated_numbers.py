@@ -10,7 +10,7 @@ from reproduction.paper_ranges import nine_energies
 
 
 class Quantity(Enum):
-    """Measured quantity; the value is its name in the report."""
+    """A measured quantity; the value is its name in the report."""
 
     ESCAPED_BY = "escape through"
     BOUNDED = "bounded"
@@ -33,7 +33,7 @@ class Quantity(Enum):
 
 
 class Relation(Enum):
-    """Relation to the stated value; the value is the word in the paper."""
+    """The relation to the stated value; the value is the word in the paper."""
 
     EXACTLY = ""
     ABOUT = "about"
@@ -43,12 +43,12 @@ class Relation(Enum):
 
 
 class Counting(Enum):
-    """Starts that a share is relative to."""
+    """The set of starts to which a share is relative."""
 
     ANY = "of any starts"
-    """The same for all ways of counting: no starts are outside on this plane, or the share is 0."""
+    """The share does not depend on the counting: no starts are outside on this plane, or the share is 0."""
     INTERIOR = "of the starts inside"
-    """Relative to the starts inside, whose orbits are integrated."""
+    """The share is relative to the starts inside, whose orbits are integrated."""
     WINDOW = "of a window that is not stated"
     """There are starts outside on this plane, and the paper seems to count them."""
 
@@ -64,9 +64,9 @@ class StatedNumber:
     plane
         Plane of the starts; None if the number depends on no plane.
     energies
-        Energies of the computed values; several for a stated range. On (x, h) the ends of the plane.
+        Energies of the computed values; several for a stated range. On (x, h), the lowest and highest h of the plane.
     at
-        Energy or range as stated.
+        Energy or range, as stated.
     quantity
         Measured quantity.
     relation, value
@@ -74,7 +74,7 @@ class StatedNumber:
     channels
         Channels that are counted together; empty if the quantity does not depend on channels.
     counting
-        Starts that a share is relative to.
+        Starts to which a share is relative.
     remark
         Reason for a difference, if any; fields are names of `reproduction.numbers.reasons.FACTS`, filled with computed values.
     derivation
@@ -144,11 +144,11 @@ _OUTNUMBERED = "more escape than are bounded"
 _TENS = "tens of thousands for most"
 _WADA = "definition of Wada basins"
 
-# Around the stated turning point.
+# The energies around the stated turning point.
 _TURN = tuple(round(0.15 + 0.0025 * step, 4) for step in range(17))
-# From the first map to the end of the paper's curves.
+# The energies from the first map to the end of the paper's curves.
 _EXPONENTS = (*nine_energies("I")[::2], 0.4, 0.5)
-# All energies of the maps but the last, where no orbit is bounded.
+# All energies of the maps except the last, at which no orbit is bounded.
 _ISLANDS = nine_energies("III")[:-1]
 
 _CASE_I = (

@@ -1,7 +1,7 @@
 """Estimate of the windows that the paper does not state.
 
-Starts outside count as immediate escapes through the channel they lie in, and their number depends on the window. `fit_window`
-finds the square centred on the origin that best explains the stated percentages.
+Starts outside count as immediate escapes through the exit beyond which they lie, so their number depends on the window.
+`fit_window` finds the square centred on the origin that best explains the stated percentages.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from engine import EscapeMap, Fate, MapSpec, Window, compute_map
 from reproduction.map_cache import MapCache
 
 LARGEST_HALF_SIDE = 3.0
-"""Largest half side of the windows tried, about three times the half side of the interior."""
+"""Largest half side of the windows that are tried, about three times the half side of the interior."""
 
 STEP = 0.05
 """Step between the half sides of windows."""
@@ -35,9 +35,9 @@ class FittedWindow:
     window
         The window; a square centred on the origin, or one with another right edge.
     outside_share
-        Share of its starts that are outside.
+        Share of the starts in the window that are outside.
     counted
-        The map of the window; its percentages are those with `count_outside`.
+        The map of the window; its percentages are computed with `count_outside`.
     """
 
     window: Window
@@ -50,7 +50,7 @@ class FittedWindow:
         return self.window.ordinate_high
 
     def share(self, codes: tuple[int, ...]) -> float:
-        """Percentage of the starts with one of these fates, including starts outside."""
+        """Percentage of the starts with one of these fates, with starts outside counted."""
         fractions = self.counted.fractions(count_outside=True)
         return 100.0 * sum(fractions[code] for code in codes)
 
@@ -60,8 +60,8 @@ def fit_window(
 ) -> FittedWindow:
     """Find the square with the smallest maximal difference from the stated percentages.
 
-    If no square is good enough, the right edge is fitted, too: in II the interior, and perhaps the paper's figures, extend
-    furthest to the right. More free parameters would fit any percentages.
+    If no square is good enough, the right edge is fitted as well: in II the interior, and perhaps the paper's figures, extend
+    furthest to the right. With more free parameters, any percentages could be fitted.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def fit_window(
     interior
         Map of the interior.
     stated
-        Percentages by the fates that they count, `Fate.BOUNDED` or channels.
+        Percentages, by the fates that they count: `Fate.BOUNDED` or exits.
     enough
         Largest acceptable difference, in percentage points.
     """
@@ -92,7 +92,7 @@ def fit_window(
 
 @dataclass(frozen=True, eq=False)
 class _Outside:
-    """Number of starts inside, and channel and position of each start outside, on a fine grid."""
+    """Return the number of starts inside, and the exit and position of each start outside, on a fine grid."""
 
     inside: int
     channel: np.ndarray
@@ -108,14 +108,14 @@ class _Outside:
         return cls(int(np.count_nonzero(wide.interior)), channel, wide.x[columns], wide.ordinate[rows])
 
     def count(self, window: Window) -> np.ndarray:
-        """(channels + 1,) number of starts outside in a window by channel; entry 0 is 0."""
+        """Return (exits + 1,) numbers of starts outside in a window by exit; entry 0 is 0."""
         contained = (self.x >= window.x_low) & (self.x <= window.x_high) & (np.abs(self.ordinate) <= window.ordinate_high)
         counts: np.ndarray = np.bincount(self.channel[contained], minlength=int(self.channel.max(initial=0)) + 1)
         return counts
 
 
 def _edges(least: float) -> list[float]:
-    """Multiples of `STEP` from the smallest that contains the interior."""
+    """Multiples of `STEP`, from the smallest that contains the interior."""
     steps = np.arange(np.ceil(least / STEP), round(LARGEST_HALF_SIDE / STEP) + 1)
     edges: list[float] = (STEP * steps).round(6).tolist()
     return edges
@@ -124,7 +124,7 @@ def _edges(least: float) -> list[float]:
 def _best(
     windows: Sequence[Window], outside: _Outside, fractions: Mapping[int, float], stated: Mapping[tuple[int, ...], float]
 ) -> tuple[Window, float]:
-    """Window with the smallest maximal difference, and this difference."""
+    """Return the window with the smallest maximal difference, and this difference."""
     differences = [_largest_difference(outside.count(window), outside.inside, fractions, stated) for window in windows]
     place = int(np.argmin(differences))
     return windows[place], differences[place]

@@ -1,4 +1,4 @@
-"""Measures of complete maps that are compared with the papers: shares, escape times by place, exponents of boundaries."""
+"""Measures of complete maps for the comparison with the papers: shares, escape times by region, exponents of boundaries."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 from engine import EscapeMap, Fate, compute_uncertainty_exponent
 
 ISLAND_PIXELS = 2
-"""Largest distance of a start from a bounded one, in pixels, that counts as next to an island."""
+"""A start counts as next to an island if a bounded start is at most this far away, in pixels."""
 
 LATE = 0.01
-"""Share of the orbits that end, those that end last."""
+"""Share of the escaping orbits that count as the last ones."""
 
 # Limit of the integration time of the pairs, in time units of the well.
 _WORK = 1e7
@@ -21,14 +21,14 @@ _NEIGHBOURHOOD = (3, 3)
 
 @dataclass(frozen=True)
 class EndTimes:
-    """Median times to the end of orbits, NaN without any.
+    """Median times to the end of orbits; NaN if there are none.
 
     Attributes
-    ----------
+    For starts whose eight neighbours have the same outcome.
     inside
         Of starts whose eight neighbours end alike.
     at_boundary
-        Of starts next to one with another outcome, but not next to a bounded one.
+        For starts next to a start with another outcome, but not next to a bounded one.
     """
 
     inside: float

@@ -1,6 +1,6 @@
-"""Maps of systems in rotating frames, and with bodies, that four papers study.
+"""Maps of systems in rotating frames, and of systems with bodies, that four papers study.
 
-The papers' planes, windows and grids could not be looked up: those of this module are chosen.
+The papers' planes, windows and grids could not be looked up; this module chooses its own.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _T_MAX, _T_MAX_AT_MOON = 1e3, 1e2
 
 _RETROGRADE = Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, -0.5 * np.pi),))
 
-# Four overlapping discs, far enough from the hills for V < 0.001 in them, stand for the four directions between the hills.
+# Four overlapping discs, at a distance from the hills where V < 0.001, stand for the four directions between the hills.
 _FOUR_HILLS = (
     "x²y² exp(−r²); centre the right (10, 0) 7.08; centre the top (0, 10) 7.08; centre the left (−10, 0) 7.08; "
     "centre the bottom (0, −10) 7.08; escape 20"
@@ -37,9 +37,9 @@ class PaperMap:
     Attributes
     ----------
     name
-        What distinguishes it from the other maps of the paper.
+        Name that distinguishes it from the other maps of the paper.
     spec
-        The request.
+        Request of the map.
     """
 
     name: str
@@ -47,12 +47,12 @@ class PaperMap:
 
 
 def four_hills() -> Potential:
-    """Four hills at (±1, ±1), of height e⁻²; discs to the right, at the top, to the left and at the bottom stand for exits."""
+    """Four hills at (±1, ±1) of height e⁻². The discs to the right, at the top, to the left and at the bottom stand for exits."""
     return parse_formula(_FOUR_HILLS, "Four hills")
 
 
 def copenhagen(radius: float) -> Potential:
-    """The Copenhagen problem with bodies of another radius, 1e-6 to 1e6, in units of their distance; ValueError otherwise."""
+    """Return the Copenhagen problem with another radius of its bodies, 1e-6 to 1e6 of their distance; ValueError otherwise."""
     potential = POTENTIALS["Copenhagen"]
     return potential.with_outcomes([replace(body, radius=radius) for body in potential.centres], potential.escape_radius)
 
@@ -93,4 +93,4 @@ PAPER_MAPS: Mapping[str, tuple[PaperMap, ...]] = MappingProxyType(
 """The maps by system."""
 
 LONG_MAP = replace(PAPER_MAPS["Copenhagen problem"][0].spec, resolution=(220, 220), t_max=1e4)
-"""The map of the Copenhagen problem with the smallest bodies, of more starts and longer: for the decay of the survival."""
+"""Return a map for the survival decay: the Copenhagen problem with the smallest bodies, with more starts and a longer time."""

@@ -77,7 +77,7 @@ COLUMNS: Mapping[str, Columns] = MappingProxyType(
 
 
 def make_table(system: str) -> str:
-    """The Markdown table of a system, a key of `PAPER_MAPS`; takes up to a few minutes."""
+    """Return the Markdown table of a system, a key of `PAPER_MAPS`; this takes up to a few minutes."""
     columns = COLUMNS[system]
     frames = [(paper_map.name, compute_map(paper_map.spec)) for paper_map in PAPER_MAPS[system]]
     rows = [[name, *(_text(measure(frame), form) for measure, form in columns.values())] for name, frame in frames]

@@ -24,7 +24,7 @@ holds."""
 
 
 def write_fits(cache: MapCache) -> str:
-    """Table of the fitted parameters with their intervals, and the deviations of both curves from the data."""
+    """Return a table of the fitted parameters with their intervals, and the deviations of both curves from the data."""
     rows, sentences = [], []
     for case in CASES:
         table, paper = cache.curves(case, Plane.X_PX), PAPER_FITS[case]
@@ -58,7 +58,7 @@ def _fit_rows(name: str, published: ShareCurve, fitted: ShareFit) -> Iterator[tu
 
 
 def write_laws(cache: MapCache) -> str:
-    """Table of the preferred decay laws at three energies of each case."""
+    """Return a table of the preferred decay laws at three energies of each case."""
     rows = []
     for case in CASES:
         for energy in three_energies(case):

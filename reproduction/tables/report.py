@@ -25,7 +25,7 @@ _COLUMNS = (
     "case", "plane", "h", "what", "relation", "stated", "unit", "computed", "difference", "needs_window", "agrees",
     "half_side", "right_edge", "outside_share", "counted", "counted_difference", "agrees_when_counted", "derivation", "reason",
 )  # fmt: skip
-# Fewest computed values that are listed with their energies instead of their range.
+# If there are at least this many computed values, they are listed with their energies instead of their range.
 _LISTED = 4
 
 
@@ -153,7 +153,7 @@ def _describe_windows(row: Comparison) -> str:
 
 
 def _explain(row: Comparison) -> str:
-    """Reason for a difference."""
+    """Return the reason for a difference."""
     reasons = [row.reason] if row.reason else []
     if any(fitted.window.x_high != fitted.half_side for fitted in row.windows):
         reasons.append(f"No square centred on the origin is within {POINTS:g} points.")
@@ -175,7 +175,7 @@ def _describe_quantity(stated: StatedNumber) -> str:
 
 
 def _stated(stated: StatedNumber) -> str:
-    """The number of the paper, with its derivation."""
+    """Return the number of the paper, with its derivation."""
     return f"{_value(stated)} (derived: {stated.derivation})" if stated.derivation else _value(stated)
 
 
@@ -185,7 +185,7 @@ def _value(stated: StatedNumber) -> str:
 
 
 def _computed(row: Comparison) -> str:
-    """Range of the computed values; of many different ones each with its energy."""
+    """Return the range of the computed values, or many different values with their energies."""
     form, unit = ("{:.1f}", " %") if row.stated.is_share else ("{:.4g}", "")
     whole, energies = _range(row.computed, form), row.stated.energies
     if " to " not in whole or len(row.computed) < _LISTED:
@@ -229,14 +229,14 @@ number a column lies on the symmetry line x = 0, where orbits of III with px = 0
 Numbers that the text does not state, but implies, are marked as derived.
 
 Shares are percentages of the starts inside, which are allowed and do not lie beyond a Lyapunov orbit. On (x, px) of I and III
-there are no others. Elsewhere the paper seems to count starts outside, too, as escapes through the channel they lie in, in a
-window that it does not state. For these numbers both are given: the share inside, and the share in the square centred on the
+there are no others. Elsewhere the paper seems to count starts outside as well, as escapes through the exit beyond which they lie,
+in a window that it does not state. For these numbers both are given: the share inside, and the share in the square centred on the
 origin that best explains all numbers stated for the map, in steps of {step}. If no square is within {points} points, its right
-edge is fitted, too.
+edge is fitted as well.
 
 Some statements need a definition:
 
-- A start is inside a basin if it and its eight neighbours escape through the same channel.
+- A start is inside a basin if it and its eight neighbours escape through the same exit.
 - A start on a boundary is next to all basins if the boundary of each basin is within {boundary_pixels} pixels (Wada).
 - The uncertainty exponent stands for the fat-fractal exponent of a footnote: both are 1 if there is no
   fractal.

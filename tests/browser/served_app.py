@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from tests.waiting import SECONDS
+
 ROOT = Path(__file__).parents[2]
 START_SECONDS = 600
 """Enough to compile all kernels on a busy machine."""
@@ -83,7 +85,7 @@ class RunningApp:
 
     def figure(self, name: str) -> float:
         """One of the figures that the server counts."""
-        with urllib.request.urlopen(f"{self.root}/metrics", timeout=60) as answer:
+        with urllib.request.urlopen(f"{self.root}/metrics", timeout=SECONDS) as answer:
             lines = answer.read().decode().splitlines()
         return float(dict(line.rsplit(" ", 1) for line in lines if not line.startswith("#"))[f"escape_explorer_{name}"])
 
@@ -126,5 +128,5 @@ def started_app(
         yield RunningApp(f"http://127.0.0.1:{port}", process, output)
     finally:
         process.terminate()
-        process.wait(30)
+        process.wait(SECONDS)
         output.close()

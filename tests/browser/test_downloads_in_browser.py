@@ -53,7 +53,7 @@ def test_a_figure_of_all_maps(small: ExplorerPage) -> None:
 def test_a_figure_as_pdf_of_a_given_width(small: ExplorerPage) -> None:
     small.page.get_by_label("What to draw").select_option("Orbits")
     small.page.get_by_role("radiogroup", name="Format").get_by_label("PDF").check()
-    width = small.page.get_by_label("Width in cm")
+    width = small.page.get_by_label("Width, cm")
     width.fill("8.5")
     width.press("Enter")
     name, data = download_file(small, "Save figure")

@@ -1,4 +1,4 @@
-"""Each action is an entry of the browser's history, through which keys lead, too."""
+"""Each action is an entry of the browser's history; keys also move through the entries."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity
+from engine.foundations.wording import format_number
 from engine.propagation.evidence import describe_evidence
 from tests.browser.explorer_page import ExplorerPage
 
@@ -40,7 +41,7 @@ def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplor
     expect_tooltip(
         explorer,
         f"escapes through exit {origins.fate[row, column]}",
-        f"escape time {frame.escape_time[row, column]:#.5g}",
+        f"escape time {format_number(frame.escape_time[row, column])}",
         f"{crossings} upward crossing",
         f"entered through exit {origins.origin[row, column]}",
     )

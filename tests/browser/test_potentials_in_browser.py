@@ -48,16 +48,16 @@ def test_the_maps_follow_the_text_and_an_error_leaves_them(explorer: ExplorerPag
 
 def test_quick_steps_of_a_parameter_end_at_the_same_number_everywhere(explorer: ExplorerPage) -> None:
     open_box(explorer)
-    rail = explorer.page.get_by_role("slider", name="ω1", exact=True)
+    rail = explorer.page.get_by_role("slider", name="ω₁", exact=True)
     rail.focus()
     for _ in range(13):
         rail.press("ArrowRight")
     explorer.wait_for_view("omega_1=1.13&")
     expect(rail).to_have_value("1.13")
-    expect(explorer.page.get_by_label("ω1, number")).to_have_value("1.13")
-    expect(explorer.text("Case I with ω1 = 1.13")).to_be_visible()
+    expect(explorer.page.get_by_label("ω₁, number")).to_have_value("1.13")
+    expect(explorer.text("Case I with ω₁ = 1.13")).to_be_visible()
     # A box takes numbers beyond its slider, up to a limit.
-    box = explorer.page.get_by_label("ω2, number")
+    box = explorer.page.get_by_label("ω₂, number")
     box.fill("2.5")
     box.press("Enter")
     explorer.wait_for_view("omega_2=2.5&")

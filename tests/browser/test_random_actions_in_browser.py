@@ -100,7 +100,7 @@ _AGREEMENT = f"""expected => {{
 
 @dataclass(frozen=True)
 class Shown:
-    """The complete map of a state and the chosen orbit; None where there is none."""
+    """The complete map of a state and the chosen orbit; None if there is none."""
 
     frame: EscapeMap | None
     orbit: Orbit | None
@@ -168,7 +168,7 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
     if shown.frame is not None and state.analysis is Analysis.STATISTICS:
         statistics = compute_statistics(shown.frame, state.box)
         texts[SHARES] = [typeset(percent(share, 2)) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED]
-    # What is said of a bounded orbit depends on indicators that follow later.
+    # The description of a bounded orbit depends on indicators that follow later.
     if shown.orbit is not None and shown.orbit.fate > Fate.BOUNDED and state.analysis is Analysis.ORBIT:
         texts[VERDICT] = [typeset(judge_orbit(shown.orbit).headline())]
     return texts

@@ -61,7 +61,7 @@ def test_a_box_opens_the_statistics_and_can_be_removed(explorer: ExplorerPage, c
 def test_bars_have_texts(explorer: ExplorerPage, chart: str, texts: tuple[str, ...]) -> None:
     explorer.pick("Statistics")
     explorer.page.wait_for_function(_BAR, arg=chart)
-    expect(explorer.text("interior starts").last).to_be_visible()
+    expect(explorer.page.get_by_role("table", name="statistics")).to_contain_text("interior starts")
     x, y = explorer.page.evaluate(_BAR, chart)
     explorer.page.mouse.move(x - 2, y)
     explorer.page.mouse.move(x, y)

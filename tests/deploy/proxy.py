@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.browser.served_app import Output, free_port
+from tests.waiting import SECONDS
 
 ROOT = Path(__file__).parents[2]
 NAME, PASSWORD = "visitor", "open sesame"
@@ -84,7 +85,7 @@ def proxied(program: str, folder: Path, port: int, backends: tuple[int, int]) ->
         yield proxy
     finally:
         process.terminate()
-        process.wait(30)
+        process.wait(SECONDS)
         output.close()
 
 

@@ -19,6 +19,7 @@ from tornado.websocket import websocket_connect
 from tests.app.other_loop import run_on_new_loop
 from tests.browser.served_app import PANEL, READY, free_port, started_app
 from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, nginx, proxied
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.skipif(nginx() is None, reason="nginx is not installed")
 # Starts the explorer; the other tests use servers that answer with their port.
@@ -91,7 +92,7 @@ def port_server() -> Iterator[int]:
 
 
 def ask(proxy: Proxy, path: str, headers: dict[str, str]) -> tuple[int, http.client.HTTPMessage, bytes]:
-    connection = http.client.HTTPSConnection("127.0.0.1", proxy.port, timeout=60, context=proxy.ssl_context())
+    connection = http.client.HTTPSConnection("127.0.0.1", proxy.port, timeout=SECONDS, context=proxy.ssl_context())
     try:
         connection.request("GET", path, headers=headers)
         answer = connection.getresponse()
@@ -154,7 +155,7 @@ def test_clients_cannot_forge_their_address(proxy_before_two: Proxy) -> None:
 
 
 def test_http_redirects_to_https(proxy_before_two: Proxy) -> None:
-    connection = http.client.HTTPConnection("127.0.0.1", proxy_before_two.plain_port, timeout=10)
+    connection = http.client.HTTPConnection("127.0.0.1", proxy_before_two.plain_port, timeout=SECONDS)
     connection.request("GET", "/app?case=II")
     answer = connection.getresponse()
     answer.read()

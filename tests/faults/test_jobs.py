@@ -16,6 +16,7 @@ from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.sweeps.map_jobs import map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
+from tests.waiting import SECONDS
 
 MAP = MapSpec(CASES["I"], Plane.X_PX, 0.3, (48, 48), t_max=100.0)
 OTHER = MapSpec(CASES["I"], Plane.X_PX, 0.31, (48, 48), t_max=100.0)
@@ -45,17 +46,17 @@ def test_failing_kernel_ends_only_its_job(error: Exception, good_calls: int) -> 
     with FaultyPool(error, good_calls) as pool:
         jobs, first, second, third = Jobs(pool), Inbox(), Inbox(), Inbox()
         jobs.request(map_job(MAP), first.result, first.error)
-        assert first.done.wait(60)
+        assert first.done.wait(SECONDS)
         assert pool.failed
         assert first.errors == [error]
-        wait_until_idle(jobs, 30.0)
+        wait_until_idle(jobs)
         jobs.request(map_job(OTHER), second.result, second.error)
         jobs.request(map_job(MAP), third.result, third.error)
         for inbox in (second, third):
-            assert inbox.done.wait(60)
+            assert inbox.done.wait(SECONDS)
             assert not inbox.errors
         np.testing.assert_array_equal(third.results[-1].escape_time, compute_map(MAP).escape_time)
-        wait_until_idle(jobs, 30.0)
+        wait_until_idle(jobs)
 
 
 def test_internal_errors_are_not_shown_on_the_page() -> None:
@@ -76,7 +77,7 @@ def test_error_reaches_all_subscribers_although_one_callback_fails(caplog: pytes
         jobs.request(map_job(MAP), fail, fail)
         jobs.request(map_job(MAP), inbox.result, inbox.error)
         released.set()
-        assert inbox.done.wait(60)
+        assert inbox.done.wait(SECONDS)
         assert [type(error) for error in inbox.errors] == [RuntimeError]
     assert "a callback of a job failed" in caplog.text
 
@@ -88,16 +89,16 @@ def test_failing_function_delivers_its_error(queue: Queue) -> None:
 
     jobs, inbox = Jobs(), Inbox()
     jobs.request(Job(fail, (), queue=queue), inbox.result, inbox.error)
-    assert inbox.done.wait(30)
+    assert inbox.done.wait(SECONDS)
     assert [type(error) for error in inbox.errors] == [MemoryError]
-    wait_until_idle(jobs, 30.0)
+    wait_until_idle(jobs)
 
 
 def _delayed(submit: Callable[..., Any], released: threading.Event) -> Callable[..., Any]:
     """A `submit` method that waits for an event first."""
 
     def submit_later(*arguments: Any, **named: Any) -> Any:
-        released.wait(30)
+        released.wait(SECONDS)
         return submit(*arguments, **named)
 
     return submit_later

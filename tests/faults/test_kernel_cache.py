@@ -217,7 +217,7 @@ def test_the_least_recently_used_files_are_deleted(folder: Path) -> None:
     for n, path in enumerate((kept, removed)):
         os.utime(path, ns=(n, n))
     assert cache_files.read_cached(kept) == bytes(1000)
-    # An incomplete file of a killed process counts, too.
+    # An incomplete file of a killed process also counts.
     killed = folder / "killed.part"
     killed.write_bytes(bytes(1000))
     os.utime(killed, ns=(0, 0))

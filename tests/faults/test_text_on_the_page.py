@@ -20,6 +20,8 @@ from app.views.analysis.curves import CurvesView
 from app.views.analysis.potential_panel import PotentialPanel
 from app.views.components.notice import Notice
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
+from tests.conftest import TIMEOUT_MS
+from tests.waiting import SECONDS
 
 HOSTILE = (
     '<img src=x onerror="window.hit=1"> &lt;img src=x onerror="window.hit=2"&gt; [a](javascript:window.hit=3) *b* `c` '
@@ -65,15 +67,16 @@ def address() -> Iterator[str]:
     thread = pn.serve({"page": _page}, threaded=True, show=False, port=port, address="127.0.0.1")
     yield f"http://127.0.0.1:{port}/page"
     thread.stop()
-    thread.join(10)
+    thread.join(SECONDS)
 
 
 @pytest.mark.browser
 def test_warning_executes_nothing_in_the_browser(address: str, chromium: Browser) -> None:
     page = chromium.new_page()
-    page.goto(address, timeout=120_000)
+    page.set_default_timeout(TIMEOUT_MS)
+    page.goto(address)
     shown = page.locator(".alert")
-    shown.wait_for(state="attached", timeout=60_000)
+    shown.wait_for(state="attached")
     # An image that fails to load is reported before the page has drawn two frames.
     page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     assert page.evaluate("window.hit") is None

@@ -17,6 +17,7 @@ from engine.jobs.subscription import Subscription
 from engine.sweeps.map_jobs import map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 from tests.fuzz.hostile import anything
+from tests.waiting import SECONDS
 
 ORBITS = [Job(integrate_orbit, (CASES["I"], (0.01 * k, 0.0, 0.1, 0.5), 20.0), queue=Queue.LONG_CALL) for k in range(4)]
 BROKEN = Job(integrate_orbit, (CASES["I"], (float("nan"), 0.0, 0.1, 0.5), 20.0), queue=Queue.LONG_CALL)
@@ -53,12 +54,12 @@ def test_concurrent_jobs_stay_within_the_limit(most: int, actions: list[Any]) ->
     for action, subscription, inbox in inboxes:
         # A cancelled request may have been answered before.
         if subscription.open:
-            assert inbox.done.wait(30)
+            assert inbox.done.wait(SECONDS)
         for error in inbox.errors:
             assert isinstance(error, ValueError)
             assert "under way" in str(error) or action is BROKEN
     client.close()
-    wait_until_idle(jobs(), 30.0)
+    wait_until_idle(jobs())
 
 
 @given(anything)

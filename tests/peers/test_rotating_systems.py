@@ -23,7 +23,7 @@ TIME_TO_TURN, AFTER = 1.0, 0.1
 
 
 def energies_of(name: str) -> list[float]:
-    """Random ones from the range of the system, of which exits are known."""
+    """Random energies from the range of the system at which exits are known."""
     system, random = review_system(System(name)), np.random.default_rng(len(name))
     found: list[float] = []
     while len(found) < ENERGIES:

@@ -1,4 +1,4 @@
-"""The player of many orbits in the visitor's browser, which makes the starts, integrates the orbits and paints them."""
+"""The player of many orbits in the visitor's browser: it makes the starts, integrates the orbits and paints them."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ td::before { content: ""; position: absolute; left: 0; top: 0.3em; width: 0.7em;
 
 
 class EnsemblePlayer(JSComponent):
-    """Controls, counters and a chart; it sends {where, count, seed, radius} when the visitor chooses other starts.
+    """Controls, counters and a chart. The browser sends {where, count, seed, radius} when the visitor chooses other starts.
 
     Parameters
     ----------
     on_choice
-        Called with the choice as it comes from the browser.
+        Called with the choice in the form in which the browser sends it.
     """
 
     address = param.String(default=WATCH_ADDRESS, doc="of the module that is loaded when the player is first shown")

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * A button that copies an image. Browsers allow this only at the click itself, when there is no image yet: the clipboard gets the
- * promise of one, which the server makes and sends.
+ * A button that copies an image. Browsers allow this only during the click, when there is no image yet: the clipboard receives a
+ * promise of the image, which the server then makes and sends.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -20,7 +20,7 @@ export function render({model, el}) {
     }
     const image = new Promise(resolve => (deliver = resolve))
     model.send_msg({wanted: true})
-    // The server itself shows why it has no image.
+    // The server shows the reason why there is no image.
     const copied = await navigator.clipboard.write([new ClipboardItem({"image/png": image.then(asPng)})]).then(
       () => true,
       () => false,

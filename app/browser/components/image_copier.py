@@ -1,4 +1,4 @@
-"""A button that copies an image into the clipboard, which the browser allows only at the click itself."""
+"""A button that copies an image to the clipboard. Browsers allow this only during the click."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from panel.custom import JSComponent
 
 
 class ImageCopier(JSComponent):
-    """The button.
+    """A button that copies an image.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class ImageCopier(JSComponent):
         self._send_msg({"image": image})
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected.
+        # Messages come from a browser: unexpected ones are ignored.
         match message:
             case {"wanted": True}:
                 self._on_wanted()

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The numbers of the orbits in a line, one of which is chosen: radio buttons, each with the colour of its orbit.
+ * The numbers of the orbits in a line, as radio buttons with the colours of the orbits.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

@@ -1,6 +1,6 @@
 """The numbers of the chosen orbits.
 
-Radio buttons of Bokeh fail when their choice changes while their view is being built, as it does when a click opens the tab.
+Bokeh's radio buttons fail when their choice changes while their view is being built, as happens when a click opens the tab.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class OrbitList(JSComponent):
     Parameters
     ----------
     on_choose
-        Called with the place of the orbit that is chosen, without the session's lock.
+        Called with the place of the chosen orbit, without the session's lock.
     **options
         Parameters of the component.
     """
@@ -36,7 +36,7 @@ class OrbitList(JSComponent):
         self.on_msg(lambda event: self._receive(event.data))
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected.
+        # Messages come from a browser: unexpected ones are ignored.
         match message:
             case {"chosen": int(place)} if not isinstance(place, bool) and 0 <= place < len(self.rows):
                 self._on_choose(place)

@@ -1,4 +1,6 @@
 // @ts-check
+import {number} from "../modules/numbers.js"
+
 /**
  * A button and a slider for the time along the orbits: the steps from `begin` to `end`, played in a loop. Each step is sent.
  *
@@ -21,7 +23,7 @@ export function render({model, el}) {
     const time = model.begin + ((model.end - model.begin) * step) / model.steps
     rail.valueAsNumber = step
     rail.style.setProperty("--share", String(step / model.steps))
-    text.textContent = `t = ${Number(time.toPrecision(5))}`
+    text.textContent = `t = ${number(time, 5)}`
     rail.setAttribute("aria-valuetext", text.textContent)
   }
   const go = (/** @type {number} */ step) => {
@@ -34,7 +36,7 @@ export function render({model, el}) {
     button.className = on ? "pause" : "play"
     button.setAttribute("aria-label", on ? "Pause the orbits" : "Play the orbits")
   }
-  // At the beginning of another interval; what is played goes on.
+  // Go to the beginning of another interval; playing continues.
   const follow = () => {
     const nothing = model.begin === model.end
     for (const input of [button, rail]) input.disabled = nothing
@@ -47,6 +49,6 @@ export function render({model, el}) {
   model.on("lifecycle:remove", () => clearInterval(timer))
   play(false)
   follow()
-  // Back on the page, the player is at the beginning.
+  // When the player returns to the page, it is at the beginning.
   if (!rail.disabled) go(0)
 }

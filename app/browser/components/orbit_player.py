@@ -9,6 +9,8 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from app.browser.javascript import component_code
+
 
 class OrbitPlayer(JSComponent):
     """A button to play and pause, and a slider.
@@ -27,7 +29,7 @@ class OrbitPlayer(JSComponent):
     begin = param.Number(default=0.0, doc="start of the interval of time")
     end = param.Number(default=0.0, doc="end of the interval of time; an empty interval disables the player")
 
-    _esm = Path(__file__).with_suffix(".js")
+    _esm = component_code(Path(__file__).with_suffix(".js"))
 
     def __init__(self, on_step: Callable[[int], None], **options: Any) -> None:
         super().__init__(**options)
@@ -35,7 +37,7 @@ class OrbitPlayer(JSComponent):
         self.on_msg(lambda event: self._receive(event.data))
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected, and steps of an earlier interval.
+        # Messages come from a browser: unexpected ones, and steps of an earlier interval, are ignored.
         match message:
             case {"step": int(step), "begin": self.begin, "end": self.end} if 0 <= step <= self.steps and self.begin < self.end:
                 self._on_step(step)

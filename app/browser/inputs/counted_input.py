@@ -1,4 +1,4 @@
-"""Inputs whose values arrive with their numbers, so that an older value of the server does not replace a newer one."""
+"""Inputs that number their values, so that an older value from the server does not replace a newer one."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from panel.custom import JSComponent
 
 
 class CountedInput(JSComponent):
-    """An input; `CountedValue` of counted_value.js is its part in the browser.
+    """An input; its part in the browser is `CountedValue` in counted_value.js.
 
-    Widgets of Bokeh show each value of the server at once, also over one that is being typed; and Panel drops a value that is
-    typed while an earlier action, which sets another one, is still to be handled.
+    Widgets of Bokeh show each value of the server at once, even over a value that is being typed. Panel drops a value that is
+    typed while an earlier action that sets another value is still waiting.
 
     Parameters
     ----------
     on_value
-        Called with each legal value that the visitor gives, and whether it is done, without the session's lock.
+        Called with each legal value that the visitor enters, and whether the value is final, without the session's lock.
     value
-        The value at first.
+        The initial value.
     **options
         Parameters of the component.
     """
@@ -45,20 +45,20 @@ class CountedInput(JSComponent):
         self.shown = self.shown | {"value": value}
 
     def _checked(self, value: Any) -> Any:
-        """The value that a message means; None if it is not legal."""
+        """Return the value in a message; None if it is not legal."""
         raise NotImplementedError
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected.
+        # Messages come from a browser: unexpected ones are ignored.
         match message:
             case {"value": sent, "count": int(count), "done": bool(done)}:
                 value = self._checked(sent)
-                # The browser shows the last legal value in place of another one.
+                # The browser shows the last legal value in place of an illegal one.
                 self.shown = {"value": self.value if value is None else value, "count": count}
                 if value is not None:
                     self._on_value(value, done)
 
 
 def finite_number(value: Any) -> float | None:
-    """A finite number of a message; None for anything else."""
+    """Return a finite number from a message; None for anything else."""
     return float(value) if isinstance(value, int | float) and isfinite(value) else None

@@ -25,7 +25,7 @@ export function render({model, el}) {
     rail.style.setProperty("--share", String((energy - model.low) / (model.high - model.low)))
     rail.setAttribute("aria-valuetext", number.textContent)
   }
-  // An energy beyond the slider stays until the thumb is moved.
+  // An energy beyond the slider stays until the user moves the thumb.
   const value = new CountedValue(
     model,
     () => rounded(rail.valueAsNumber),
@@ -49,7 +49,7 @@ export function render({model, el}) {
     value.begin()
     for (const event of ["energydragged", "energyshown"]) tell(event, energy)
   }
-  // Back at the energy where it began, a drag ends without an event of change.
+  // A drag that ends at the energy where it began fires no change event.
   const release = () => {
     if (value.done) return
     const energy = value.read()
@@ -57,7 +57,7 @@ export function render({model, el}) {
     if (energy === clamped(model.shown.value)) value.cancel()
     else value.finish()
   }
-  // A step of the keys is that of the numbers shown; without one the browser takes a hundredth of the range.
+  // The step of the keys is the last decimal shown; without it the browser would use a hundredth of the range.
   const press = (/** @type {KeyboardEvent} */ event) => {
     const direction = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1}[event.key]
     if (!direction) return
@@ -70,7 +70,7 @@ export function render({model, el}) {
   rail.addEventListener("keydown", press)
   const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyshown", show)
-  // The engine may be loaded while the slider is held.
+  // The engine may be loaded while the user holds the slider.
   const answer = () => value.unsent && tell("energydragged", value.read())
   document.addEventListener("energyasked", answer)
   model.on("lifecycle:remove", () => {

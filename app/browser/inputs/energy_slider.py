@@ -1,4 +1,4 @@
-"""The slider of the energy: it reports to the server when it is released, and to the engine in the browser on the way."""
+"""The slider of the energy: it reports to the server when it is released, and to the engine in the browser while it moves."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from app.browser.inputs.counted_input import CountedInput, finite_number
 from app.browser.javascript import component_code
 
 SHOWN = "energyshown"
-"""Event of the page with the energy of the pictures while the server has not received it yet."""
+"""Browser event with the energy of the pictures while the server has not received it yet."""
 
 
 class EnergySlider(CountedInput):
-    """A slider for the energy; for one beyond its ends, the thumb is at the end.
+    """A slider for the energy. For an energy beyond its ends, the thumb is at the end.
 
     Parameters
     ----------
     on_release
         Called with each energy that the visitor chooses, without the session's lock.
     energy
-        The energy at first.
+        The initial energy.
     **options
         Parameters of the component.
     """

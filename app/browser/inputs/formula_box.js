@@ -2,7 +2,7 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * A box for a formula, as high as its text. Each change is sent; Enter, or leaving the box, finishes the text.
+ * A box for a formula, as high as its text. Each change is sent; the text is final when Enter is pressed or the box is left.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -31,7 +31,7 @@ export function render({model, el}) {
     event.preventDefault()
     value.finish()
   })
-  // The box is shown for typing; on a touch screen, its keyboard would cover the page.
+  // The box takes the focus when it is shown, but not on a touch screen, where the keyboard would cover the page.
   model.on("lifecycle:after_render", () => {
     if (matchMedia("(pointer: fine)").matches) box.focus({preventScroll: true})
   })

@@ -1,4 +1,4 @@
-"""A box for a formula: each text that is typed arrives."""
+"""A box for a formula, which reports each change of the text."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from app.browser.inputs.counted_input import CountedInput
 from app.browser.javascript import component_code
 
 LONGEST_TYPED = 4000
-"""Most characters of a text. Formulas have a lower limit, which is checked later with a message; a box would cut silently."""
+"""Largest length of a text, in characters. A lower limit for formulas is checked later, with a message; a box cuts silently."""
 
 
 class FormulaBox(CountedInput):
-    """A box for a formula, which is done when Enter is pressed, or the box is left."""
+    """A box for a formula. The text is final when Enter is pressed or the box is left."""
 
     placeholder = param.String(doc="shown in an empty box")
     longest = param.Integer(default=LONGEST_TYPED, doc="most characters of the text")

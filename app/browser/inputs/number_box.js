@@ -28,7 +28,7 @@ export function render({model, el}) {
   input.addEventListener("input", () => value.begin())
   input.addEventListener("change", finish)
   input.addEventListener("blur", finish)
-  // Enter after the number that was there before is no change.
+  // Enter without a change of the number fires no change event.
   input.addEventListener("keydown", event => event.key === "Enter" && finish())
   // The page shows another number, which the server has not received yet.
   const show = (/** @type {any} */ event) => {

@@ -18,9 +18,9 @@ class NumberBox(CountedInput):
     Parameters
     ----------
     on_number
-        Called with each number when it is done, without the session's lock.
+        Called with each final number, without the session's lock.
     number
-        The number at first.
+        The initial number.
     **options
         Parameters of the component.
     """

@@ -2,8 +2,8 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent; letting go of the slider,
- * leaving it, or Enter says that the number is done.
+ * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent; it is final when the
+ * slider is released or left, or Enter is pressed.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -25,7 +25,7 @@ export function render({model, el}) {
   }
   const writeBoth = (/** @type {number} */ number) => [rail, box].forEach(input => write(input, number))
   const value = new CountedValue(model, () => box.valueAsNumber, writeBoth)
-  // A number that is being typed may not be one yet.
+  // While a number is typed, the text may not be a number yet.
   const is_legal = () => Number.isFinite(box.valueAsNumber) && !box.validity.rangeUnderflow && !box.validity.rangeOverflow
   rail.addEventListener("input", () => {
     write(box, rail.valueAsNumber)

@@ -1,4 +1,4 @@
-"""A slider and a box for a number: each one chosen arrives."""
+"""A slider and a box for a number; they report each change."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from app.browser.javascript import component_code
 
 
 class ParameterSlider(CountedInput):
-    """A slider with a box for its number, which is done when the slider is released or left, or Enter is pressed.
+    """A slider with a box for its number. The number is final when the slider is released or left, or Enter is pressed.
 
-    Beyond the ends of the slider, its thumb is at the end.
+    For a number beyond the ends of the slider, the thumb is at the end.
     """
 
     low = param.Number(doc="left end of the slider")

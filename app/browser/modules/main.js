@@ -24,7 +24,7 @@ const SIMD = Uint8Array.of(
 export function start(model, el) {
   lightPixels()
   if (!WebAssembly.validate(SIMD)) {
-    // Without vectors the last map stays until the next one comes, and there is nothing to play.
+    // Without vector instructions, the last map stays until the next one comes, and the energy cannot be played.
     const refuse = () => model.command.name === "play" && model.send_msg({energy: model.command.energy})
     model.on("command", refuse)
     refuse()
@@ -32,7 +32,7 @@ export function start(model, el) {
   }
   const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
   const find = (/** @type {string} */ name) => page.get_model_by_name(name)
-  // The pictures have sources of the same names.
+  // In all pictures the sources have the same names.
   const findSource = (/** @type {string} */ picture, /** @type {string} */ name) =>
     find(picture)
       .renderers.map((/** @type {any} */ renderer) => renderer.data_source)

@@ -1,4 +1,4 @@
-"""Measures of a map: those of each map, and slow ones on demand."""
+"""Measures of a map: some are computed for each map, slow ones on demand."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from engine.measures.measure import Quantity
 from engine.results import DecayLaws, UncertaintyExponent
 
 TOLD: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
-"""The measures that the page tells in words, in their order."""
+"""The measures that the page describes in words, in order."""
 
 _MEASURING = "Computing further orbits …"
 _UNDEFINED = "Not defined for this map."
 
 
 class BasinMeasuresView:
-    """A table with the numbers of each measure, whose sentences open on demand, and charts.
+    """A table with the numbers of each measure, whose descriptions open on demand, and charts.
 
     Parameters
     ----------
     state
-        The view state, whose box the measures are those of.
+        The view state; its box is the region of the measures.
     on_measure
-        Called with the name of a slow measure to compute it.
+        Called with the name of a slow measure that is to be computed.
     on_copy
         Called with the numbers as tab-separated text.
     """
@@ -57,12 +57,12 @@ class BasinMeasuresView:
         self._remove([*self._sentences])
 
     def _follow_box(self, box: Window | None) -> None:
-        """Show that the measures are those of a box; None is the whole view."""
+        """Show that the measures belong to a box; None is the whole view."""
         self.whole.visible = box is not None
         self._remove([measure.name for measure in TOLD if measure.slow and not measure.place])
 
     def show(self, name: str, result: Any) -> None:
-        """Show the result of a measure; None says that it is not defined."""
+        """Show the result of a measure; None means that it is not defined."""
         if name in self.buttons:
             self.buttons[name].disabled = False
         if result is None:
@@ -119,7 +119,7 @@ class BasinMeasuresView:
 
 
 def _rows_of(measure: Measure, result: Any, sentence: str) -> str:
-    """The title of a measure with its meaning, and a row for each number; without numbers its sentence."""
+    """The title of a measure with its explanation, and a row for each number; without numbers, its description."""
     shown = [] if result is None else [(quantity.label, _value(quantity, result)) for quantity in measure.quantities]
     numbers = {label: text for label, text in shown if label and text}
     details = f" <button type='button' class='term' popovertarget='told-{measure.name}'>details</button>"

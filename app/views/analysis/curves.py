@@ -1,7 +1,9 @@
-"""Curves against energy or a parameter: shares, islands, measures of the basins, escapes; a click opens the map of a value."""
+"""Curves of measures against energy or a parameter; a click opens the map at a value."""
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from html import escape
@@ -17,9 +19,10 @@ from app.state.view_state import ViewState
 from app.views.components.in_turns import InTurns, Later
 from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, chart_hover, set_decades, set_range, square_figure
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, plain_symbol
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Measure, Outcome, System
+from engine.foundations.wording import format_number, format_whole
 from engine.results import Sweep
 from engine.systems.parameters import symbol_of
 from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, THRESHOLD, Entry
@@ -51,9 +54,9 @@ class CurvesView:
     on_sweep
         Called when the button is pressed.
     on_value
-        Called with the energy, or the value of the parameter, of the point clicked.
+        Called with the energy or parameter value of the point that is clicked.
     later
-        Of the session, for the figures.
+        Wraps functions of the session; used to make the figures.
     """
 
     def __init__(
@@ -66,11 +69,12 @@ class CurvesView:
         self._state, self._on_value = state, on_value
         self.shown: Sweep | None = None
         self.running = False
+        self._began = 0.0
         self.button = button(START, on_sweep, width=180, align="end")
         self.against = pn.widgets.Select(label="Against", options={"h": "h"}, value="h", width=80)
         self.text = TextPane(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
         self._axis = Range1d(0.0, 1.0)
-        # Automatic ranges would warn in the browser as long as there are no numbers.
+        # Automatic ranges would cause warnings in the browser until there are numbers.
         self._values = {
             panel.name: Range1d(*(_FIRST_DECADES if panel.curve.logarithmic else (0.0, panel.curve.least_top)))
             for panel in CURVE_PANELS
@@ -96,7 +100,7 @@ class CurvesView:
         """Remove the curves of another system, and offer the parameters of this one."""
         if self.shown is not None:
             self.show(None)
-        self.against.options = {"h": "h"} | {symbol_of(name): name for name in system.parameter_names}
+        self.against.options = {"h": "h"} | {plain_symbol(symbol_of(name)): name for name in system.parameter_names}
 
     def _mark(self) -> None:
         """Mark the energy in view, or the system's own value of the parameter."""
@@ -104,7 +108,9 @@ class CurvesView:
         self._here.location = self._state.energy if name == "h" else self._state.system.value_of(name)
 
     def show_running(self, running: bool) -> None:
-        """Label the button with what it does next."""
+        """Label the button with its next action."""
+        if running and not self.running:
+            self._began = time.monotonic()
         self.running = running
         self.button.label = STOP if running else START
 
@@ -125,7 +131,7 @@ class CurvesView:
         self.points.data = points
         shares, outcomes = curves["share"].T, curves.outcomes
         entries = self._entries(outcomes)
-        # Symmetric channels have equal shares: dashed curves, drawn last, leave the solid ones visible.
+        # Symmetric exits have equal shares: dashed curves, which are drawn last, leave the solid ones visible.
         order = sorted(range(len(shares)), key=_is_dashed)
         self._shares.data = {
             "xs": [curves.values] * len(shares),
@@ -140,11 +146,11 @@ class CurvesView:
         self._name_axes()
         self._mark()
         self._scale_values(curves)
-        self.text.object = _progress(curves)
+        self.text.object = _progress(curves, time.monotonic() - self._began)
         self._legend.object = legend(entries)
 
     def _scale_values(self, curves: Sweep) -> None:
-        """Fit the ranges of all but the shares."""
+        """Fit the ranges of all plots except that of the shares."""
         for panel in CURVE_PANELS:
             numbers, axis = find_numbers(panel, curves), self._values[panel.name]
             if not panel.curve.logarithmic:
@@ -157,7 +163,7 @@ class CurvesView:
         self.text.object = escape(sentence)
 
     def open_near(self, value: float) -> None:
-        """Open the map of the measured value next to this one."""
+        """Open the map of the measured value that is nearest to this one."""
         values = np.asarray(self.points.data["value"])
         if values.size:
             self._on_value(float(values[np.argmin(np.abs(values - value))]))
@@ -167,7 +173,7 @@ class CurvesView:
         return [Entry("bounded", palette.bounded), *palette.end_entries(outcomes)]
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the button and the place of the plots, which are made with the first curves."""
+        """Make the button and the container of the plots, which are made with the first curves."""
         row = flex_row(self.against, self.button, gap="8px", align="end")
         row.css_classes = ["whole-row"]
         return [row, self.text, self._plots]
@@ -231,10 +237,13 @@ def _make_key(panel: Measure) -> pn.viewable.Viewable:
     return TextPane(legend(entries), margin=(0, 10))
 
 
-def _progress(curves: Sweep) -> str:
+def _progress(curves: Sweep, seconds: float) -> str:
+    """What the curves show; while they are computed, how long that will take at the pace of the past `seconds`."""
     request = curves.dataset.attrs
     done, total = curves.values.size, request["count"]
-    where = f"values of {curves.symbol} on {request['plane']}" + (f" at h = {request['energy']:.6g}" if request["along"] else "")
+    energy = f" at h = {format_number(request['energy'], 6)}" if request["along"] else ""
+    where = f"values of {curves.symbol} on {request['plane']}{energy}"
     if curves.complete:
         return f"{total} {where}. Click a curve to open the map there."
-    return f"{done} of {total} {where} …"
+    left = seconds * (total - done) / done if done else math.inf
+    return f"{done} of {total} {where} …" + (f" about {format_whole(left)} s left" if left < math.inf else "")

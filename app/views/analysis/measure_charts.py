@@ -1,4 +1,4 @@
-"""Charts beside the measures of a map: uncertain pairs of starts with their power law, and the survival with its decay laws."""
+"""Charts beside the measures of a map: uncertain pairs of starts with their power law, and survival with its decay laws."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NO_PAIRS: dict[str, list[Any]] = {name: [] for name in ("separation", "share", 
 
 
 class PairsChart:
-    """The uncertain share against separation, with the fitted power law; it is on the page while it has a result."""
+    """The uncertain share against separation, with the fitted power law; the chart is on the page while it has a result."""
 
     def __init__(self) -> None:
         self._separations, self._uncertain = Range1d(1e-10, 1.0), Range1d(1e-3, 1.0)
@@ -76,7 +76,7 @@ class PairsChart:
 
 
 class SurvivalChart:
-    """S(t) with the fitted laws; it is on the page while there are escapes."""
+    """S(t) with the fitted laws; the chart is on the page while there are escapes."""
 
     def __init__(self) -> None:
         self._times, self._survivors = Range1d(1.0, 100.0), Range1d(1e-3, 1.0)
@@ -85,7 +85,7 @@ class SurvivalChart:
         self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
 
     def show(self, laws: DecayLaws | None) -> None:
-        """Show S(t) with the fitted laws; with None they stay until the next ones."""
+        """Show S(t) with the fitted laws; None keeps the laws until the next ones are known."""
         if laws is None:
             return
         self.steps.data = {"t": laws.times, "share": laws.survival}
@@ -111,7 +111,7 @@ class SurvivalChart:
             x_range=self._times, y_range=self._survivors, x_axis_type="log", y_axis_type="log",
         )  # fmt: skip
         plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
-        # The mouse finds lines between points, but not steps.
+        # The hover tool finds lines between points, but not steps.
         line = plot.add_glyph(self.steps, Line(x="t", y="share", line_alpha=0.0))
         plot.add_tools(chart_hover(_SURVIVAL_TEXT, [line], mode="vline", line_policy="prev"))
         for law, source in self._laws.items():

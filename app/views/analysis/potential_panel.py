@@ -1,4 +1,4 @@
-"""The choice of potential: known ones by name, a typed one, their parameters, and the properties that follow."""
+"""The choice of the potential: known ones by name, a typed formula, their parameters, and the resulting properties."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ import panel as pn
 
 from app.browser.inputs.formula_box import FormulaBox
 from app.browser.inputs.parameter_slider import ParameterSlider
-from app.views.components.texts import StatusPane, TextPane
+from app.views.components.texts import StatusPane, TextPane, plain_symbol
 from app.views.components.widgets import button, flex_row
 from engine import System
+from engine.foundations.wording import format_number
 from engine.results import PotentialReview
 from engine.systems.catalogue.table import CATALOGUE
 from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
@@ -27,21 +28,21 @@ from plots.texts.mathml import potential_formula, potential_symbol
 # Ends of the sliders; their boxes, links and the command line allow wider ranges.
 _LOW, _HIGH = 0.2, 2.0
 _ENDS = {"rotation": (-1.0, 1.0)}
-# Ends of the slider of a letter, unless its value lies beyond their halves.
+# Ends of the slider of a letter; they are farther apart if its value lies beyond half of them.
 _LETTER_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
     "for example 0.5(x^2+y^2) - a x^2 y. “; well (1, 0)” moves the axes to the minimum near (1, 0)."
 )
-# What buttons add: a term, or a clause after all terms.
+# Texts that buttons add: a term, or a clause after all terms.
 _TERMS = {"+ letter": " + a x y"}
 _CLAUSES = {"+ body": "; centre (0, 0) 0.001", "+ escape radius": "; escape 10"}
 NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outcomes is compiled first, which takes some seconds."
-"""What is said of a text that the maps do not follow while it is typed."""
+"""Note about a formula that the maps do not follow while it is typed."""
 
 
-_DEFINITION = "V = ½(ω1² x² + ω2² y²) + ε V1, and Φ = V − ½Ω²(x² + y²) in a frame that rotates at the rate Ω"
+_DEFINITION = "V = ½(ω₁²x² + ω₂²y²) + ε V₁, and Φ = V − ½Ω²(x² + y²) in a frame that rotates at the rate Ω"
 
 
 class Propose(Protocol):
@@ -68,7 +69,7 @@ class PotentialPanel:
         self.used = used
         """The system of the maps."""
         self.shown = used.system
-        """The system of the widgets; that of the maps may be another one."""
+        """The system of the widgets; it may differ from that of the maps."""
         known = {f"{entry.title}: {entry.description}": name for name, entry in CATALOGUE.items()}
         self.known = pn.widgets.Select(
             label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width", margin=(5, 0)
@@ -94,7 +95,7 @@ class PotentialPanel:
         self.known.param.watch(lambda event: self._take_known(event.new), "value")
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Return the parts of a column, those of fixed height first, so that no part moves while the formula is typed."""
+        """Return the parts of a column; parts of fixed height come first, so that no part moves while the formula is typed."""
         buttons = flex_row(self.reset, self.move, gap="8px")
         return [
             self.known,
@@ -113,7 +114,7 @@ class PotentialPanel:
         label, _, (lowest, highest) = WELL_PARAMETERS[name]
         low, high = _ENDS.get(name, (_LOW, _HIGH))
         return ParameterSlider(
-            partial(self._slide, name), 1.0, label=label, low=low, high=high, lowest=lowest, highest=highest,
+            partial(self._slide, name), 1.0, label=plain_symbol(label), low=low, high=high, lowest=lowest, highest=highest,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 
@@ -125,7 +126,7 @@ class PotentialPanel:
         )  # fmt: skip
 
     def _show_letters(self, system: System) -> None:
-        """Show a slider for each letter of the formula; one that stays keeps its range."""
+        """Show a slider for each letter of the formula; a slider that remains keeps its range."""
         letters = tuple(name for name in _parameter_names(system) if name not in WELL_PARAMETERS)
         if letters != tuple(self.letter_sliders):
             before = self.letter_sliders
@@ -162,7 +163,7 @@ class PotentialPanel:
         self.typeset.object = self.facts.object = ""
 
     def _write(self, message: str) -> None:
-        """Show a message, and what the maps show if it is another system."""
+        """Show a message, and the system of the maps if it differs."""
         used = self.used
         shows = f"The maps still show {used.system.title}: V = {used.formula}"
         draft = f"<p class='quiet'>{escape(shows)}</p>" if self.shown != used.system else ""
@@ -181,7 +182,7 @@ class PotentialPanel:
         self._show_around_text(system)
 
     def _show_around_text(self, system: System) -> None:
-        """Update all widgets but the text, which is being typed."""
+        """Update all widgets except the text, which is being typed."""
         self.shown = system
         self.known.value = system.case
         names = _parameter_names(system)
@@ -198,7 +199,7 @@ class PotentialPanel:
         if case == self.used.system.case:
             self._choose(self.used.system)
         else:
-            # A typed potential starts from the formula of the previous one.
+            # A typed potential begins with the formula of the previous one.
             self._choose(self.shown.as_typed if case == TYPED else System(case))
 
     def _take_text(self, text: str, done: bool) -> None:
@@ -231,12 +232,12 @@ def _text(system: System) -> str:
 
 
 def _typed(text: str, before: System) -> System:
-    """A system of a formula, with the parameters of the previous one that it still has."""
+    """Return a system of a formula; parameters of the previous system that it still has are kept."""
     return System(TYPED, text, {name: before.value_of(name) for name in (*WELL_PARAMETERS, *_letters(text))})
 
 
 def _letters(text: str) -> tuple[str, ...]:
-    """The letters of a formula; none while it is not understood."""
+    """The letters of a formula; empty while it is not understood."""
     try:
         return formula_letters(text)
     except ValueError:
@@ -244,7 +245,7 @@ def _letters(text: str) -> tuple[str, ...]:
 
 
 def _parameter_names(system: System) -> tuple[str, ...]:
-    """The parameters of a system, also while its formula is not understood."""
+    """The parameters of a system, even while its formula is not understood."""
     return (*WELL_PARAMETERS, *_letters(system.formula)) if system.case == TYPED else system.parameter_names
 
 
@@ -255,18 +256,18 @@ def _alert(sentence: str) -> str:
 def _channels(review: PotentialReview) -> str:
     if review.potential.ends:
         labels = ", ".join(outcome.label for outcome in review.potential.outcomes)
-        opened = f"; exits open above h = {review.escape_energy:.6g}" if review.channels else ""
+        opened = f"; exits open above h = {format_number(review.escape_energy, 6)}" if review.channels else ""
         return f"Orbits end at: {labels}{opened}"
     if not review.channels:
         return "no exits"
-    return f"{review.channels} exits above the escape energy h = {review.escape_energy:.6g}"
+    return f"{review.channels} exits above the escape energy h = {format_number(review.escape_energy, 6)}"
 
 
 def _points(review: PotentialReview) -> str:
     """A table of the critical points."""
     rows = "".join(
-        f"<tr><td>{point.kind.value}</td><td>({point.x:.6g}, {point.y:.6g})</td>"
-        f"<td>{point.energy:.6g}</td><td>{point.channel or ''}</td></tr>"
+        f"<tr><td>{point.kind.value}</td><td>({format_number(point.x)}, {format_number(point.y)})</td>"
+        f"<td>{format_number(point.energy)}</td><td>{point.channel or ''}</td></tr>"
         for point in sorted(review.critical_points, key=lambda point: point.channel or MOST_CHANNELS + 1)
     )
     names = ("critical point", "(x, y)", potential_symbol(review.potential), "exit")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from html import escape
 from typing import Any
@@ -9,9 +10,11 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import panel as pn
-from bokeh.models import LogAxis, LogTicker
+from bokeh.models import CustomJSTickFormatter, FixedTicker, LogAxis
 from bokeh.models.dom import HTML
 
+from app.browser.javascript import callback_code
+from app.browser.module_files import NUMBERS
 from app.job_clients.shown_results import ShownResults
 from app.state.help_texts import title_with_help
 from app.state.view import Analysis
@@ -37,6 +40,8 @@ _PROBABILITIES_TEXT = (
 )
 _NUMBERS = [str(n) for n in range(MOST_CROSSINGS + 1)]
 _BAR = "#5b8db8"
+_TICK = callback_code(NUMBERS, "number(tick)")
+_MOST_TICKS = 5
 
 
 class StatisticsView:
@@ -45,9 +50,9 @@ class StatisticsView:
     Parameters
     ----------
     state
-        The view state, whose box the button removes.
+        The view state; the button removes its box.
     results
-        Of the session.
+        The results of the session.
     on_copy
         Called with the table as tab-separated text.
     """
@@ -95,6 +100,7 @@ class StatisticsView:
         drawn = self._times.handles
         drawn["source"].data = {"left": edges[:-1], "right": edges[1:], "top": counts}
         drawn["x_range"].update(start=edges[0], end=edges[-1])
+        drawn["xaxis"].ticker.ticks = _few_ticks(*edges[[0, -1]].tolist())
         drawn["y_range"].update(start=0.0, end=1.05 * max(float(counts.max()), 1.0))
 
     def _show_probabilities(self, probabilities: np.ndarray) -> None:
@@ -161,7 +167,7 @@ def _frame() -> dict[str, Any]:
     fonts = {"labels": "12px", "ticks": "12px"}
     return {
         "responsive": True,
-        "aspect": 1.1,
+        "aspect": 1.6,
         "title": "",
         "fontsize": fonts,
         "toolbar": None,
@@ -171,13 +177,20 @@ def _frame() -> dict[str, Any]:
 
 
 def _simplify(plot: Any, _element: Any) -> None:
-    """Remove background and ticks, as in `square_figure`."""
+    """Remove background and ticks; the same look as `square_figure`."""
     plot.state.min_border_top = 28
     plot.state.sizing_mode = "scale_width"
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
     plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
     for axis in plot.state.select(LogAxis):
-        axis.ticker = LogTicker(desired_num_ticks=3)
+        axis.update(ticker=FixedTicker(ticks=[]), formatter=CustomJSTickFormatter(code=_TICK))
+
+
+def _few_ticks(low: float, high: float) -> list[float]:
+    """Powers of ten, and twice and five times these unless that would be too many labels."""
+    decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
+    fine, powers = ([m * ten for ten in decades for m in steps if low <= m * ten <= high] for steps in ((1, 2, 5), (1,)))
+    return fine if len(fine) <= _MOST_TICKS else powers
 
 
 def _plot(element: hv.Element, name: str, title: str) -> Any:
@@ -197,5 +210,5 @@ def _number(value: float) -> str:
 
 
 def prepare() -> None:
-    """Load the part of HoloViews that draws with Bokeh, which takes longer than a turn of the event loop may."""
+    """Load the part of HoloViews that draws with Bokeh. This takes longer than a single iteration of the event loop may."""
     hv.renderer("bokeh")

@@ -15,14 +15,14 @@ Build = Callable[[], Sequence[pn.viewable.Viewable]]
 
 
 class Stack:
-    """A column that shows one of several contents, or none; a content that is not shown is not on the page.
+    """A column that shows one of several contents, or none; only the content that is shown is on the page.
 
     Parameters
     ----------
     builds
-        Makers of the contents by name, each called when its content is first shown.
+        Functions that make the contents, by name; each is called when its content is first shown.
     css_class
-        Class of the column in the stylesheet, which arranges the content.
+        CSS class of the column.
     head
         Parts that stay above the content.
     """
@@ -48,7 +48,7 @@ class Stack:
         self._column.param.update(objects=parts, visible=bool(parts))
 
     def rebuild(self) -> None:
-        """Make the contents again when they are shown, which is now for the present one."""
+        """Make the contents again: the present one now, the others when they are shown."""
         self._contents.clear()
         self.show(self.shown)
 
@@ -91,9 +91,9 @@ class Drawers(Stack):
     Parameters
     ----------
     drawers
-        Label of the button, title and maker of each drawer, by name; an empty label for one that is opened elsewhere.
+        Label of the button, title and maker of each drawer, by name; the label is empty if the drawer has no button here.
     on_show
-        Called with whether a drawer is open, when one is opened or closed.
+        Called when a drawer is opened or closed, with whether one is open.
     """
 
     def __init__(
@@ -110,7 +110,7 @@ class Drawers(Stack):
     def show(self, name: str | None) -> None:
         """Open a drawer and close the others; None closes all."""
         before = self.shown
-        # In one message: a button pressed between two would be added to the one that is still marked.
+        # All changes are sent in one message: a button pressed in between would be added to the button that is still marked.
         with pn.io.hold():
             super().show(name)
             self.buttons.value = self._marked()
@@ -123,7 +123,7 @@ class Drawers(Stack):
             self.show(pressed[-1] if pressed else None)
 
     def _marked(self) -> list[str]:
-        """The buttons to mark: that of the open drawer, if it has one."""
+        """The buttons to mark: the button of the open drawer, if it has one."""
         return [name for name in self.buttons.options.values() if name == self.shown]
 
     def _with_head(self, title: str, build: Build) -> Build:

@@ -1,4 +1,6 @@
 // @ts-check
+import {number} from "../../browser/modules/numbers.js"
+
 /**
  * Texts at the mouse, for Bokeh's hover tools; see `app/browser/javascript.py`.
  *
@@ -34,7 +36,7 @@ export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const time = maps.escape_time[0][pixel]
   const crossings = maps.crossings[0][pixel]
   const lines = [
-    Number.isFinite(time) && `escape time ${time.toPrecision(5)}`,
+    Number.isFinite(time) && `escape time ${number(time)}`,
     fate > codes.bounded
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
       : words.evidence[maps.crossing_class[0][pixel] - codes.firstEvidence],
@@ -43,7 +45,7 @@ export function pixelDetails(pixel, {maps, compared}, codes, words) {
       return ofMap[known(maps[column][0])]
     }),
     ...Object.entries(words.values).map(
-      ([column, name]) => Number.isFinite(known(maps[column][0])) && `${name} ${known(maps[column][0]).toPrecision(5)}`,
+      ([column, name]) => Number.isFinite(known(maps[column][0])) && `${name} ${number(known(maps[column][0]))}`,
     ),
     known(maps.difference[0]) >= codes.first &&
       isSamePlace(maps, compared) &&
@@ -66,20 +68,4 @@ function isSamePlace(one, other) {
 export function coordinate(value, range) {
   const decimals = Math.min(Math.max(Math.ceil(3 - Math.log10(range.end - range.start)), 2), 17)
   return value.toFixed(decimals)
-}
-
-/** Four digits. @param {number} value */
-export function number(value) {
-  const size = Math.abs(value)
-  return size > 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(2) : String(Number(value.toPrecision(4)))
-}
-
-/** A whole number in groups of digits. @param {number} value */
-export function count(value) {
-  return String(value).replace(/\B(?=(\d{3})+$)/g, " ")
-}
-
-/** A share. @param {number} value */
-export function percent(value) {
-  return `${Number((100 * value).toPrecision(3))} %`
 }

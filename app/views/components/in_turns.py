@@ -1,4 +1,4 @@
-"""Parts of the page that are made one after the other, each in a turn of the event loop of its own."""
+"""Parts of the page that are made one after the other, each in its own iteration of the event loop."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from collections.abc import Callable, Iterable, Sequence
 import panel as pn
 
 Later = Callable[[Callable[[], None]], Callable[[], None]]
-"""Wraps a function so that it runs in a later turn of the event loop."""
+"""Wraps a function so that it runs in a later iteration of the event loop."""
 
 Make = Callable[[], Sequence[pn.viewable.Viewable]]
 
 
 class InTurns:
-    """Makes parts once they are asked for; other pages are served between two of them.
+    """Makes parts once they are needed; between two parts, other pages are served.
 
     Parameters
     ----------
     makes
-        Makers of the parts.
+        Functions that make the parts.
     add
         Called with each new part.
     later
-        Of the session.
+        Wraps functions of the session.
     """
 
     def __init__(self, makes: Iterable[Make], add: Callable[[Sequence[pn.viewable.Viewable]], None], later: Later) -> None:
@@ -31,7 +31,7 @@ class InTurns:
         self._continue = later(self._make_next)
 
     def begin(self) -> None:
-        """Make the parts that are not there yet."""
+        """Make the parts that do not exist yet."""
         if self._left:
             self._continue()
 

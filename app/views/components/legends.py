@@ -1,20 +1,20 @@
-"""Legends: the meaning of each colour of a picture, beside a patch of it."""
+"""Legends: each colour of a picture with its meaning."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from engine.foundations.wording import format_whole
+from engine.foundations.wording import format_number, format_whole
 from plots.layers.picture import ColourScale, ColourTable, Legend
 from plots.pictures.palette import Entry, Mark, short_label
 
-# Colours of a scale that the browser interpolates.
+# Colours of a scale, between which the browser interpolates.
 _STEPS = 12
 
 
 def patch(colour: str, label: str = "", title: str = "") -> str:
-    """HTML of a patch of a colour, with a label (HTML) beside it and a title (HTML) under the mouse."""
+    """Return HTML of a patch of a colour, with a label (HTML) beside it and a tooltip (HTML)."""
     hint = f" title='{title}'" if title else ""
     return f"<span class='patch'{hint} style='--colour:{colour}'>{label}</span>"
 
@@ -25,7 +25,7 @@ def legend_items(entries: Iterable[Entry]) -> str:
 
 
 def chips(entries: Iterable[Entry]) -> str:
-    """HTML of the entries of a legend where there is little room: a number or a word, which the whole label explains."""
+    """Return HTML of the entries of a legend where there is little room: a number or a word, with the whole label as tooltip."""
     parts = ((entry.colour, escape(entry.label), escape(short_label(entry.label))) for entry in entries)
     return "".join(patch(colour, short, label) for colour, label, short in parts)
 
@@ -36,7 +36,7 @@ def legend(entries: Iterable[Entry]) -> str:
 
 
 def picture_legend(of: Legend) -> str:
-    """HTML of the entries of the legend below a picture, where there is little room."""
+    """Return HTML of the entries of the legend below a picture, where there is little room."""
     scale = _scale(of.scale) if of.scale is not None else ""
     sentence = f" <span>{escape(of.sentence)}</span>" if of.sentence else ""
     return f"{_classes(of)}{scale}{sentence}{legend_items(of.over)}"
@@ -49,7 +49,7 @@ def _classes(of: Legend) -> str:
 
 
 def _background(entry: Entry) -> str:
-    """The colour of an entry, or its chessboard, as a CSS background."""
+    """Return the colour of an entry, or its chessboard, as a CSS background."""
     if entry.mark is not Mark.CHESSBOARD:
         return entry.colour
     return f"repeating-conic-gradient({entry.colour} 0 25%, {entry.second_colour} 0 50%) 0 0/6px 6px"
@@ -63,11 +63,11 @@ def _scale(scale: ColourScale) -> str:
 
 
 def _number(value: float) -> str:
-    return format_whole(value) if value == round(value) else f"{value:g}"
+    return format_whole(value) if value == round(value) else format_number(value)
 
 
 def _table(table: ColourTable) -> str:
-    """In one line: each hue with its tones, which the words of a patch explain, and the order of the tones."""
+    """Return one line with each hue and its tones, explained by the tooltip of a patch, and the order of the tones."""
     names = [escape(name) for name in table.names]
     hues = "".join(_hue(end, names, tones) for end, tones in zip(names, table.tones, strict=True))
     return f"{hues}<span>tones: from {', '.join(names)}</span>"

@@ -1,4 +1,4 @@
-"""Short messages in the corner of the page: passing ones, warnings, and lasting ones about the connection to the server."""
+"""Short messages in the corner of the page: temporary ones, warnings, and permanent ones about the connection to the server."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NAME = "notice"
 """Name of the Bokeh model, by which the server finds it in a document."""
 
 PASSING_SECONDS = 5.0
-"""Duration of passing notices."""
+"""Duration of temporary notices."""
 
 _ON_CONNECTION_LOST = """
 const pane = Bokeh.documents[0].get_model_by_name(name)
@@ -39,7 +39,7 @@ class Notice:
         self._pane = _NamedPane("", width=0, height=0, margin=0, styles={"position": "absolute"}, css_classes=["notices"])
 
     def layout(self) -> pn.viewable.Viewable:
-        """The pane; its place on the page does not matter."""
+        """The pane; its position on the page does not matter."""
         return self._pane
 
     def show(self, sentence: str, picture: str = "") -> None:
@@ -80,7 +80,7 @@ def _set_text(document: Document, html: str) -> None:
 
 
 def _passing(sentence: str, picture: str = "") -> str:
-    # The time makes the same message twice two changes.
+    # With the time, a repeated message is a change, so that it is shown again.
     duration = f"style='animation-duration: {PASSING_SECONDS}s'"
     return _html(sentence, f"class='notice passing' {duration} data-time='{time.monotonic_ns()}'", picture=picture)
 

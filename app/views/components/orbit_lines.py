@@ -13,20 +13,20 @@ from plots.pictures.orbit_curves import OrbitCurves
 from plots.pictures.palette import MOST_ORBITS
 
 Curve = tuple[np.ndarray, np.ndarray]
-"""Abscissas and ordinates."""
+"""Horizontal and vertical coordinates."""
 
 _OTHERS_ALPHA = 0.35
 _NO_AREA = np.full(1, np.nan), np.full(1, np.nan)
 
 
 def in_front(drawings: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[int, OrbitCurves]]:
-    """The numbers of the orbits that are known, and their curves; the chosen one is last, over the others."""
+    """The numbers of the orbits that are known, and their curves; the chosen orbit is last and lies over the others."""
     known = [(slot, drawing) for slot, drawing in enumerate(drawings) if drawing is not None]
     return sorted(known, key=lambda item: item[0] == chosen)
 
 
 def opacities(drawings: Sequence[tuple[int, OrbitCurves]], chosen: int) -> list[float]:
-    """The opacity of each orbit: the chosen one stands out."""
+    """The opacity of each orbit: the chosen orbit is the most visible."""
     return [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in drawings]
 
 
@@ -48,9 +48,9 @@ def lines(name: str) -> ColumnDataSource:
 def band_columns(
     drawings: Sequence[tuple[int, OrbitCurves]], outlines: Sequence[Curve], alphas: Sequence[float]
 ) -> dict[str, list[Any]]:
-    """The columns of a source of envelopes: always as many as there can be orbits, some of them without points.
+    """Columns of a source of envelopes. Their number is always the largest number of orbits; some have no points.
 
-    Bokeh finds what is in view before it has indexed new data, and fails at an envelope that has gone.
+    Bokeh determines what is in view before it has indexed new data, and fails if an envelope has been removed.
     """
     missing = MOST_ORBITS - len(drawings)
     shown = [outline if outline[0].size else _NO_AREA for outline in outlines] + [_NO_AREA] * missing

@@ -17,6 +17,7 @@ from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
 from app.browser.javascript import callback_code
+from app.browser.module_files import NUMBERS
 from app.state.help_texts import title_with_help
 from engine import Window
 from plots.pictures.axis_labels import find_offset
@@ -27,8 +28,8 @@ _OFFSET_LABEL = callback_code(Path(__file__).with_name("offset_ticks.js"), "offs
 HOVER_TEXTS = Path(__file__).with_name("hover_texts.js")
 """The functions that write the texts of hover tools."""
 
-HOVER_FORMATS = {name: callback_code(HOVER_TEXTS, f"{name}(value)") for name in ("number", "count", "percent")}
-"""JavaScript that writes a `value`: four digits, a whole number in groups of digits, a share."""
+HOVER_FORMATS = {name: callback_code(NUMBERS, f"{name}(value)") for name in ("number", "count", "percent")}
+"""JavaScript that formats a `value`: four digits, a whole number in groups of digits, or a share."""
 
 _HOVER_VALUE = re.compile(r"([@$]\w+)\{(\w+)\}")
 
@@ -37,13 +38,14 @@ _MOMENTUM = re.compile(r"^p([xy])$")
 _HISTORY_ASPECT = 2.2
 _HISTORY_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 25}
 
-# Left and right, above and below of the frame together take the same space, so that a square figure has a square frame.
+# The borders left and right of the frame together are as wide as those above and below, so that a square figure has a square
+# frame.
 _CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
 
-# The title of a picture stands above its frame, the legend below the labels of the axis.
+# The title of a picture is above its frame, the legend below the labels of the axis.
 _PICTURE_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 22, "min_border_bottom": 36}
 
-# Labels of two decimals fit into the left border; longer ones would make the frame narrower than it is high.
+# Labels with two decimals fit into the left border; longer ones would make the frame narrower than high.
 _FINEST_LABEL = -2
 
 # A compact picture has a title, but no axes; a small one has nothing around its frame.
@@ -53,7 +55,7 @@ _BORDERS = {"compact": _COMPACT_BORDERS, "small": _SMALL_BORDERS}
 
 
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
-    """A square figure of a picture, as `square_figure`; `annotate_picture` writes around its frame."""
+    """A square figure of a picture (see `square_figure`); `annotate_picture` writes around its frame."""
     # Frames that are aligned with those of larger pictures would not be square.
     plot = square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
     for axis in (*plot.below, *plot.left):
@@ -62,14 +64,14 @@ def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
 
 
 def history_figure(name: str, title: str, **options: Any) -> figure:
-    """A low figure against the time of orbits, as `square_figure`; the title names its values."""
+    """A low figure against the time of orbits (see `square_figure`); the title names its values."""
     plot = square_figure(name, title, aspect_ratio=_HISTORY_ASPECT, **_HISTORY_BORDERS, **options)
     plot.elements[0].html += "<i class='axis-name abscissa'>t →</i>"
     return plot
 
 
 def set_borders(plot: figure, kind: str) -> None:
-    """Leave the room around the frame of a picture that its kind needs: "compact" and "small" ones have no axes."""
+    """Set the borders of a picture according to its kind: "compact" and "small" pictures have no axes."""
     for axis in (*plot.below, *plot.left):
         axis.visible = kind not in _BORDERS
     plot.update(**_BORDERS.get(kind, _PICTURE_BORDERS))
@@ -85,11 +87,11 @@ def annotate_picture(
     plot
         The picture.
     title, under_way
-        Above the frame: its title, and what is being computed.
+        Texts above the frame: its title, and what is being computed.
     names
-        Of the axes, beside them.
+        Names of the axes, beside the axes.
     legend, notes
-        Below the frame; the legend is HTML, see `legends.picture_legend`.
+        Texts below the frame; the legend is HTML, see `legends.picture_legend`.
     """
     enlarge = f"Enlarge, or show all: {title}"
     abscissa, ordinate = (_MOMENTUM.sub(r"p<sub>\1</sub>", name) for name in names)
@@ -100,12 +102,12 @@ def annotate_picture(
         f"<div class='foot legend' data-picture='{plot.name}'>{legend}"
         f"{''.join(f'<small>{note}</small>' for note in notes)}</div>"
     )
-    # Not a new model: for each one Bokeh searches all models of the page.
+    # The model is reused: for each new one, Bokeh searches all models of the page.
     plot.elements[0].html = html
 
 
 def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) -> list[str]:
-    """Label the axes of pictures of a window; returns what the labels are where they are not plain numbers."""
+    """Label the axes of pictures of a window; return the meaning of labels that are not plain numbers."""
     edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
     offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in edges]
     for plot in plots:
@@ -128,7 +130,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     title
         Displayed title.
     **options
-        Of `bokeh.plotting.figure`.
+        Options of `bokeh.plotting.figure`.
     """
     defaults = {"tools": "", "toolbar_location": None, "aspect_ratio": 1, **_CHART_BORDERS}
     plot = figure(name=name, title=None, sizing_mode="scale_width", **(defaults | options))
@@ -145,7 +147,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
 
 
 class FigurePane(pn.pane.Bokeh):
-    """A figure whose events reach the server as often as it is on the page; Panel removes the callbacks when it leaves the page.
+    """A figure whose events reach the server whenever it is on the page; Panel removes the callbacks when it leaves the page.
 
     Parameters
     ----------
@@ -167,7 +169,7 @@ class FigurePane(pn.pane.Bokeh):
 
 @contextmanager
 def batched_additions(plots: Sequence[figure]) -> Iterator[None]:
-    """Add any number of models to the figures of a page; Bokeh searches all models of the page once instead of for each."""
+    """Add models to the figures of a page; Bokeh searches all models of the page once for all, not once for each."""
     document = plots[0].document if plots else None
     with document.models.freeze() if document is not None else nullcontext():
         yield
@@ -184,16 +186,16 @@ def set_decades(edges: Range1d, low: float, high: float) -> None:
 
 
 def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
-    """A tool that describes the points of a chart under the mouse, in words.
+    """Return a tool that describes the points of a chart under the mouse.
 
     Parameters
     ----------
     text
         HTML with the values as ``@column{format}`` or ``$variable{format}``; the format is a name in `HOVER_FORMATS`.
     renderers
-        What is described.
+        The renderers whose points are described.
     **options
-        Of `bokeh.models.HoverTool`.
+        Options of `bokeh.models.HoverTool`.
     """
     formatters = {value: CustomJSHover(code=HOVER_FORMATS[name]) for value, name in _HOVER_VALUE.findall(text)}
     html = _HOVER_VALUE.sub(r"\1{custom}", text)

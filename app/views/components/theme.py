@@ -24,13 +24,13 @@ def theme_css() -> str:
 
 
 class PlainTheme(Theme):
-    """A theme without stylesheets of its own; Panel's themes look for their files at each change of a component."""
+    """A theme without its own stylesheets; Panel's themes look for their files at each change of a component."""
 
     _name = "default"
 
 
 class ExplorerDesign(Design):
-    """Gives each component of a page the stylesheet, as one Bokeh model that they share."""
+    """Gives all components of a page one shared Bokeh model of the stylesheet."""
 
     modifiers = {Viewable: {"stylesheets": [Inherit, "theme"]}}  # noqa: RUF012
     _themes = {"default": PlainTheme, "dark": PlainTheme}  # noqa: RUF012

@@ -13,10 +13,10 @@ COUNT_WHOLE = "Count the whole view"
 """Label of the buttons that remove the box."""
 
 FULL_HEIGHT = {"max-height": "none"}
-"""Styles: by default Bokeh limits a layout to the height of the window, and what follows overlaps it."""
+"""By default Bokeh limits a layout to the height of the window, so that the following parts overlap it."""
 
 Rows = Iterable[Sequence[str]]
-"""Texts of the cells."""
+"""The texts of the cells."""
 
 
 class _NamedGroup:
@@ -46,10 +46,11 @@ class Switches(_NamedGroup, pn.widgets.CheckBoxGroup):
 
 
 def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **options: Any) -> pn.widgets.Button:
-    """A button; `kind` is "default", "primary" for the main action of a section, or "light" for one without a frame."""
+    """Return a button; `kind` is "default", "primary" for the main action of a section, or "light" for one without a frame."""
 
     def click(event: Any) -> None:
-        # Panel runs callbacks of widgets without the session's lock, which changes of bare Bokeh models need; held ones have it.
+        # Panel runs callbacks of widgets without the session's lock, which changes of plain Bokeh models need; `hold` provides
+        # it.
         with pn.io.hold():
             on_click()
 
@@ -59,7 +60,7 @@ def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **
 
 
 def copy_button(rows: Callable[[], Rows], on_copy: Callable[[str], None], **options: Any) -> pn.widgets.Button:
-    """A button that copies the rows of the moment of the click; `on_copy` is called with the text."""
+    """A button that copies the rows at the time of the click; `on_copy` is called with the text."""
     return button("Copy table", lambda: on_copy("\n".join("\t".join(row) for row in rows())), **options)
 
 
@@ -69,18 +70,18 @@ def number_rows(title: str, numbers: Mapping[str, Any]) -> list[tuple[str, str, 
 
 
 def flex_row(*views: pn.viewable.Viewable, justify: str = "start", align: str = "start", gap: str = "4px") -> pn.Column:
-    """A row as high as its content.
+    """A row that is as high as its content.
 
-    It is a Column with another flex direction: a Row would be at least as wide as all its children together.
+    It is a Column with another flex direction, because a Row would be at least as wide as all its children together.
 
     Parameters
     ----------
     *views
         Children of the row.
     justify
-        Horizontal place of the children, a CSS value of justify-content.
+        Horizontal position of the children, a CSS value of justify-content.
     align
-        Vertical place of each child: start, center or end.
+        Vertical position of each child: start, center or end.
     gap
         Space between the children, a CSS length.
     """
@@ -91,7 +92,7 @@ def flex_row(*views: pn.viewable.Viewable, justify: str = "start", align: str = 
 
 
 def keep_place(*, shown: bool) -> dict[str, str]:
-    """Styles of a part that keeps its place while it is hidden: the browser does not lay out the page again."""
+    """Styles of a part that keeps its space while it is hidden, so that the browser does not lay out the page again."""
     return {"visibility": "visible" if shown else "hidden"}
 
 
@@ -110,6 +111,6 @@ def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, na
 
 
 def set_value(widget: pn.widgets.Widget, value: Any) -> None:
-    """Show a value, unless it is shown: Panel would drop a choice of the browser that it has not handled yet."""
+    """Show a value unless it is already shown: Panel would drop a choice of the browser that it has not handled yet."""
     if widget.value != value:
         widget.value = value

@@ -1,4 +1,4 @@
-"""The map of another view, which is compared with the one in view pixel by pixel."""
+"""The map of another view, which is compared pixel by pixel with the map in view."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _IMAGE = ("fate", "x", "y", "dw", "dh", "ends")
 
 
 class ComparedMap:
-    """The image of the other map with its limiting curve; its place is that of its own window.
+    """The image of the other map with its limiting curve, in the window of the other map.
 
     Parameters
     ----------
@@ -31,11 +31,11 @@ class ComparedMap:
     """
 
     def __init__(self, ranges: MapRanges) -> None:
-        # In the toolbar from the start: Bokeh warns when tools change together with the pictures.
+        # The tool is in the toolbar from the start, because Bokeh warns when tools and pictures change together.
         self.source = ColumnDataSource(_no_map(), name="compared_map")
         self.hover = fate_hover(self.source, ranges.x, ranges.ordinate)
         self.other: OtherView | None = None
-        """What is shown; None for nothing."""
+        """The map that is shown; None if there is none."""
         self._outlines = CurveLayers()
 
     def draw(self, plot: figure, mapper: LinearColorMapper) -> None:
@@ -52,7 +52,7 @@ class ComparedMap:
         self._outlines.show(frame.spec)
 
     def remove(self) -> None:
-        """Show no other map."""
+        """Remove the other map."""
         self.other = None
         self.source.data = _no_map()
 
@@ -65,7 +65,7 @@ class ComparedMap:
         self._outlines.set_dark(dark)
 
     def difference(self, columns: Columns, plane: Slice) -> Columns:
-        """The column ``difference`` for the columns of a map of a slice; blank without another map, or one of other axes."""
+        """Return the column ``difference`` for the columns of a map of a slice; blank without another map of the same axes."""
         is_compared = self.other is not None and self.other.axes == plane.axis_symbols
         return difference_column(columns, self.source.data) if is_compared else {"difference": NO_LAYER}
 

@@ -1,4 +1,4 @@
-"""Curves over the pictures: zero-velocity curve, equipotentials, Lyapunov orbits with their channel numbers."""
+"""Curves over the pictures: zero-velocity curve, equipotentials, and Lyapunov orbits with the numbers of their exits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, LineColours, Palette
 
-# Number of maps whose curves are kept.
+# Number of maps whose curves are cached.
 _TRACED = 128
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
@@ -33,7 +33,7 @@ class TracedCurves(NamedTuple):
 
 @functools.lru_cache(maxsize=_TRACED)
 def trace_curves(spec: MapSpec) -> TracedCurves:
-    """The curves of a map's plane, window and energy; slow for some potentials, so that the job of a map calls it first."""
+    """Return the curves of a map's plane, window and energy; this can be slow, so the job of a map calls it first."""
     window, h = spec.find_window(), spec.common_energy
     limit = trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window)
     if h is None:
@@ -58,7 +58,7 @@ class CurveLayers:
         self._critical = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
         self._exits = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
         self._labels = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
-        # Figures that the Lyapunov orbits are still to be added to, and whether with numbers: when there are some.
+        # Figures to which Lyapunov orbits are added once there are some, and whether with numbers.
         self._without_exits: list[tuple[figure, bool]] = []
         self._palette: Palette = PAPER
         self._line_colours: LineColours = LIGHT
@@ -66,7 +66,7 @@ class CurveLayers:
         self._themed: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
 
     def draw(self, plot: figure, *, full: bool) -> None:
-        """Add the curves to a figure; the equipotentials only when `full`."""
+        """Add the curves to a figure; the equipotentials only if `full`."""
         if full:
             self._draw_themed(plot, self._levels, "equipotential", 1.0)
             self._draw_themed(plot, self._critical, "critical_equipotential", 1.5)
@@ -90,7 +90,7 @@ class CurveLayers:
         self._themed[name].append(line)
 
     def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the channels for the next `show`."""
+        """Set the colours of the exits for the next `show`."""
         self._palette = palette
 
     def set_dark(self, dark: bool) -> None:
@@ -105,7 +105,7 @@ class CurveLayers:
         h, traced = spec.common_energy, trace_curves(spec)
         self._limit.data = _lines(traced.limit)
         orbits = find_lyapunov_orbits(spec.potential, h) if spec.plane.shows_positions and h is not None else ()
-        # Do not send empty data again.
+        # Empty data is not sent again.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
         self._critical.data = _lines(traced.critical)
@@ -117,7 +117,8 @@ class CurveLayers:
         colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
         self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
-        # Always as many texts, some without a place: Bokeh fails when texts with colours of their own become fewer.
+        # The number of texts stays the same, some without a position: Bokeh fails when texts with individual colours become
+        # fewer.
         missing = MOST_CHANNELS - len(orbits)
         self._labels.data = {
             "x": [*(0.86 * point[0] for point in middles), *[np.nan] * missing],
@@ -127,7 +128,7 @@ class CurveLayers:
         }
 
     def entries(self, spec: MapSpec) -> list[Entry]:
-        """Legend entries of the curves shown on this plane."""
+        """Legend entries of the curves that are shown on this plane."""
         entries = [Entry(spec.plane.limiting_curve, self._line_colours.limiting_curve)]
         if spec.common_energy is not None:
             has_exits = spec.potential.escape_radius is None

@@ -27,7 +27,7 @@ _FATES = list(OUTCOMES.values())
 
 
 def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """A tool that shows the outcome of the orbit under the mouse; the caller adds images of the codes of fates to its renderers.
+    """Return a tool that shows the outcome of the orbit under the mouse; the caller adds images of fate codes to its renderers.
 
     source
         Columns ``fate`` and ``ends`` of `plots.pictures.image_columns.map_columns`.
@@ -47,9 +47,9 @@ def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> 
 
 
 def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """A tool that describes the orbit under the mouse; the caller adds to its renderers.
+    """Return a tool that describes the orbit under the mouse; the caller adds images to its renderers.
 
-    One formatter reads all columns, as Bokeh does not call formatters for NaN, the escape time of bounded orbits.
+    One formatter reads all columns, because Bokeh does not call formatters for NaN, the escape time of bounded orbits.
 
     Parameters
     ----------

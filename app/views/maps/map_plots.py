@@ -49,15 +49,15 @@ from plots.pictures.palette import PAPER, Palette
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
 
 MAPS = tuple(name for name in PICTURES if name != "well")
-"""The maps of starts; beside them stands the well."""
+"""The maps of starts; the picture of the well is beside them."""
 
 PICTURES_ALONE = ("well", "basins", "times", "crossings")
 """The pictures of a view without layers, in their order on the page."""
 
 PICTURES_COMPARED = ("basins", "compared", "well", "differences")
-"""Those of a view that is compared with another one."""
+"""The pictures of a view that is compared with another one."""
 
-# A window that is hardly smaller than the whole interior, such as that of a neighbouring energy, is not called enlarged.
+# A window that is hardly smaller than the whole interior, such as that of a neighbouring energy, does not count as enlarged.
 _LEAST_MAGNIFICATION = 1.5
 
 
@@ -68,17 +68,17 @@ class MapActions:
     Attributes
     ----------
     tap
-        Called with x and ordinate of the pixel clicked.
+        Called with x and ordinate of the pixel that is clicked.
     dive
-        Called with x and ordinate of a point clicked twice, after `tap`.
+        Called with x and ordinate of a point that is double-clicked, after `tap`.
     zoom
         Called with the window when the ranges have stopped changing; None is the whole interior.
     rest
         Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
     box
-        Called with the box that is drawn to count in.
+        Called with the box whose pixels are to be counted.
     choose
-        Called with the name of the picture that is chosen to be shown large.
+        Called with the name of the picture that is to be shown large.
     """
 
     tap: Callable[[float, float], None]
@@ -96,7 +96,7 @@ def prepare_curves(spec: MapSpec) -> None:
 
 
 class MapsView:
-    """Draws frames of maps, and the marks over them; `alone` has the meaning that it has in `PictureGrid`."""
+    """Draws frames of maps and the marks over them; for `alone` see `PictureGrid`."""
 
     def __init__(self, actions: MapActions, *, alone: bool = False) -> None:
         self._actions = actions
@@ -104,14 +104,14 @@ class MapsView:
         self.well, self.outlines, self.overlays, self.marks = WellView(), CurveLayers(), Overlays(self.source), Markers()
         self._palette = PAPER
         self._time_mapper = LogColorMapper(nan_color="rgba(0,0,0,0)")
-        # Scales of the escape times: that of the map in view, and the one that is kept instead.
+        # Scales of the escape times: the scale of the map in view, and the scale that replaces it while it is locked.
         self._fitted_times = WITHOUT_ESCAPES
         self._locked_times: TimeScale | None = None
         self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
-        # Results of the layers that are shown, which may be incomplete.
+        # Results of the layers that are shown; they may be incomplete.
         self._results: dict[str, Any] = {}
-        # Those that are being computed.
+        # Layers that are being computed.
         self._computing: frozenset[str] = frozenset()
         self._fates: frozenset[int] = frozenset()
         self.ranges = MapRanges(actions.zoom, actions.rest)
@@ -137,12 +137,12 @@ class MapsView:
 
     def begin_touch(self) -> None:
         """The page is used by touch: two fingers zoom."""
-        # The wheel's tool would also respond to two fingers.
+        # The tool of the wheel would also respond to two fingers.
         others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
         self._toolbar.update(tools=others, active_scroll=None)
 
     def set_drag(self, drag: Drag) -> None:
-        """Choose what dragging over a picture does."""
+        """Choose the effect of dragging over a picture."""
         if drag in _BOX_TOOLS and drag not in self._drags:
             self._drags[drag] = _BOX_TOOLS[drag]()
             self._toolbar.tools = [*self._toolbar.tools, self._drags[drag]]
@@ -161,7 +161,7 @@ class MapsView:
         self.source.data = columns | self.compared.difference(columns, frame.spec.plane)
 
     def show_compared(self, frame: EscapeMap | None, title: str = "") -> None:
-        """Show the map of another view with its title, or none."""
+        """Show the map of another view with its title; None removes it."""
         if frame is None:
             self.compared.remove()
         else:
@@ -176,7 +176,7 @@ class MapsView:
         return self._locked_times or self._fitted_times
 
     def lock_times(self, times: TimeScale | None) -> None:
-        """Keep a scale of the escape times; None follows the maps again."""
+        """Lock the scale of the escape times; None fits the scale to each map again."""
         self._locked_times = times
         self._scale_times()
 
@@ -196,13 +196,13 @@ class MapsView:
         self._show_legends()
 
     def mark_computing(self, layers: frozenset[str]) -> None:
-        """Say in the frames of some layers, and of no others, that they are being computed."""
+        """Show in the frames of these layers, and of no others, that they are being computed."""
         if layers != self._computing:
             self._computing = layers
             self._show_legends()
 
     def remove_layer(self, name: str) -> None:
-        """Remove what a layer shows, which the hover text would still describe."""
+        """Remove the pixels of a layer, which the hover text would otherwise still describe."""
         self._results.pop(name, None)
         self.overlays.remove(name)
         pixels = LAYERS[name].pixels
@@ -232,7 +232,7 @@ class MapsView:
         self.describe()
 
     def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
-        """The centre of the pixel at a point, so that its orbit is the one whose colour is shown."""
+        """Return the centre of the pixel at a point, so that its orbit is the one whose colour is shown."""
         pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
         if self._spec is None or pixel is None:
             return x, ordinate
@@ -244,7 +244,7 @@ class MapsView:
         self._actions.tap(*self._last_tap)
 
     def _tapped_again(self, event: PointEvent) -> None:
-        """Two quick clicks, even at two places, are one tap and one double tap."""
+        """Two quick clicks, even at two positions, are one tap and one double tap."""
         if self.snapped(event.x, event.y) == self._last_tap:
             self._last_tap = None
             self._actions.dive(event.x, event.y)
@@ -284,7 +284,7 @@ class MapsView:
                 annotate_picture(self.figures[name], ENTRIES[name].title, axes, legend, notes, self._under_way(name))
 
     def _under_way(self, picture: str) -> str:
-        """What is being computed for a picture: all of it, or what layers draw over it; empty if nothing is."""
+        """Return what is being computed for a picture: the picture, or what layers draw over it; empty if nothing is."""
         layers = [LAYERS[name] for name in LAYERS if name in self._computing]
         if any(layer.picture is not None and layer.picture.name == picture for layer in layers):
             return "computing …"
@@ -304,7 +304,8 @@ class MapsView:
             PinchEnd: lambda event: self.ranges.end_gesture(),
         }
         if name == "basins":
-            # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
+            # The end of a drag; after a step of the wheel it is reported half a second late. One of the linked pictures is
+            # enough.
             events[RangesUpdate] = lambda event: self.ranges.end_gesture()
         self._panes[name] = FigurePane(plot, events)
 
@@ -315,7 +316,7 @@ class MapsView:
             self.compared.draw(plot, self._mappers[name])
             self.marks.draw(plot, sections=False)
             return
-        # What the browser draws by itself, see modules/painting/pictures.js.
+        # Names of models that the browser changes by itself, see modules/painting/pictures.js.
         plot.tags = ["map", MAPS.index(name)]
         image = plot.add_glyph(self.source, Image(image=picture.column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if picture.has_times:

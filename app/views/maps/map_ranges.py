@@ -19,10 +19,10 @@ from engine import MapSpec, Window
 from engine.maps.spec import finest_pixel
 
 GESTURE_PAUSE_MS = 500
-"""Drags and steps of the wheel that follow each other within this time are one entry of the browser's history."""
+"""Drags and steps of the wheel that follow each other within this time make one entry of the browser's history."""
 
 REST_MS = 90
-"""A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
+"""A window is computed when the ranges have not changed for this time, which is longer than the time between two wheel steps."""
 
 _FOLLOW = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 
@@ -58,7 +58,8 @@ class MapRanges:
         self._shown = window
         if self._rest.waits or self._reports:
             return
-        # What is written while the browser moves the ranges on replaces the move there: nothing is written for rounding.
+        # A range that is written while the user moves it in the browser would undo the move, so rounding differences are not
+        # written.
         if is_near(self._edges, window):
             return
         self._following = True
@@ -67,19 +68,19 @@ class MapRanges:
         self._following = False
 
     def go_to(self, window: Window) -> None:
-        """Go to a window that is chosen by something else than a move, which is dropped if it is not reported yet."""
+        """Go to a window that does not come from a move; a move that is not reported yet is dropped."""
         if not self._reports:
             self._rest.cancel()
         self.follow(window)
 
     def finish_report(self) -> None:
-        """The window of a report is shown, or refused."""
+        """End a report: its window is shown, or refused."""
         self._reports -= 1
         if self._shown is not None:
             self.follow(self._shown)
 
     def set_home(self, home: MapSpec) -> None:
-        """Set the map of the whole interior, and with it the smallest window, where zooming ends."""
+        """Set the map of the whole interior, and with it the smallest window, at which zooming ends."""
         self._home = home.find_window()
         pixels = zip(finest_pixel(home, self._home), home.resolution, strict=True)
         # Twice the least distance of pixels, because the edges are rounded as well.
@@ -87,13 +88,13 @@ class MapRanges:
 
     @property
     def magnification(self) -> float:
-        """Width of the whole interior in units of that of the window shown."""
+        """Width of the whole interior in units of the width of the window shown."""
         if self._home is None or self._shown is None:
             return 1.0
         return (self._home.x_high - self._home.x_low) / (self._shown.x_high - self._shown.x_low)
 
     def end_gesture(self) -> None:
-        """The end of a drag, or a step of the wheel, which has no end: the next one may follow."""
+        """Handle the end of a drag, or a step of the wheel; another step may follow."""
         self._rested()
         document = self.x.document
         if document is not None and not self._gesture.waits:
@@ -110,7 +111,7 @@ class MapRanges:
         """The ranges have stopped: report the window."""
         self._rest.cancel()
         x_low, x_high, low, high = edges = self._edges
-        # The page and its browser can change a range at once.
+        # The server and the browser may change a range at the same time.
         if not (x_low < x_high and low < high) or self._shown is None or is_near(edges, self._shown):
             return
         self._reports += 1
@@ -124,8 +125,8 @@ class MapRanges:
 class _Pause:
     """Calls a function when some time has passed since the last start.
 
-    Bokeh runs a timeout callback that is due although it is removed while it waits for the lock of the document; it is no
-    longer the latest one then, and does nothing.
+    Bokeh runs a timeout callback that is due even if it is removed while it waits for the lock of the document. Such a callback
+    is no longer the latest one, and does nothing.
     """
 
     def __init__(self, length_ms: int, on_end: Callable[[], None]) -> None:

@@ -1,4 +1,4 @@
-"""The tools of the maps: whole plane, and what a drag does."""
+"""The tools of the maps: the button for the whole plane, and the effect of a drag."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.views.components.widgets import SegmentedControl, button, flex_row, kee
 
 
 class Drag(StrEnum):
-    """What dragging over a map does."""
+    """The effect of dragging over a map."""
 
     PAN = "Move"
     ZOOM = "Zoom"
@@ -21,12 +21,12 @@ class Drag(StrEnum):
 
 
 class MapToolbar:
-    """A button that shows the whole plane, and the choice of `Drag`; the browser's own buttons go back and forward.
+    """A button that shows the whole plane, and the choice of `Drag`. The browser's own buttons go back and forward.
 
     Parameters
     ----------
     state
-        The view state, whose window the button removes.
+        The view state; the button removes its window.
     set_drag
         Called with the mode that is chosen.
     """
@@ -42,7 +42,7 @@ class MapToolbar:
             css_classes=["segmented", "narrow"],
         )
         self.drag.param.watch(lambda event: set_drag(event.new), "value")
-        # The button is seen while it leads somewhere.
+        # The button is visible only while it has an effect.
         state.follow(lambda window: self.home.param.update(styles=keep_place(shown=window is not None)), "window")
 
     def layout(self, *before: pn.viewable.Viewable) -> pn.viewable.Viewable:

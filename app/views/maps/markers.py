@@ -24,7 +24,7 @@ class Markers:
     """Sources of the marks; each kind of mark is added to the figures when it is first shown."""
 
     def __init__(self) -> None:
-        # Figures that a kind of mark is still to be added to, by kind.
+        # Figures to which a kind of mark must still be added, by kind.
         self._pending: dict[str, list[figure]] = {"starts": [], "sections": [], "box": []}
         self._starts = ColumnDataSource({"x": [], "y": [], "slot": [], "text": []}, name="starts")
         self._sections = ColumnDataSource({"x": [], "y": [], "slot": []}, name="sections")
@@ -32,7 +32,7 @@ class Markers:
         self._mapper = LinearColorMapper(palette=list(PAPER.orbits), low=-0.5, high=len(PAPER.orbits) - 0.5)
 
     def draw(self, plot: figure, *, sections: bool) -> None:
-        """Mark a figure; section points only where `sections`, as painting them takes time."""
+        """Mark a figure; section points are drawn only if `sections`, because painting them takes time."""
         for kind in ("starts", "box", *(["sections"] if sections else [])):
             self._pending[kind].append(plot)
 
@@ -55,7 +55,7 @@ class Markers:
             for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, colour))
         ]
         style = {"x_offset": 6, "y_offset": -4, "text_font_size": "14px", "text_font_style": "bold", "text_color": MARK_EDGE}
-        # The outline of a text covers the text, so the number is drawn once more without.
+        # The outline of a text covers the text, so the number is drawn once more without outline.
         numbers = [Text(text_outline_color=outline, **style) for outline in (LIGHT.halo, None)]
         return [(self._starts, glyph) for glyph in (*crosses, *numbers)]
 

@@ -1,4 +1,4 @@
-"""What layers draw over the pictures: marks of pixels and curves."""
+"""The marks of pixels and the curves that layers draw over the pictures."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ class Overlays:
     Parameters
     ----------
     source
-        The columns of all pictures, to which those of the pixels of layers belong.
+        The columns of all pictures, which contain the pixel columns of the layers.
     """
 
     def __init__(self, source: ColumnDataSource) -> None:
         self._source = source
         self.curves = {name: ColumnDataSource(_no_curves(), name=name) for name in _LAYERS}
-        # Figures to which what a layer draws is still to be added.
+        # Figures to which the parts of a layer must still be added.
         self._waiting: dict[str, list[figure]] = {name: [] for name in _LAYERS}
         self._palette = PAPER
         self._strokes: dict[str, Sequence[Stroke]] = {}
         self._spec: MapSpec | None = None
 
     def draw(self, plot: figure, picture: str) -> None:
-        """Draw into the figure of a picture what lies over it."""
+        """Draw the parts that lie over a picture into its figure."""
         for layer in _LAYERS.values():
             self._waiting[layer.name] += [plot] if layer.over_picture(picture) is not None else []
 
     def begin(self, spec: MapSpec) -> None:
-        """Remove the curves if the map is another one."""
+        """Remove the curves if the map has changed."""
         if spec != self._spec:
             self._spec = spec
             for name in _LAYERS:
@@ -64,7 +64,7 @@ class Overlays:
             self.curves[name].data = _no_curves()
 
     def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the channels."""
+        """Set the colours of the exits."""
         self._palette = palette
         for name in self._strokes:
             self._show_curves(name)

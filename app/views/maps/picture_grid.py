@@ -1,4 +1,4 @@
-"""Where the pictures stand: side by side, or one of them enlarged above a row of the others."""
+"""The arrangement of the pictures: side by side, or one of them enlarged above a row of the others."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
 from plots.layers.table import LAYER_OF, PICTURES
 
 SHORT_TITLES = {"well": "Well"} | {name: picture.short_title for name, picture in PICTURES.items() if name != "curves"}
-"""Titles of all pictures, in their order, where there is little room."""
+"""Titles of all pictures in order, where there is little room."""
 
 FIRST = "basins"
-"""The largest picture, and on narrow screens the only one, until another one is chosen."""
+"""The largest picture until another one is chosen; on narrow screens the only one."""
 
-# Up to this many pictures have the same size; of more, one is twice as large as the others.
+# Up to this many pictures have the same size; of more pictures, one is twice as large as the others.
 _MOST_EQUAL = 4
 
 
@@ -27,9 +27,9 @@ class PictureGrid:
     Parameters
     ----------
     on_choose
-        Called with the name of the picture that is chosen to be shown large.
+        Called with the name of the picture that is to be shown large.
     alone
-        Whether only the picture is seen that is shown large.
+        Whether only the picture that is shown large is visible.
     """
 
     def __init__(self, on_choose: Callable[[str], None], *, alone: bool = False) -> None:
@@ -37,7 +37,8 @@ class PictureGrid:
         self._enlarged = ""
         # Pictures that show nothing.
         self._empty: frozenset[str] = frozenset()
-        classes = ["maps", "alone"] if alone else ["maps"]
+        # Without a map yet, the axes show nothing of this system.
+        classes = ["maps", "stale", *(["alone"] if alone else [])]
         self._column = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=classes)
         self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"], visible=False)
         self.picker.param.watch(lambda event: self._choose(event.new), "value")
@@ -63,18 +64,18 @@ class PictureGrid:
         self._place()
 
     def mark_empty(self, name: str, empty: bool) -> None:
-        """Say whether a picture shows nothing: then the picture of its layer is not the largest."""
+        """Set whether a picture shows nothing; the picture of its layer is then not the largest."""
         marked = self._empty | {name} if empty else self._empty - {name}
         if marked != self._empty:
             self._empty = marked
             self._place()
 
     def mark_stale(self, stale: bool) -> None:
-        """Grey the pictures out while they do not belong to the controls, or show them as they are."""
+        """Grey the pictures out while they do not belong to the controls, or show them normally."""
         self._set_class("stale", stale)
 
     def offer_choice(self) -> None:
-        """Offer the choice of the picture, of which a narrow page shows one."""
+        """Offer a choice of the picture, because a narrow page shows only one."""
         self.picker.visible = True
         self._place()
 
@@ -85,12 +86,12 @@ class PictureGrid:
 
     @property
     def _picked(self) -> str:
-        """The picture that is larger than the others: the enlarged one, or else that of the last layer that shows something."""
+        """The picture that is larger than the others: the enlarged one, or that of the last layer that shows something."""
         layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty]
         return self._enlarged if self._enlarged in self._panes else [FIRST, *layers][-1]
 
     def _place(self) -> None:
-        # The classes of a pane of Bokeh cannot be changed once it is on the page, those of its figure can.
+        # The classes of a Bokeh pane cannot be changed once it is on the page, but those of its figure can.
         picked, is_enlarged, are_many = self._picked, self._enlarged in self._panes, len(self._panes) > _MOST_EQUAL
         other = "small" if is_enlarged else "compact" if are_many else "equal"
         with pn.io.hold():

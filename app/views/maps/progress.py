@@ -48,7 +48,7 @@ class ProgressView:
         self.button = button(STOP, self._press, margin=0, styles=keep_place(shown=False), css_classes=["solid", "stop"])
 
     def layout(self) -> list[pn.viewable.Viewable]:
-        """The text and the button that stand in one line."""
+        """The text and the button, on one line."""
         return [self.text, self.button]
 
     def start(self) -> None:
@@ -95,7 +95,7 @@ class ProgressView:
         self._actions[self.button.label]()
 
     def _time_left(self, frame: EscapeMap) -> str:
-        """Estimate from the share of pixels that the last stage, which takes most of the time, has decided so far."""
+        """Estimate the time from the share of pixels that the last and longest stage has decided so far."""
         now = time.monotonic()
         if frame.horizon < frame.spec.t_max:
             self._last_stage = None
@@ -128,18 +128,18 @@ def _shares(frame: EscapeMap, palette: Palette) -> str:
     parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in found)
     rest = "" if frame.complete else f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
     words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{percent(share)}") for entry, share in found)
-    return f"<div class='shares' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
+    return f"<div class='share-bar' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
 
 
 def _stage(frame: EscapeMap) -> str:
-    """How much of a frame in progress is decided, and the time reached."""
+    """Describe the decided share of an unfinished frame, and the time reached."""
     picture = "" if frame.stride == 1 else "Coarse picture, "
     decided = f"{picture}{percent(1.0 - frame.undecided)} decided"
     return f"{decided[0].upper()}{decided[1:]}, t = {format_whole(frame.horizon)} of {format_whole(frame.spec.t_max)}"
 
 
 def _result(frame: EscapeMap) -> str:
-    """The integration time of a complete map, a warning if it is needed, and further numbers to open."""
+    """The integration time of a complete map, a warning if it is needed, and details that open on demand."""
     details = (
         f"Shares of the interior starts, integrated until t = {format_whole(frame.spec.t_max)}{_share_on_evidence(frame)}. "
         f"The relative energy error is at most {format_number(frame.worst_energy_error, 2)}."
@@ -151,7 +151,7 @@ def _result(frame: EscapeMap) -> str:
 
 
 def _rounding(frame: EscapeMap) -> str:
-    """A warning of a deep zoom whose pixels double precision does not support."""
+    """A warning if double precision does not support the pixels of a deep zoom."""
     if not frame.is_rounded:
         return ""
     assert frame.rounded_share is not None

@@ -23,12 +23,12 @@ _NO_LINE = np.zeros(0), np.zeros(0)
 
 
 def well_spec(potential: Potential, energy: float) -> MapSpec:
-    """The map in (x, y) whose curves are those of the well."""
+    """Return the map in (x, y) whose curves are those of the well."""
     return MapSpec(potential, SPACE, energy, window=find_well_window(potential, energy))
 
 
 class WellView:
-    """The whole interior at the energy of the maps; along an axis h, at that of the chosen orbit, or else the highest one."""
+    """Return the whole interior at the energy of the maps; along an axis h, at that of the chosen orbit, or the highest one."""
 
     def __init__(self) -> None:
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
@@ -42,7 +42,7 @@ class WellView:
         self._drawings: list[tuple[int, OrbitCurves]] = []
         self._time: float | None = None
         self._has_orbits = False
-        # What the outlines are drawn for, as maps of other windows and several orbits share them.
+        # Key of the outlines, because maps of other windows and several orbits share them.
         self._outlined: tuple[MapSpec, Palette] | None = None
         self.plot = map_figure("well", TITLE, *self._ranges)
         self.outlines.draw(self.plot, full=True)
@@ -72,7 +72,7 @@ class WellView:
         self._outline()
 
     def show_orbits(self, drawings: Sequence[OrbitCurves | None], chosen: int) -> None:
-        """Draw orbits, highlighting the chosen one; None for orbits that are not known yet. Those of other wells are left out."""
+        """Draw orbits, highlighting the chosen one; None for orbits that are not known yet. Orbits of other wells are omitted."""
         if chosen < len(drawings) and (shown := drawings[chosen]) is not None:
             well = shown.orbit.potential
             drawings = [each if each is not None and each.orbit.potential == well else None for each in drawings]
@@ -113,7 +113,7 @@ class WellView:
             annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend_items(self.outlines.entries(spec)))
 
     def _outline(self) -> None:
-        """Draw the curves of the well, unless they are there already."""
+        """Draw the curves of the well, unless they are already drawn."""
         spec, chosen = self._spec, self._drawings[-1][1] if self._drawings else None
         if spec is None:
             return

@@ -1,4 +1,4 @@
-"""The inspector of the orbits: built for the first orbit, shown while there are orbits; each part has its place."""
+"""The inspector of the orbits: it is built for the first orbit and shown while there are orbits; each part has its place."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.views.orbits.separation_plot import SeparationPlot
 
 
 class Inspector:
-    """The verdict on the chosen orbit, the player, the histories, the indicators and values; last, a line to type a start."""
+    """The verdict on the chosen orbit, the player, the histories, the indicators and values, and a line to type a start."""
 
     def __init__(
         self, controls: OrbitControls, playback: Playback, plots: OrbitPlots, separation: SeparationPlot, later: Later

@@ -71,7 +71,7 @@ class OrbitControls:
         state.follow(lambda name: self._set_colours(PALETTES[name]), "palette")
 
     def entry(self) -> list[pn.viewable.Viewable]:
-        """The boxes to type a start, to unfold."""
+        """The boxes for a typed start, which open on demand."""
         return Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")]).parts()
 
     def head(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
@@ -84,7 +84,7 @@ class OrbitControls:
         )  # fmt: skip
 
     def details(self) -> list[pn.viewable.Viewable]:
-        """The interval of time in view, the verdict of each indicator on the chosen orbit, and its values, to unfold."""
+        """The interval of time in view, each indicator's verdict on the chosen orbit, and its values, which open at a click."""
         return [self._interval_row, self.indicators, *Fold("Values", lambda: [self.reason, self.values, self.copy]).parts()]
 
     def _follow_plane(self, plane: Slice) -> None:
@@ -147,7 +147,7 @@ class OrbitControls:
         return [*number_rows("start", start), *number_rows("orbit", orbit.numbers()), *verdicts]
 
     def _choose(self, place: int) -> None:
-        # Orbits may have been removed since.
+        # Orbits may have been removed in the meantime.
         if place != self._shown[1] and place < len(self._state.starts):
             with pn.io.hold():
                 self._state.chosen = place
@@ -164,7 +164,7 @@ class OrbitControls:
 
 
 def _row(orbits: Sequence[ChosenOrbit], place: int) -> str:
-    """An orbit in the list; a start that looks like an earlier one is shown by the difference."""
+    """Label of an orbit in the list; a start that looks like an earlier one is shown by the difference."""
     x, ordinate = orbits[place].start
     text = f"{format_number(x)}, {format_number(ordinate)}"
     for other, one in enumerate(orbits[:place]):

@@ -61,7 +61,7 @@ class OrbitPlots:
         self._by_touch = True
 
     def show(self, drawings: Sequence[OrbitCurves | None], chosen: int, interval: tuple[float, float] | None = None) -> None:
-        """Draw orbits, highlighting the chosen one; None for orbits that are not known yet.
+        """Draw orbits, highlighting the chosen one; None stands for an orbit that is not known yet.
 
         The histories extend over `interval`; None is the whole duration.
         """
@@ -103,7 +103,7 @@ class OrbitPlots:
             self._on_brush((max(begin, 0.0), end))
 
     def _scale(self, interval: tuple[float, float] | None) -> None:
-        """Set the axes: that of time to the interval, or to the longest orbit."""
+        """Set the axes: the axis of time covers the interval, or the longest orbit."""
         everything = [drawing for _, drawing in self._drawings if drawing.histories[_FIRST].line[0].size]
         if not everything:
             return
@@ -124,5 +124,5 @@ def prepare() -> None:
 
 
 def _brush() -> BoxSelectTool:
-    """A tool to draw an interval of time; without renderers the curves keep their look."""
+    """Return a tool to draw an interval of time; without renderers the curves keep their look."""
     return BoxSelectTool(dimensions="width", renderers=[])

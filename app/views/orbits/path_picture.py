@@ -6,7 +6,7 @@ import math
 
 from plots.pictures.orbit_curves import OrbitCurves
 
-# Of a longer path the first samples are drawn, as all of them would fill the picture.
+# Only the first samples of a longer path are drawn, because all of them would fill the picture.
 _MOST_SAMPLES = 3000
 _MOST_POINTS = 600
 _SIDE = 120

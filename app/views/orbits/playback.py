@@ -1,4 +1,4 @@
-"""One time for all orbit plots, dragged or played."""
+"""One time for all orbit plots, which is dragged or played."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Playback:
         begin, end = interval or (0.0, 0.0)
         if (begin, end) != (self.player.begin, self.player.end):
             self.player.param.update(begin=begin, end=end)
-            # At the beginning the start is marked by its cross; the moving point appears after that.
+            # At the beginning the cross marks the start; the moving point appears after that.
             self._on_time(None)
 
     def _report(self, step: int) -> None:

@@ -16,7 +16,7 @@ LEAST = 1e-17
 
 
 class SeparationPlot:
-    """Distance in phase space against time, logarithmic; it is on the page while there are two orbits."""
+    """Distance in phase space against time, logarithmic; the plot is on the page while there are two orbits."""
 
     def __init__(self) -> None:
         self._times, self._distances = Range1d(0.0, 10.0), Range1d(LEAST, 10.0)

@@ -11,12 +11,12 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.numbers import percent
 from app.views.components.texts import TextPane
 from engine import Fate, compute_statistics
-from engine.foundations.wording import format_time, format_whole
+from engine.foundations.wording import format_number, format_time, format_whole
 from engine.propagation.fates import UNRESOLVED
 
 
 class AccessibleTable:
-    """A table of what the page shows; it is only written while it is open."""
+    """A table of what the page shows; it is written only while it is open."""
 
     def __init__(self, state: ViewState, results: ShownResults) -> None:
         self._state, self._results = state, results
@@ -59,7 +59,7 @@ class AccessibleTable:
 
     def _chosen(self) -> list[tuple[str, str]]:
         return [
-            (f"orbit {place + 1}, from {one.start[0]:.6g}, {one.start[1]:.6g}", one.describe())
+            (f"orbit {place + 1}, from {format_number(one.start[0], 6)}, {format_number(one.start[1], 6)}", one.describe())
             for place, one in enumerate(self._results.orbits)
         ]
 

@@ -1,4 +1,4 @@
-"""The choice of analyses: layers over the maps, and what is shown beside them."""
+"""The choice of analyses: layers over the maps, and the analysis beside them."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ ANALYSIS_LABELS = {
 class LayerSwitches:
     """Switches that write to the view state and follow it.
 
-    They are separate widgets: of one that held them all, a change by the user would undo one that the server has just sent.
+    The switches are separate widgets: in one widget, a change by the user would undo a change that the server has just sent.
     """
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
         self.switches = {name: self._make(layer) for name, layer in LAYERS.items()}
-        # Choices are made when they are first wanted.
+        # The choices are made when they are first needed.
         self._choices: dict[str, SegmentedControl] = {}
 
     def parts(self) -> list[pn.viewable.Viewable]:
-        """The switches, each with the choices of its layer below it while that is on."""
+        """The switches; below each one that is on are the choices of its layer."""
         return [part for layer in LAYERS.values() for part in (self.switches[layer.name], *self._choices_of(layer))]
 
     def _choices_of(self, layer: Layer) -> list[SegmentedControl]:
@@ -74,16 +74,16 @@ class LayerSwitches:
 
 
 class ComparisonSwitch:
-    """A switch that compares what is shown later with the present view, and follows the view state.
+    """A switch that compares later views with the present one; it follows the view state.
 
     Parameters
     ----------
     state
         The view state.
     compare
-        Called with whether the view is to be compared with the present one.
+        Called with whether the comparison with the present view begins or ends.
     swap
-        Called to exchange the two views.
+        Exchanges the two views.
     """
 
     def __init__(self, state: ViewState, compare: Callable[[bool], None], swap: Callable[[], None]) -> None:

@@ -1,4 +1,4 @@
-"""What only the browser has: its history and width, keys pressed anywhere on the page, theme, touch, the clipboard."""
+"""The parts of the state that only the browser has: history, width, keys, theme, touch and the clipboard."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from app.state.view import PICTURES
 from plots.layers.table import TITLES
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
-"""The picture that a key enlarges, or reduces again."""
+"""The picture that a key enlarges or reduces."""
 
 WINDOW_KEYS: Mapping[str, str] = MappingProxyType(
     {
@@ -30,7 +30,7 @@ WINDOW_KEYS: Mapping[str, str] = MappingProxyType(
         "h": "whole plane",
     }
 )
-"""What the keys do that move the window, by the name of the key in `KeyboardEvent.key`."""
+"""Actions of the keys that move the window, by the name of the key in `KeyboardEvent.key`."""
 
 KEYS: Mapping[str, str] = MappingProxyType(
     {
@@ -44,14 +44,14 @@ KEYS: Mapping[str, str] = MappingProxyType(
         **{key: f"enlarge: {TITLES.get(name, name)}" for key, name in PICTURE_KEYS.items()},
     }
 )
-"""What each key does, by its name."""
+"""The action of each key, by its name."""
 
 _CAPS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
 
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class BrowserListener(JSComponent):
-    """The browser side: it sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
+    """The browser's part; it sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
 
     keys = param.List(default=list(KEYS))
     address = param.Dict(default={}, doc="link of the view, its entry in the history, steps known; number, see `command`")
@@ -69,8 +69,8 @@ class BrowserActions:
     key
         Called with each key of `KEYS`, except for keys that a field, slider or menu uses.
     navigate
-        Called with the query string and the number of the entry that the browser's Back or Forward leads to, and the number
-        of such steps so far.
+        Called with the query string and the number of the entry to which the browser's Back or Forward leads, and the number of
+        such steps so far.
     dark
         Called with whether the theme is dark, when it changes or is not light at the beginning.
     touch
@@ -93,7 +93,7 @@ class BrowserActions:
 
 
 class BrowserEvents:
-    """Passes events of the browser to callbacks; of the keys only some of `KEYS`."""
+    """Passes events of the browser to callbacks; it passes only some keys of `KEYS`."""
 
     def __init__(self, actions: BrowserActions, keys: Collection[str] = KEYS) -> None:
         self._actions, self._keys = actions, keys
@@ -107,7 +107,7 @@ class BrowserEvents:
         return self._listener
 
     def copy(self, text: str | None) -> None:
-        """Copy a text, or with None the page's address; browsers allow it only soon after a click or a key."""
+        """Copy a text, or the page's address for None; browsers allow it only soon after a click or a key."""
         self._command("copy", text=text)
 
     def write_link(self, link: str, entry: int) -> None:
@@ -115,15 +115,15 @@ class BrowserEvents:
         self._listener.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
 
     def follow_steps(self, steps: int) -> None:
-        """The view follows the browser's history up to this number of steps; addresses written before are out of date."""
+        """Report that the view follows the history up to this number of steps; addresses written before are out of date."""
         self._steps = steps
 
     def go_back(self) -> None:
-        """Do what the browser's Back does."""
+        """Go back in the browser's history."""
         self._command("back")
 
     def go_forward(self) -> None:
-        """Do what the browser's Forward does."""
+        """Go forward in the browser's history."""
         self._command("forward")
 
     def focus_drawer(self, is_open: bool) -> None:
@@ -134,7 +134,7 @@ class BrowserEvents:
         self._listener.command = {"name": name, **details, "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected.
+        # Messages come from a browser: unexpected ones are ignored.
         match message:
             case {"key": str(key)} if key in self._keys:
                 self._actions.key(key)

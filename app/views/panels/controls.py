@@ -25,13 +25,13 @@ from plots.pictures.palette import PALETTES
 
 LOCK = "Lock colour scale"
 AXES = "Axes …"
-# Characters that the button has room for; longer titles of slices are shown in the section of the axes only.
+# Number of characters that fit the button; longer titles of slices are shown only in the section of the axes.
 _LONGEST_TITLE = 12
-# Those of the paper; others are chosen by their axes.
+# The slices of the paper; others are chosen by their axes.
 _PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
 _ON_AXIS = {0: "Energy is the horizontal axis here", 1: "Energy is the vertical axis here"}
 PLAY, STOP = "▶ Play", "■ Stop"
-# Space beside the rail of a slider, half the width of its thumb, see theme.css.
+# Space beside the rail of a slider: half the width of its thumb, see theme.css.
 _THUMB = "9px"
 _TICK = "position:absolute;left:{share:.2%};width:1px;height:6px;background:var(--ui-edge-strong)"
 _TICK_LABEL = (
@@ -41,7 +41,7 @@ _TICK_LABEL = (
 
 @dataclass(frozen=True)
 class ControlActions:
-    """What the controls do apart from changing the state.
+    """Actions of the controls other than changing the state.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Controls:
             label="Plane", options={plane.title: plane for plane in _PLANES}, margin=(8, 0, 8, 10),
             css_classes=["segmented", "narrow", "half", "choice"],
         )  # fmt: skip
-        # Panel chooses the first option in place of none when it makes a widget.
+        # Without this, Panel chooses the first option in place of None when it makes a widget.
         self.plane.value = self._plane()
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4))
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10))
@@ -125,7 +125,7 @@ class Controls:
             fold.open(False)
 
     def _build_quality(self) -> list[pn.viewable.Viewable]:
-        """Make the lists of what costs time, and of the colours."""
+        """Make the lists for resolution and t_max, which determine the cost, and for the colours."""
         return [
             self._make_list("t_max", "t_max", allowed_t_max()),
             self._make_list("resolution", "Resolution", allowed_resolutions()),
@@ -134,7 +134,7 @@ class Controls:
         ]
 
     def _make_list(self, name: str, label: str, options: dict[str, Any]) -> pn.viewable.Viewable:
-        """A drop-down list of an attribute of the view state."""
+        """Return a drop-down list for an attribute of the view state."""
         box = pn.widgets.Select(label=label, options=options, sizing_mode="stretch_width", margin=(0, 10, 8, 10))
         return bind(box, self.state, name)
 
@@ -159,11 +159,11 @@ class Controls:
         state.param.watch(lambda event: self._follow_plane(), "plane")
 
     def show_playing(self, playing: bool) -> None:
-        """Label the button with what it does next."""
+        """Label the button with its next action."""
         self.play.label = STOP if playing else PLAY
 
     def _take_case(self, case: str | None) -> None:
-        # None and the case of the state: the widget follows the state.
+        # None, and the case of the state: the widget follows the state.
         if case is not None and case != self.state.system.case:
             with pn.io.hold():
                 self.state.show_system(review_catalogue_entry(case))
@@ -180,7 +180,7 @@ class Controls:
         self._describe(escape_text(self.state.plane.title) if is_other and self.axes.label == AXES else "")
 
     def _plane(self) -> Slice | None:
-        """The slice in view if it is one of those to choose from; None for others."""
+        """The slice in view if it can be chosen here; None for others."""
         plane: Slice = self.state.plane
         return next((each for each in _PLANES if each == plane), None)
 
@@ -191,12 +191,12 @@ class Controls:
                 self.state.show_slice(plane)
 
     def _take_energy(self, energy: float) -> None:
-        # All that follows makes one message.
+        # All following changes make one message.
         with pn.io.hold():
             self.state.energy = energy
 
     def _follow_system(self) -> None:
-        """Show slider, ticks, formula, channels and escape energy of the system."""
+        """Show slider, ticks, formula, exits and escape energy of the system."""
         state, energies = self.state, self.state.energies
         self.case.value = self._case()
         self.other.color = "light" if self._case() else "primary"
@@ -233,17 +233,17 @@ class Controls:
 
 
 def _outcomes(potential: Potential) -> str:
-    """What orbits end at, and from which energy on."""
-    frame = f"rotates at Ω = {potential.rotation:.6g}; " if potential.rotation else ""
+    """Describe the ends of orbits, and the energies from which on they exist."""
+    frame = f"rotates at Ω = {format_number(potential.rotation, 6)}; " if potential.rotation else ""
     if not potential.ends:
-        return f"{frame}{potential.channels} exits above h = {potential.escape_energy:.6g}"
+        return f"{frame}{potential.channels} exits above h = {format_number(potential.escape_energy, 6)}"
     labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
-    opened = f"; exits open above h = {potential.escape_energy:.6g}" if potential.channels else ""
+    opened = f"; exits open above h = {format_number(potential.escape_energy, 6)}" if potential.channels else ""
     return f"{frame}{labels}{opened}"
 
 
 def _ticks(escape: float, energies: EnergyRange) -> str:
-    """HTML of ticks below the slider, at the marked energies and with a label at the escape energy."""
+    """Return HTML of ticks below the slider, at the marked energies, with a label at the escape energy."""
     shares = [(energy - energies.low) / (energies.high - energies.low) for energy in (escape, *energies.marked)]
     ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in shares if 0.0 <= share <= 1.0)
     text = f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {format_number(escape)}</span>"

@@ -57,7 +57,7 @@ class Downloads:
         return [self.link, self.embed, hint, titles[0], *self.figure.build(), titles[1], *files, self.saver]
 
     async def save(self, file: File) -> None:
-        """Make a file in a thread, so that the event loop goes on, and send it to the browser."""
+        """Make a file in a thread, so that the event loop continues, and send it to the browser."""
         name, make = file
         self.saver.save(name, await asyncio.to_thread(make))
 

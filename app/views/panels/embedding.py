@@ -1,4 +1,4 @@
-"""A picture in a frame of another page: the code of the frame, and in the frame the link to the whole page."""
+"""A picture in a frame of another page: the HTML of the frame, and the link to the whole page inside the frame."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from app.state.permalink import write_link
 from app.state.view_state import ViewState
 from app.views.components.texts import TextPane
 
-NOT_ALLOWED = "This server lets no other page embed it."
+NOT_ALLOWED = "Embedding is switched off on this server."
 
 # Side of the frame in pixels; pictures are square.
 _SIDE = 600
 
 
 def page_address(request: Any) -> str:
-    """The absolute address of the page that a request asks for, without parameters.
+    """Return the absolute address of the page of a request, without parameters.
 
-    Host and scheme are those of the request, or with ``--use-xheaders`` those that the proxy states.
+    Host and scheme come from the request, or with ``--use-xheaders`` from the proxy.
     """
     return f"{request.protocol}://{request.host}{request.path}"
 
 
 def embed_code(address: str, state: ViewState) -> str:
-    """HTML of a frame with the picture of a view that is shown large, or else with its basins.
+    """Return HTML of a frame with the picture of a view that is shown large, or with its basins.
 
     Parameters
     ----------
@@ -41,11 +41,11 @@ def embed_code(address: str, state: ViewState) -> str:
 
 
 class OpenLink:
-    """The link in an embedded page that opens its view in a tab of its own."""
+    """The link in an embedded page that opens its view in a new tab."""
 
     def __init__(self) -> None:
         self.pane = TextPane("", margin=0, css_classes=["open-explorer"])
 
     def show(self, link: str) -> None:
-        """Lead to a view; `link` is the result of `app.state.permalink.write_link`."""
+        """Set the view that the link opens; `link` is the result of `app.state.permalink.write_link`."""
         self.pane.object = f'<a href="{escape(link)}" target="_blank" rel="noopener">Open in the explorer</a>'

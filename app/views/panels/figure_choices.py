@@ -1,4 +1,4 @@
-"""The figures that can be made of what the page shows."""
+"""The figures that can be made of the content of the page."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from plots.printed.figure_files import (
 from plots.printed.figure_style import FigureFormat, FigureStyle
 
 Make = Callable[[FigureFormat, FigureStyle], bytes]
-"""Makes a file of a figure; takes seconds."""
+"""Makes the file of a figure, which takes seconds."""
 
 ALL_MAPS, WELL, ORBITS, STATISTICS, CURVES = "All maps", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"
 FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curves"), WELL, ORBITS, STATISTICS, CURVES)
@@ -28,7 +28,7 @@ FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curve
 
 
 def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
-    """Return the figures by title; they keep the results of this moment, even if the page changes afterwards."""
+    """Return the figures by title; they use the present results, even if the page changes afterwards."""
     choices: dict[str, Make] = {}
     drawings = [one.drawing for one in shown.orbits if one.drawing is not None]
     frame = shown.whole_map

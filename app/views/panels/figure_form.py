@@ -1,4 +1,4 @@
-"""The section "Figure" of the downloads: what to draw, in which format, and how large."""
+"""The section "Figure" of the downloads: the content, the format and the size of the figure."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, figure_choi
 from plots.printed.figure_style import FigureFormat, FigureStyle
 
 _TITLES = "Titles"
-_NUMBERS = {"width": ("Width in cm", 0.5), "dpi": ("Pixels per inch", 50.0), "font_size": ("Letters in points", 0.5)}
+_NUMBERS = {"width": ("Width, cm", 0.5), "dpi": ("Pixels/inch", 50.0), "font_size": ("Letters, pt", 0.5)}
 Send = Callable[[str, bytes | None], None]
 """Sends the name and the content of a file to the browser; None if it could not be made."""
 
@@ -34,11 +34,11 @@ class FigureForm:
     Parameters
     ----------
     state, results
-        Of the session.
+        State and results of the session.
     saver
         Sends files to the browser.
     name
-        Called with the end of a file name for the whole.
+        Returns the whole file name; called with its end.
     on_copied
         Called with the success of copying an image.
     """
@@ -66,14 +66,17 @@ class FigureForm:
     def build(self) -> list[pn.viewable.Viewable]:
         """The section, in a column."""
         boxes = [
-            NumberBox(partial(self.type, name), self._style[name], label=label, step=step, width=110, margin=(0, 4, 0, 10))
+            NumberBox(
+                partial(self.type, name), self._style[name], label=label, step=step, min_width=60, margin=(0, 4, 0, 10),
+                sizing_mode="stretch_width",
+            )
             for name, (label, step) in _NUMBERS.items()
-        ]
-        numbers = pn.Row(*boxes, margin=0)
+        ]  # fmt: skip
+        numbers = pn.Row(*boxes, margin=0, sizing_mode="stretch_width")
         return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
 
     def _offer(self) -> None:
-        """Offer the figures of what the page shows; what is chosen stays, as the next map may have it."""
+        """Offer the figures of the page's content; the chosen title stays, because the next map may have this figure."""
         offered = {ALL_MAPS, self.what.value, *figure_choices(self._results, self._state)}
         self.what.options = [title for title in FIGURES if title in offered]
 
@@ -83,7 +86,7 @@ class FigureForm:
         return FigureStyle(**self._style, titles=bool(self.titles.value))
 
     def figure(self) -> tuple[str, Make]:
-        """Part of the file name, empty for all maps, and the call that makes the chosen figure.
+        """Return a part of the file name, empty for all maps, and the call that makes the chosen figure.
 
         Raises
         ------
@@ -107,7 +110,7 @@ class FigureForm:
         self._begin(FigureFormat.PNG, lambda name, content: self.copy.send(content))
 
     def _begin(self, format: FigureFormat, send: Send) -> None:
-        """Make the figure from the results at the moment of the click, and send it or show an error."""
+        """Make the figure from the results at the time of the click; send it or show an error."""
         try:
             name, make = self.figure()
             style = self.style

@@ -47,7 +47,7 @@ p {
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class GalleryCards(JSComponent):
-    """The cards in the browser; it sends the key of the card that is chosen."""
+    """The cards in the browser; it sends the key of the chosen card."""
 
     cards = param.List(default=[])
     groups = param.List(default=[])
@@ -57,7 +57,7 @@ class GalleryCards(JSComponent):
 
 
 class Gallery:
-    """Shows `PRESETS`; `on_preset` is called, without the session's lock, with the one that is chosen."""
+    """Shows `PRESETS`; `on_preset` is called with the chosen one, without the session's lock."""
 
     def __init__(self, state: ViewState, on_preset: Callable[[Preset], None]) -> None:
         self._on_preset = on_preset
@@ -71,7 +71,7 @@ class Gallery:
         return [self._make([_card(preset) for preset in PRESETS], groups=list(GROUPS), hint=HINT)]
 
     def invitation(self) -> pn.viewable.Viewable:
-        """What a visitor sees before there is an orbit: some of the cards, in one group."""
+        """The content of the page before there is an orbit: some of the cards, in one group."""
         if self._invitation is None:
             cards = [
                 {**_card(preset), "group": INVITATION, "line": typeset(preset.invitation)}
@@ -93,7 +93,7 @@ class Gallery:
         return shown
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: ignore what is not expected.
+        # Messages come from a browser: unexpected ones are ignored.
         if isinstance(message, str) and message in self._presets:
             self._on_preset(self._presets[message])
 

@@ -1,4 +1,4 @@
-"""The drawer in which the slice is chosen: its axes, what the energy decides, and the values of the other coordinates."""
+"""The drawer in which the slice is chosen: its axes, what the energy determines, and the values of the other coordinates."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _HINT = "Starts move along the two axes. The energy decides one momentum, or the
 _ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}
 _FIRST_ANGLE = {Coordinate.THETA: 0.0, Coordinate.BETA: 0.5 * math.pi}
 _STEP = 0.05
-# What the energy decides: a momentum and its sign, or the speed and the angle that gives its direction.
+# What the energy determines: a momentum and its sign, or the speed with the angle that gives its direction.
 _Mode = tuple[Coordinate, int, Coordinate | None]
 _MODES: dict[str, _Mode] = {
     "py > 0": (Coordinate.PY, 1, None),
@@ -84,7 +84,7 @@ class SlicePanel:
         return [flex_row(low, high, gap="8px")]
 
     def _held_boxes(self, plane: Slice) -> list[pn.viewable.Viewable]:
-        """A box for each coordinate that is neither an axis nor decided by the energy."""
+        """A box for each coordinate that is neither an axis nor determined by the energy."""
         values = dict(plane.fixed)
         others = [c for c in (Coordinate.PX, Coordinate.PY) if c is not plane.decided and plane.decided is not Coordinate.SPEED]
         angles = [angle for angle in _ANGLES if angle in values]
@@ -112,7 +112,7 @@ class SlicePanel:
             axis = Coordinate(event.new)
         axes = (axis, plane.ordinate) if place == 0 else (plane.abscissa, axis)
         if event.new == plane.axes[1 - place].key:
-            # The axes change places.
+            # The axes change places if the chosen axis is the other one.
             axes = plane.ordinate, plane.abscissa
         self._submit(lambda: _with_axes(plane, axes))
 
@@ -159,7 +159,7 @@ class SlicePanel:
             self.message.object = f"<p role='alert'>{escape(str(error))}</p>"
             self._follow_axes()
         else:
-            # Held changes need no lock of the session.
+            # Changes that are held need no lock of the session.
             with pn.io.hold():
                 self._state.show_slice(chosen)
 
@@ -182,7 +182,7 @@ def _symbol(key: str) -> str:
 
 
 def _mode_of(plane: Slice) -> str:
-    """Return the label of what the energy decides on a slice."""
+    """Return the label of the quantity that the energy determines on a slice."""
     if plane.decided is Coordinate.SPEED:
         used = (*plane.axes, *dict(plane.fixed))
         return next(text for angle, text in _ANGLES.items() if angle in used)
@@ -190,7 +190,7 @@ def _mode_of(plane: Slice) -> str:
 
 
 def _with_axes(plane: Slice, axes: tuple[Any, Any]) -> Slice:
-    """Return a slice with other axes that keeps the decided momentum and the held values if these are legal with the new axes."""
+    """Return a slice with other axes; the determined momentum and the held values are kept if the new axes permit them."""
     kept = tuple((c, value) for c, value in plane.fixed if c not in axes)
     for solved, sign, fixed in ((plane.solved, plane.sign, kept), (None, 1, kept), (None, 1, ())):
         try:

@@ -1,6 +1,6 @@
 """Propagation of many orbits at the same time, with the series of the current step of each, for an animation.
 
-The position of an orbit at a time within its step costs two polynomials. Steps are computed for full vectors of lanes.
+The position of an orbit within its step is given by two polynomials. Steps are computed for full vectors of lanes.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ def position_across(x, y, curve):
 
 @subroutine
 def exit_height(s, curve):
-    """f(s) of an exit over a saddle, with the straight lines beyond its ends."""
+    """Return f(s) of an exit over a saddle, with the straight lines beyond its ends."""
     beyond = 0.0
     if s < -1.0:
         beyond = curve[SLOPE_LOW] * (s + 1.0)

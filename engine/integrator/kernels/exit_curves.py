@@ -76,7 +76,7 @@ def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
 
 @subroutine
 def exit_point(exit_curve, s):
-    """Return x and y of the point of an exit at s, from −1 to 1; on a circle these values are the full turn."""
+    """Return x and y of the point of an exit at s, from −1 to 1; on a circle this range is a full turn."""
     if exit_curve[SHAPE] >= DISC:
         x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
         y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)

@@ -89,7 +89,7 @@ def _polynomial_is_below(polynomial, x, y, level):
 
 @subroutine
 def _expression_slopes(generated, x, y):
-    """V, V_x and V_y."""
+    """Return V, V_x and V_y."""
     address, coefficients, _ = generated
     return call_potential_slopes(address, coefficients, x, y)
 

@@ -14,14 +14,14 @@ from engine.integrator.kernels.events import CURVE, DISC, HALF_WIDTH, OUTWARD_X,
 from engine.integrator.kernels.exit_curves import exit_point
 
 BEFORE_EXIT = 9.0
-"""Time before they reach the exit at which the orbits near the edge of a tube start, in units of the well."""
+"""Orbits near the edge of a tube start this long before they reach the exit, in units of the well."""
 
 _WORD = 0xFFFFFFFF
 # Number of parts of an exit, for each of which the flux is computed.
 _PARTS = 200
 # Distance of entering orbits from the exit, as a share of its half width; on the exit, rounding would decide what is inside.
 _SHIFT = 1e-7
-# Distance of starts at the edge of a tube from this edge at the exit, as a share of half its width.
+# Distance of these orbits from the edge of the tube, measured at the exit, as a share of half its width.
 _FROM_EDGE = 3e-3
 
 

@@ -56,7 +56,7 @@ def _nearest_returns(points):
 
 @subroutine
 def _squared_distance(points, i):
-    """Squared distance of point i from the first one."""
+    """Return the squared distance of point i from the first one."""
     return (points[i, 0] - points[0, 0]) ** 2 + (points[i, 1] - points[0, 1]) ** 2
 
 
@@ -88,7 +88,7 @@ def _largest_arc_height(loop):
 
 @subroutine
 def _turn(loop, i):
-    """Angle by which the polygon turns at its point i."""
+    """Return the angle by which the polygon turns at its point i."""
     n = loop.shape[0]
     x, y = loop[i, 0] - loop[i - 1, 0], loop[i, 1] - loop[i - 1, 1]
     next_x, next_y = loop[(i + 1) % n, 0] - loop[i, 0], loop[(i + 1) % n, 1] - loop[i, 1]

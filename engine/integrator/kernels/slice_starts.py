@@ -20,13 +20,13 @@ LAUNCHED, LAUNCHED_FROM_RADIUS = 6, 7
 
 @subroutine
 def interval_centre(low, high, place, count):
-    """Return the centre of one of `count` equal parts of an interval; the centres are as symmetric as the interval, exactly."""
+    """Return the centre of one of `count` equal parts of an interval; all are exactly symmetric if the interval is."""
     return 0.5 * (low + high) + (high - low) * ((2 * place + 1 - count) / (2 * count))
 
 
 @subroutine
 def rest_energy(momentum, value):
-    """Return the energy of a start whose momentum determined by the energy is 0; value: V at the start."""
+    """Return the energy of a start without the momentum that the energy determines; value: V at the start."""
     return 0.5 * (momentum * momentum) + value
 
 

@@ -79,12 +79,12 @@ def log_of(u: Value) -> Value:
 
 
 def sin_of(u: Value) -> Value:
-    """sin u; NaN for |u| > 1e6."""
+    """Return sin u; NaN for |u| > 1e6."""
     return _turned(u, 0)
 
 
 def cos_of(u: Value) -> Value:
-    """cos u; NaN for |u| > 1e6."""
+    """Return cos u; NaN for |u| > 1e6."""
     return _turned(u, 1)
 
 

@@ -185,13 +185,13 @@ class _Recurrence:
                 yield remainder if node.kind == "shift" else self.program.entry((self.name, place)) * remainder
 
     def slopes(self, index: int, k: int) -> list[Value]:
-        """j u_j of a node for j = 0 … k; the first is not used."""
+        """Return j u_j of a node for j = 0 … k; the first is not used."""
         known, series = self._slopes.setdefault(index, [self.series[index][0]]), self.series[index]
         known += [float(j) * series[j] if j > 1 else series[j] for j in range(len(known), k + 1)]
         return known
 
     def reciprocal(self, index: int) -> Value:
-        """1 / u_0 of a node."""
+        """Return 1 / u_0 of a node."""
         if index not in self._reciprocals:
             self._reciprocals[index] = 1.0 / self.series[index][0]
         return self._reciprocals[index]

@@ -239,7 +239,7 @@ _VECTOR = {"u0": "wx", "v0": "wy", "u1": "wpx", "v1": "wpy"}
 
 
 def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
-    """Variational equations ẅ = −(Hessian of V along the orbit) w, with w = (δx, δy, δpx, δpy); eq. 4 of Zotos (2014)."""
+    """Return the variational equations ẅ = −(Hessian of V on the orbit) w, with w = (δx, δy, δpx, δpy); eq. 4 of Zotos (2014)."""
     program = StraightLine("_tangent", table)
     hessian = structure.hessian(program)
     second: dict[tuple[int, int], list[Value]] = {axes: [] for axes in hessian}

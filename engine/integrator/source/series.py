@@ -88,7 +88,7 @@ class Structure(Hashable, Protocol):
         """Return the second derivatives of −V along the orbit from these inputs."""
 
     def point_functions(self) -> PointFunctions:
-        """Functions of one point."""
+        """Return functions of one point."""
 
     def tabulate(self, definition: Any, entries: Sequence[Any]) -> list[float]:
         """Return the values of the entries of the table for a potential of this structure."""
@@ -108,7 +108,7 @@ def add_coriolis(program: StraightLine, x: list[Value], y: list[Value]) -> None:
 
 
 def sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:
-    """a·b + c·d + …, nested so that each addition contracts into a multiply-add."""
+    """Return a·b + c·d + …, nested so that each addition contracts into a multiply-add."""
     return functools.reduce(operator.add, (left * right for left, right in pairs))
 
 

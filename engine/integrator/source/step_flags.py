@@ -14,7 +14,7 @@ _LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
 
 
 def _bend(series: Series, h: Value) -> Value:
-    """½ Σ_{k≥2} |y_k| (2h)^k, which is at least twice the distance of y from its chord over a step."""
+    """Return ½ Σ_{k≥2} |y_k| (2h)^k, which is at least twice the distance of y from its chord over a step."""
     twice = h + h
     bound = abs(series[ORDER])
     for k in reversed(range(2, ORDER)):
@@ -23,7 +23,7 @@ def _bend(series: Series, h: Value) -> Value:
 
 
 def _sag(series: Series, h: Value) -> Value:
-    """A bound of the distance of a coordinate from its chord over a step, Σ_{k≥2} max(σ − σ^k) |x_k| h^k with 0 ≤ σ ≤ 1."""
+    """Bound the distance of a coordinate from its chord over a step by Σ_{k≥2} max(σ − σ^k) |x_k| h^k with 0 ≤ σ ≤ 1."""
     bound = abs(series[ORDER])
     for k in reversed(range(2, ORDER)):
         bound = bound * h + (_LARGEST_SAGS.get(k, 1.0) * abs(series[k]))

@@ -1,4 +1,4 @@
-"""The entry of a potential in the catalogue."""
+"""Entries of the catalogue of potentials."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ class EnergyRange:
     Attributes
     ----------
     low, high
-        Its ends; `high` is also the upper end of the (x, h) plane.
+        The ends of the range; `high` is also the upper end of the (x, h) plane.
     marked
         Energies of special interest, such as the nine of the paper.
     first
-        Energy to begin with.
+        The energy shown first.
     decimals
-        Decimals that distinguish the energies of the range.
+        Number of decimals that distinguish the energies of the range.
     """
 
     low: float
@@ -51,11 +51,11 @@ class CatalogueEntry:
     reference
         Source in the literature.
     parameters
-        The values by name of the letters of the formula and of the rotation; for wells also those of `Potential.with_parameters`.
+        Values of the letters of the formula and of the rotation, by name; for wells also those of `Potential.with_parameters`.
     adjustable
-        The names of those that can be chosen.
+        The names of the parameters that users can choose.
     energies
-        Energies to explore at these values; None for the range that follows from the potential.
+        Energies to explore at these values; None for the range derived from the potential.
     """
 
     name: str
@@ -69,5 +69,5 @@ class CatalogueEntry:
 
     @property
     def is_well(self) -> bool:
-        """Whether it has ω1, ω2 and ε."""
+        """Whether it has the parameters ω1, ω2 and ε."""
         return "epsilon" in self.parameters

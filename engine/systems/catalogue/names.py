@@ -1,4 +1,4 @@
-"""A mapping of names that answers a wrong one with the names most like it."""
+"""A mapping whose error for an unknown name suggests similar names."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LEAST_LIKENESS = 0.6
 
 
 class UnknownNameError(KeyError, ValueError):
-    """A name that is not in a mapping; the message is one sentence."""
+    """A name is not in a mapping; the message is one sentence."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -24,13 +24,13 @@ class ByName[Value](Mapping[str, Value]):
     Parameters
     ----------
     kind
-        What the names are names of, for errors.
+        The kind of the named values, for errors.
     names
         The names.
     make
-        The value of a name, called whenever it is looked up.
+        Returns the value of a name; it is called at each look-up.
     titles
-        Other names, by name, under which a value may be looked for; a wrong name that is like one of them is told the name.
+        Alternative titles by name. For an unknown name that resembles a title, the error suggests its name.
     """
 
     def __init__(
@@ -39,7 +39,7 @@ class ByName[Value](Mapping[str, Value]):
         self._kind, self._names, self._make, self._titles = kind, tuple(names), make, dict(titles or {})
 
     def __getitem__(self, name: str) -> Value:
-        """The value of a name; `UnknownNameError`, a KeyError and a ValueError, names those like it."""
+        """Return the value of a name; raise `UnknownNameError`, a KeyError and a ValueError, which suggests similar names."""
         given: object = name
         if isinstance(given, str) and given in self._names:
             return self._make(given)
@@ -57,13 +57,13 @@ class ByName[Value](Mapping[str, Value]):
         return f"<{self._kind}s: {', '.join(self._names)}>"
 
     def _like(self, name: str) -> list[str]:
-        """Up to three names that are written like this one, the most similar first."""
+        """Return up to three names with similar spelling, the most similar first."""
         spelled = {_plain(other): known for known in self._names for other in (known, self._titles.get(known, known))}
         found = difflib.get_close_matches(_plain(name), spelled, n=3, cutoff=_LEAST_LIKENESS)
         return list(dict.fromkeys(spelled[each] for each in found))
 
 
 def _plain(name: str) -> str:
-    """Small letters and digits without accents."""
+    """Return the letters in lower case and the digits, without accents."""
     decomposed = unicodedata.normalize("NFKD", name.casefold())
     return "".join(letter for letter in decomposed if letter.isalnum())

@@ -5,9 +5,9 @@ from __future__ import annotations
 from engine.systems.catalogue.entry import CatalogueEntry, EnergyRange
 from engine.systems.parameters import ROTATION
 
-# The Moon's share of the mass of Earth and Moon; its radius over its distance is 1737.4 / 384 400.
+# Mass of the Moon as a share of that of Earth and Moon. The radius of the Moon over its distance is 1737.4 / 384 400.
 _MOON_MASS = 0.0121505856
-# Systems whose units of time is that of the rotation.
+# Systems whose unit of time is that of the rotation.
 _UNIT_ROTATION = {ROTATION: 1.0}
 
 

@@ -1,4 +1,4 @@
-"""The potentials included in the engine, each with a description and a reference; `docs/systems.md` lists them too."""
+"""The potentials included in the engine, each with a description and a reference; `docs/systems.md` also lists them."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _family_entry(n: int) -> CatalogueEntry:
 
 
 def _signed_term(n: int, j: int) -> str:
-    """The term with x^(n − j) y^j of the real part of (x + iy)ⁿ, as text."""
+    """Return the term with x^(n − j) y^j of the real part of (x + iy)ⁿ as text."""
     letters = "".join(f"{name}^{power}" if power > 1 else name for name, power in (("x", n - j), ("y", j)) if power)
     return f"{'−' if j % 4 else '+'} {comb(n, j) if comb(n, j) > 1 else ''}{letters}"
 

@@ -1,10 +1,11 @@
 """All real common roots of two polynomials in x and y with rational coefficients, with proof.
 
-The resultant of two polynomials p and q with respect to y is a polynomial in x that vanishes at the x of each common root. That
-with respect to x gives the y, and that of p and q in sheared axes, s = x + k y, gives the s. Their real roots are enclosed by
-intervals that FLINT computes with proof (Johansson 2017, IEEE Trans. Comput. 66, 1281). If k is such that different common roots
-have different s, each real s belongs to exactly one real root (x, y), the only one with x + k y = s. It is found when the
-intervals are so short that only one pair (x, y) is left for each s. The multiplicity of s is that of the common root.
+The resultant of two polynomials p and q with respect to y is a polynomial in x that vanishes at the x of each common root. The
+resultant with respect to x gives the values of y. In sheared axes, s = x + k y, the resultant gives the values of s. FLINT
+encloses the real roots of these polynomials by intervals, with proof (Johansson 2017, IEEE Trans. Comput. 66, 1281). If k is such
+that different common roots have different s, each real s belongs to exactly one real root (x, y), the only one with x + k y = s.
+It is found when the intervals are so short that only one pair (x, y) is left for each s. The multiplicity of s is that of the
+common root.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from engine.expressions.polynomials import ExactTerms
 from engine.systems.forms.point_searches import UndecidedError
 
 RING = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
-"""The polynomials in x and y with rational coefficients."""
+"""The context of polynomials in x and y with rational coefficients."""
 
 # Arbitrary factors k, tried in turn. Two common roots have the same s only if the line through them has the slope −1/k.
 _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
@@ -31,7 +32,7 @@ _NEAR = 1e-9
 
 @dataclass(frozen=True)
 class CommonRoot:
-    """A common root (x, y), each coordinate an interval, and its multiplicity, 1 where the two curves cross."""
+    """A common root (x, y), with an interval for each coordinate, and its multiplicity, which is 1 where the two curves cross."""
 
     x: arb
     y: arb
@@ -39,14 +40,14 @@ class CommonRoot:
 
 
 def exact_polynomial(terms: ExactTerms) -> fmpq_mpoly:
-    """Σ c x^i y^j."""
+    """Return Σ c x^i y^j as a polynomial of FLINT."""
     return RING.from_dict({powers: fmpq(c.numerator, c.denominator) for powers, c in terms.items()})
 
 
 def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
-    """All real common roots of two polynomials without a common factor, each once.
+    """Find all real common roots of two polynomials without a common factor, each once.
 
-    The precision of `flint.ctx`, which all threads share, is changed meanwhile.
+    Meanwhile the precision of `flint.ctx`, which all threads share, is changed.
 
     Raises
     ------
@@ -59,7 +60,7 @@ def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
     for shear in _SHEARS:
         sheared = [_sheared(each, shear) for each in (p, q)]
         if any(each.degrees()[1] < each.total_degree() for each in sheared):
-            # Roots at infinity would count.
+            # A leading coefficient vanishes, so that roots at infinity would count.
             continue
         along_s = _univariate(sheared[0].resultant(sheared[1], "y"), 0)
         for precision in _PRECISIONS:
@@ -67,24 +68,26 @@ def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
                 found = _paired(_real_roots(along_x), _real_roots(along_y), _real_roots(along_s), shear)
             if found is not None:
                 return found
-    raise UndecidedError("Whether all points where the force vanishes are known cannot be decided: some are too close together.")
+    raise UndecidedError(
+        "It cannot be decided whether all points where the force vanishes are known: some are too close together."
+    )
 
 
 def _univariate(polynomial: fmpq_mpoly, axis: int) -> fmpq_poly:
-    """A polynomial of one coordinate."""
+    """Return a polynomial of one coordinate."""
     coefficients = {powers[axis]: c for powers, c in polynomial.to_dict().items()}
     return fmpq_poly([coefficients.get(n, 0) for n in range(max(coefficients, default=0) + 1)])
 
 
 def _sheared(polynomial: fmpq_mpoly, shear: fmpq) -> fmpq_mpoly:
-    """The polynomial in s = x + k y, instead of x, and y."""
+    """Return the polynomial in s = x + k y, instead of x, and y."""
     x, y = RING.gens()
     return polynomial.compose(x - shear * y, y)
 
 
 def _real_roots(polynomial: fmpq_poly) -> list[tuple[arb, int]]:
-    """The real roots with their multiplicities, in increasing order."""
-    # FLINT's stubs leave out the multiplicities.
+    """Return the real roots with their multiplicities, in increasing order."""
+    # FLINT's stubs do not declare the multiplicities.
     roots: list[Any] = polynomial.numer().complex_roots() if polynomial.degree() > 0 else []
     return sorted(((root.real, multiplicity) for root, multiplicity in roots if root.imag == 0), key=lambda each: each[0].mid())
 
@@ -92,7 +95,7 @@ def _real_roots(polynomial: fmpq_poly) -> list[tuple[arb, int]]:
 def _paired(
     along_x: list[tuple[arb, int]], along_y: list[tuple[arb, int]], along_s: list[tuple[arb, int]], shear: fmpq
 ) -> list[CommonRoot] | None:
-    """For each s the only x and y with x + k y = s; None if there is not exactly one pair for one of them."""
+    """Return for each s the only x and y with x + k y = s; None if there is not exactly one pair for each s."""
     places, k, found = [float(x) for x, _ in along_x], arb(shear), []
     for s, multiplicity in along_s:
         pairs = []

@@ -1,9 +1,8 @@
 """All critical points of a polynomial V, found with proof, in rational arithmetic.
 
-A coefficient stands for the decimal that Python prints, or for a fraction of small denominator that is nearest to it, so that the
-result is the same on every machine, and exact for formulas as they are typed. V_x and V_y are divided by their greatest common
-divisor, the rest has isolated common roots (`find_common_roots`), and where the divisor vanishes the force vanishes along curves,
-or at single points.
+A coefficient represents the decimal that Python prints, or the nearest fraction with a small denominator, so that the result is
+the same on every machine and exact for typed formulas. V_x and V_y are divided by their greatest common divisor. The quotients
+have isolated common roots (`find_common_roots`). Where the divisor vanishes, the force vanishes along curves or at single points.
 """
 
 from __future__ import annotations
@@ -19,20 +18,20 @@ from engine.expressions.polynomials import Terms
 from engine.systems.forms.common_roots import RING, CommonRoot, exact_polynomial, find_common_roots
 from engine.systems.forms.point_searches import NotIsolatedError
 
-# Denominators of fractions that are recognised, such as 1/3.
+# Denominators of the fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000
-# An arbitrary place.
+# An arbitrary point; on each curve of zeros, the point nearest to it is searched for.
 _ARBITRARY = fmpq(577, 1009), fmpq(-733, 1013)
-# Bits of the intervals in which signs are found; all roots are known to more.
+# Bits of the intervals in which signs are determined; all roots are known with more bits.
 _PRECISION = 1024
-# Relative error of the coefficients by which a Hessian may become singular.
+# Relative error of the coefficients within which a Hessian may become singular.
 _ROUNDING = 2.0**-44
-# Precision is a global variable of FLINT.
+# The precision is a global variable of FLINT.
 _LOCK = threading.Lock()
 
 
 def find_critical_points(terms: Terms) -> np.ndarray:
-    """The points at which the gradient of V vanishes, with their indices.
+    """Return the points at which the gradient of V vanishes, with their indices.
 
     Parameters
     ----------
@@ -41,8 +40,8 @@ def find_critical_points(terms: Terms) -> np.ndarray:
 
     Returns
     -------
-    (n, 3) x, y and the index of each point, once: 1 for a minimum or a maximum, −1 for a saddle, 0 if it is degenerate or would
-    be with coefficients that differ by their rounding errors.
+    (n, 3) x, y and the index of each point, once: 1 for a minimum or a maximum, −1 for a saddle, 0 if it is degenerate, or can
+    become so by rounding errors of the coefficients.
 
     Raises
     ------
@@ -64,16 +63,16 @@ def find_critical_points(terms: Terms) -> np.ndarray:
 
 
 def _rational(c: float) -> Fraction:
-    """The number that a coefficient stands for."""
+    """Return the number that a coefficient represents."""
     decimal = Fraction(repr(float(c)))
     simple = decimal.limit_denominator(_LARGEST_DENOMINATOR)
     return simple if float(simple) == c else decimal
 
 
 def _isolated_zeros(polynomial: fmpq_mpoly) -> list[CommonRoot]:
-    """The real zeros of a polynomial, which are isolated points; NotIsolatedError if there are curves of them.
+    """Return the real zeros of a polynomial, which are isolated points; raise NotIsolatedError if there are curves of zeros.
 
-    On each curve of zeros there is a point that is nearest to an arbitrary place; the gradient there points along the line to it.
+    Each curve of zeros has a point nearest to an arbitrary point; the gradient there is parallel to the line between the two.
     """
     zeros = []
     x, y = RING.gens()
@@ -95,7 +94,7 @@ def _is_among(root: CommonRoot, others: list[CommonRoot]) -> bool:
 
 
 def _index(potential: fmpq_mpoly, root: CommonRoot) -> int:
-    """1, −1 or 0, see `find_critical_points`."""
+    """Return 1, −1 or 0, see `find_critical_points`."""
     hessian = _Hessian(potential, root)
     if root.multiplicity > 1 or hessian.determinant.contains(0) or hessian.is_singular_to_rounding():
         return 0
@@ -114,7 +113,7 @@ class _Hessian:
             self.determinant = self.xx * self.yy - self.xy**2
 
     def is_singular_to_rounding(self) -> bool:
-        """Whether rounding errors of the coefficients can change the sign of the eigenvalue λ of smaller magnitude.
+        """Return whether rounding errors of the coefficients can change the sign of the eigenvalue λ of smaller magnitude.
 
         With its unit vector e, a change δ of the matrix changes λ by eᵀ δ e.
         """
@@ -131,7 +130,7 @@ class _Hessian:
 
 
 def _value(polynomial: fmpq_mpoly, root: CommonRoot, *, magnitude: bool = False) -> arb:
-    """An interval that contains the value at a root; with `magnitude` the sum of the magnitudes of the terms."""
+    """Return an interval that contains the value at a root; with `magnitude`, the sum of the magnitudes of the terms."""
     with ctx.workprec(_PRECISION):
         terms = (arb(c) * root.x**i * root.y**j for (i, j), c in polynomial.to_dict().items())
         return sum(map(abs, terms) if magnitude else terms, arb(0))

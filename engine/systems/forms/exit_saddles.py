@@ -1,8 +1,8 @@
-"""Which saddles of a potential lead out of the well at the origin, and which maxima lie beside them.
+"""Saddles of a potential that lead out of the well at the origin, and the maxima beside them.
 
 From a saddle two lines of steepest descent start, one on each side along its unstable direction. If one ends at the origin and
 the other elsewhere, at another minimum or at infinity, the saddle is an exit of the well. The two lines of steepest ascent run
-through the walls of the channel; above the energy of a maximum at which one of them ends, the channel has no wall there.
+along the walls of the channel; above the energy of a maximum at which one of them ends, the channel has no wall there.
 """
 
 from __future__ import annotations
@@ -19,29 +19,30 @@ from engine.systems.forms.point_searches import NO_POINTS, DescentError
 Downhill = Callable[[float, float], Velocity]
 Hessian = Callable[..., tuple[np.ndarray, ...]]
 
-# Distance from the saddle at which a descent starts, in units of the distance of the nearest other critical point.
+# Distance from the saddle at which a descent starts, in units of the distance to the nearest other critical point.
 _START_DISTANCE = 1e-3
-# Distance from a critical point at which a descent ends, in units of the distance of the one nearest to the origin.
+# Distance from a critical point at which a descent ends, in units of the distance of the critical point nearest to the origin.
 _END_DISTANCE = 1e-4
-# A descent has gone to infinity at this distance from the origin, in units of the distance of the outermost critical point.
+# Distance from the origin at which a descent counts as infinite, in units of that of the outermost critical point.
 _FAR = 10.0
 
-# A descent is at rest if it moves by less in a step, in units of the distance of the point nearest to the origin.
+# A descent that moves by less in a step is at rest, in units of the distance of the point nearest to the origin.
 _AT_REST = 1e-13
 
 _RELATIVE_ERROR = 1e-9
-# Length of the first step, in units of the start's distance from the saddle.
+# Length of the first step, in units of the distance of the start from the saddle.
 _FIRST_MOVE = 1e-6
-# Limit on the steps of all descents of a potential, some seconds. Most potentials need about 1 000, one of 600 wells 17 000.
+# Limit on the steps of all descents of a potential, which take some seconds. Most potentials need about 1 000; of 600 wells, one
+# needed 17 000.
 _MOST_STEPS = 20_000
-# Limit on the steps of one method along one line. Most lines need 200, those through long narrow valleys about 2 000.
+# Limit on the steps of one method along one line. Most lines need 200; lines through long narrow valleys need about 2 000.
 _MOST_STEPS_ALONG_LINE = 5_000
 
 
 def leads_out_of_well(
     downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, poles: np.ndarray = NO_POINTS
 ) -> np.ndarray:
-    """(n,) whether each critical point (n, 2) of a potential is a saddle that leads out of the well or pole at the origin.
+    """Return (n,) whether each critical point (n, 2) is a saddle that leads out of the well or pole at the origin.
 
     Parameters
     ----------
@@ -72,7 +73,7 @@ def leads_out_of_well(
 def find_maxima_beside(
     downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, saddles: np.ndarray
 ) -> np.ndarray:
-    """(m, n) whether a line of steepest ascent from each of m saddles ends at each critical point, a maximum.
+    """Return (m, n) whether a line of steepest ascent from each of m saddles ends at each critical point, a maximum.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def find_maxima_beside(
     indices
         (n,) −1 for saddles, 1 for minima and maxima.
     saddles
-        (m,) places of saddles among the points.
+        (m,) indices of saddles among the points.
     """
     flags = np.zeros((len(saddles), len(points)), bool)
     if not len(saddles) or not np.any((indices > 0) & (hessian(*points.T)[0] < 0.0)):
@@ -112,9 +113,9 @@ class _Descent:
         self.steps_left = _MOST_STEPS
 
     def find_ends(self, saddle: int, side: float) -> set[int]:
-        """Indices of the critical points where the descent on one side of a saddle ends, −1 for infinity.
+        """Return the indices of the critical points where the descent on one side of a saddle ends, −1 for infinity.
 
-        There is more than one if the line ends at another saddle, which happens in symmetric potentials.
+        There is more than one if the line ends at another saddle, as happens in symmetric potentials.
         """
         pending, visited, ends = [(saddle, side)], {saddle}, set[int]()
         while pending:
@@ -127,11 +128,12 @@ class _Descent:
         return ends
 
     def _descend(self, saddle: int, side: float) -> int:
-        """Index of the critical point where one line of steepest descent ends, −1 for infinity."""
+        """Return the index of the critical point where one line of steepest descent ends, −1 for infinity."""
         from scipy.integrate import LSODA, Radau
 
-        # LSODA may not notice that a long narrow valley needs an implicit method. Radau is one, but takes ten times as long, and
-        # needs a steady flow: after a very slow start its steps would become shorter than the rounding error of the time.
+        # LSODA may not detect that a long narrow valley needs an implicit method. Radau is implicit, but takes ten times as long
+        # and needs a flow of constant speed: after a very slow start its steps would be shorter than the rounding error of the
+        # time.
         for method, flow in ((LSODA, self.flow), (Radau, self._steady_flow)):
             with warnings.catch_warnings():
                 # If LSODA fails, the other method is tried.
@@ -143,19 +145,19 @@ class _Descent:
         raise DescentError(f"The end of a line of steepest descent from the saddle ({x:.6g}, {y:.6g}) is not found.")
 
     def _steady_flow(self, time: float, place: np.ndarray) -> np.ndarray:
-        """The flow at speed 1."""
+        """Return the flow scaled to speed 1."""
         velocity = self.flow(time, place)
         steady: np.ndarray = velocity / np.hypot(*velocity)
         return steady
 
     def _follow(self, method: Any, flow: Velocity, saddle: int, side: float) -> int | None:
-        """As `_descend`, along a flow and by one of SciPy's methods; None if it does not come to the end."""
+        """Descend like `_descend`, along a flow and by one of SciPy's methods; return None if the end is not reached."""
         others = np.delete(np.arange(len(self.points)), saddle)
         distance = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
         start = self.points[saddle] + side * distance * self.unstable_directions[saddle]
-        # Without an end in time: a descent takes longer the flatter its valley is.
+        # There is no final time, because the flatter its valley, the longer a descent takes.
         tolerances = {"rtol": _RELATIVE_ERROR, "atol": _RELATIVE_ERROR * self.length}
-        # LSODA's own first step can be too long for its corrector to converge.
+        # The first step chosen by LSODA can be too long for its corrector to converge.
         first_step = _FIRST_MOVE * distance / np.hypot(*flow(0.0, start))
         line = method(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
         last = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
@@ -169,7 +171,7 @@ class _Descent:
             if distances.min() < _END_DISTANCE * self.length:
                 return int(others[np.argmin(distances)])
             moved = float(np.hypot(*(line.y - before)))
-            # At rest, it is at a critical point that is not in the list, beyond the region where they were searched.
+            # An orbit at rest elsewhere is at a critical point that is not in the list, outside the searched region.
             if np.hypot(*line.y) > self.far or moved < _AT_REST * self.length:
                 return -1
         return None

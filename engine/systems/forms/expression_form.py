@@ -26,17 +26,17 @@ from engine.systems.forms.stationary_points import find_stationary_points
 from engine.systems.well_units import nearest_power_of_two
 
 MOST_CONVOLUTIONS = 120
-"""Largest number of products and functions in the graph of gradient and Hessian: their cost and compile time grow with it."""
+"""Largest number of products and functions in the graph of gradient and Hessian, which determines their cost and compile time."""
 
-# Results of searches for zeros, some 0.1 kB each, and the share of the operations that a search may take.
+# Number of cached searches for zeros, of some 0.1 kB each, and the share of the operations that a search may take.
 _ZEROS, _EFFORT_FOR_ZEROS = 1024, 0.1
 
-# Largest order of the rotations to look for, and the relative error within which V must agree on the circles below.
+# Largest order of the rotations that are searched, and the relative error within which V must agree on the circles below.
 _MOST_ROTATIONS, _ROTATION_ERROR = 12, 1e-11
 _RADII, _ANGLES = 2.0 ** np.arange(-6.0, 3.0)[:, None], np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
-# Values of an expression that count as 0, relative to its curvature.
+# Values of an expression below this, relative to its curvature, count as 0.
 _ZERO = 1e-14
-# An angle that is not 2π/n, in radians.
+# An angle in radians that is not 2π/n.
 _ANY_ROTATION = 1.0
 
 
@@ -51,7 +51,7 @@ class ExpressionForm:
     expression: Expression
 
     def __post_init__(self) -> None:
-        # An expression that is refused for its size is not searched for zeros.
+        # An expression that is refused because of its size is not searched for zeros.
         if self.limits_refusal() is None:
             object.__setattr__(self, "expression", replace_parts(self.expression, _from_zeros(self.expression)))
 
@@ -70,37 +70,37 @@ class ExpressionForm:
 
     @property
     def length(self) -> float:
-        """The distance of the nearest critical point from the origin, or 1."""
+        """The distance of the nearest critical point from the origin, or 1 if there is none."""
         distance = np.hypot(*self.find_critical_points()[:, :2].T)
         distance = distance[distance > 0.0]
         return nearest_power_of_two(float(distance.min())) if distance.size else 1.0
 
     @property
     def mirror_in_x(self) -> bool:
-        """Whether x enters through its even powers only."""
+        """Whether V contains only even powers of x."""
         return parity(self.expression, 0) == EVEN
 
     @property
     def mirror_in_y(self) -> bool:
-        """Whether y enters through its even powers only."""
+        """Whether V contains only even powers of y."""
         return parity(self.expression, 1) == EVEN
 
     @property
     def has_constant(self) -> bool:
-        """Whether a number is added."""
+        """Whether V contains an added number."""
         return isinstance(self.expression, Sum) and self.expression.constant != 0.0
 
     def value(self, x: Any, y: Any) -> Any:
-        """V at (x, y); arrays broadcast; NaN where it is not defined."""
+        """Return V at (x, y); arrays broadcast; NaN where it is not defined."""
         return self._evaluate(x, y, self.expression)[0]
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """(V_x, V_y)."""
+        """Return (V_x, V_y)."""
         along_x, along_y = self._evaluate(x, y, *slopes(self.expression))
         return along_x, along_y
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
-        """(V_xx, V_xy, V_yy)."""
+        """Return (V_xx, V_xy, V_yy)."""
         vxx, vxy, vyy = self._evaluate(x, y, *curvatures(self.expression))
         return vxx, vxy, vyy
 
@@ -110,11 +110,11 @@ class ExpressionForm:
         return [value[()] for value in evaluate(graph, numbers, x, y)]
 
     def force(self, axis: int) -> ExpressionForm:
-        """−∂V/∂x or −∂V/∂y."""
+        """Return −∂V/∂x or −∂V/∂y."""
         return ExpressionForm(linear_combination([(-1.0, derivative(self.expression, axis))]))
 
     def find_critical_points(self) -> np.ndarray:
-        """(n, 3) critical points of a region with their indices, see `engine.systems.forms.stationary_points`."""
+        """Find the (n, 3) critical points of a region with their indices, see `engine.systems.forms.stationary_points`."""
         return self._critical_points
 
     @cached_property
@@ -143,7 +143,7 @@ class ExpressionForm:
         return read_only(np.concatenate([NO_POINTS, *found]))
 
     def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
-        """Whether a divisor, or the argument of a root or a logarithm, takes both signs at the points."""
+        """Return whether a divisor, or the argument of a root or a logarithm, has both signs at the points."""
         signs = (np.sign(self._evaluate(x, y, base)[0]) for base in singular_bases(self.expression))
         return any(bool((each > 0.0).any() and (each < 0.0).any()) for each in signs)
 
@@ -152,12 +152,12 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(1.0, self.expression), (1.0, from_terms(terms))]))
 
     def scaled(self, length: float, energy: float) -> ExpressionForm:
-        """V(length x, length y) / energy."""
+        """Return V(length x, length y) / energy."""
         x, y = (linear_combination([(length, axis)]) for axis in (X, Y))
         return ExpressionForm(linear_combination([(1.0 / energy, substitute(self.expression, x, y))]))
 
     def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> ExpressionForm:
-        """Return ε V, but about the origin the constant and linear terms of V, and its quadratic ones scaled by ω₁ and ω₂."""
+        """Return ε V, but keep its constant and linear terms about the origin, and scale its quadratic terms by ω1 and ω2."""
         if omega_1 == omega_2 == epsilon == 1.0:
             return self
         vxx, vxy, vyy = map(float, self.hessian(0.0, 0.0))
@@ -173,7 +173,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(epsilon, self.expression), (1.0, from_terms(changes))]))
 
     def moved(self, x: float, y: float) -> ExpressionForm:
-        """V(x + x₀, y + y₀)."""
+        """Return V(x + x₀, y + y₀)."""
         axes = (linear_combination([(1.0, axis), (place, number(1.0))]) for axis, place in ((X, x), (Y, y)))
         return ExpressionForm(substitute(self.expression, *axes))
 
@@ -184,7 +184,7 @@ class ExpressionForm:
         return next(n for n in range(_MOST_ROTATIONS, 0, -1) if n == 1 or self._is_turned_by(2.0 * math.pi / n))
 
     def _is_turned_by(self, angle: float) -> bool:
-        """Whether a rotation leaves V unchanged, as far as it is defined."""
+        """Return whether a rotation leaves V unchanged where it is defined."""
         one, other = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
         known = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
         error = np.abs(one[known] - other[known]).max(axis=1)
@@ -215,7 +215,7 @@ def _from_zeros(expression: Expression) -> dict[Expression, Expression]:
 
 
 def _shifted(terms: Terms, a: float, b: float) -> Expression:
-    """A polynomial as Σ c (x − a)^k (y − b)^m, without the rounding errors of zero coefficients."""
+    """Return a polynomial as Σ c (x − a)^k (y − b)^m, without the rounding errors of zero coefficients."""
     moved: dict[tuple[int, int], float] = {}
     for (i, j), c in terms.items():
         for k, m in np.ndindex(i + 1, j + 1):
@@ -228,7 +228,7 @@ def _shifted(terms: Terms, a: float, b: float) -> Expression:
 
 @lru_cache(maxsize=_ZEROS)
 def _isolated_zeros(expression: Expression) -> np.ndarray:
-    """(n, 2) the stationary points at which an expression is 0 up to rounding; none if these form a curve."""
+    """Return (n, 2) the stationary points at which an expression is 0 up to rounding; none if these form a curve."""
     terms = as_terms(expression)
     form = ExpressionForm(expression) if terms is None else PolynomialForm(tuple((i, j, c) for (i, j), c in terms.items()))
     try:

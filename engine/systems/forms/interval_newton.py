@@ -1,4 +1,4 @@
-"""Critical points in boxes: proofs with intervals that a box has none, or exactly one, and Newton's method."""
+"""Critical points in boxes: interval proofs that a box contains none, or exactly one, and Newton's method."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ from engine.expressions.singularities import has_central_part, oblique_gradients
 Program = tuple[Graph, tuple[float, ...]]
 """A graph and its numbers."""
 
-# A point is proved in a box this much larger than the one in which it was looked for, as it may lie on an edge.
+# A point is proved in a box larger than the searched one by this factor, because it may lie on an edge.
 _ENLARGED = 1.3
-# Covers the rounding errors of Krawczyk's operator, relative to the box.
+# A share of the box that covers the rounding errors of Krawczyk's operator.
 _MARGIN = 1e-9
 _REFINING_STEPS = 8
-# How much longer an operation on intervals takes than a sum or a product.
+# Cost of operations on intervals in units of a sum or a product.
 _COSTS = {"sin": 10, "cos": 10, "exp": 4, "log": 4, "power": 4}
-# The points lie slightly beyond the edges, as a wall may run along an edge.
+# The points lie slightly outside the edges, because a wall may run along an edge.
 _SAMPLES = 1.1 * np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
 
 
 @dataclass(frozen=True)
 class Derivatives:
-    """V and derivatives of it as programs.
+    """V and its derivatives as programs.
 
     Attributes
     ----------
     slopes
-        V, its derivatives along two directions that are not parallel, and along further ones.
+        V, its derivatives along two directions that are not parallel, and its derivatives along further directions.
     jacobian
-        The x and y derivatives of the first and of the second of these two.
+        The x and y derivatives of the first and the second of these derivatives.
     curvatures
         V_xx, V_xy and V_yy.
     bases
@@ -50,15 +50,16 @@ class Derivatives:
 
     @classmethod
     def of(cls, expression: Expression) -> Derivatives:
-        """The derivatives of an expression.
+        """Return the derivatives of an expression.
 
-        Along a straight wall the derivative of V is small, while those along x and y are large: the second direction is along it.
+        Along a straight wall the derivative of V is small while those along x and y are large, so that the second direction is
+        along it.
         """
         along_x, along_y = slopes(expression)
         oblique = [linear_combination([(b, along_x), (-a, along_y)]) for a, b in oblique_gradients(expression)]
         first, second, *others = [along_x, *oblique, along_y]
         if has_central_part(expression):
-            # On circles around a body at the origin the derivative is small as well.
+            # The derivative along circles around a body at the origin is also small.
             others.append(linear_combination([(1.0, expand(X, along_y)), (-1.0, expand(Y, along_x))]))
         return cls(
             make_graph((expression, first, second, *others)),
@@ -73,15 +74,15 @@ class Derivatives:
         return sum(_COSTS.get(node.kind, 1) for graph, _ in (self.slopes, self.jacobian) for node in graph.nodes)
 
     def slopes_at(self, points: np.ndarray) -> np.ndarray:
-        """(n, 2) the two derivatives at points (n, 2)."""
+        """Return (n, 2) the two derivatives at points (n, 2)."""
         return np.column_stack(evaluate(*self.slopes, *points.T)[1:3])
 
     def jacobian_at(self, points: np.ndarray) -> np.ndarray:
-        """(n, 2, 2) their Jacobian matrix at points (n, 2)."""
+        """Return (n, 2, 2) their Jacobian matrix at points (n, 2)."""
         return np.column_stack(evaluate(*self.jacobian, *points.T)).reshape(-1, 2, 2)
 
     def is_singular_in(self, centres: np.ndarray, half: float) -> np.ndarray:
-        """(n,) whether a base has both signs, or is not defined, at nine points of each box (n, 2)."""
+        """Return (n,) whether a base has both signs, or is not defined, at nine points of each box (n, 2)."""
         x, y = np.moveaxis(centres[:, None] + half * _SAMPLES, -1, 0)
         found = np.zeros(len(centres), bool)
         for base in evaluate(*self.bases, x, y):
@@ -89,28 +90,29 @@ class Derivatives:
         return found
 
     def hessian_at(self, points: np.ndarray) -> np.ndarray:
-        """(n, 2, 2) the Hessian matrix of V at points (n, 2)."""
+        """Return (n, 2, 2) the Hessian matrix of V at points (n, 2)."""
         vxx, vxy, vyy = evaluate(*self.curvatures, *points.T)
         return np.column_stack([vxx, vxy, vxy, vyy]).reshape(-1, 2, 2)
 
 
 def box(centres: np.ndarray, half: float) -> tuple[Interval, Interval]:
-    """The squares with centres (n, 2) and half a side."""
+    """Return the squares with centres (n, 2) and half a side."""
     x, y = (Interval(centre - half, centre + half) for centre in centres.T)
     return x, y
 
 
 def excludes_zero(slopes: Enclosure) -> np.ndarray:
-    """(n,) whether a derivative vanishes nowhere in a box."""
+    """Return (n,) whether a derivative vanishes nowhere in a box."""
     excluded: np.ndarray = np.any([each.excludes_zero() for each in slopes.values[1:]], axis=0)
     return excluded
 
 
 def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
-    """(m, 2) the points that lie in boxes with one point each, and (n,) whether it is proved that a box has one or none.
+    """Return (m, 2) the points in boxes with one point each, and (n,) whether it is proved that a box has one point or none.
 
     The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h), with the two derivatives f at c, their Jacobian
-    matrix J on the box and Y its inverse at c. All points of the box lie in K; if K lies inside of it, it has exactly one.
+    matrix J on the box and Y its inverse at c. All points of the box lie in K. If K lies inside the box, the box has exactly one
+    point.
     """
     jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGED * half))
     slopes = enclose(*derivatives.slopes, *box(centres, 0.0))
@@ -129,13 +131,13 @@ def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[n
 
 
 def _middle_and_spread(values: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
-    """(n, k) the middles of k intervals, and half their lengths."""
+    """Return (n, k) the middles of k intervals, and half their lengths."""
     low, high = np.column_stack([each.low for each in values]), np.column_stack([each.high for each in values])
     return 0.5 * (low + high), 0.5 * (high - low)
 
 
 def _inverse(matrices: np.ndarray) -> np.ndarray:
-    """(n, 2, 2) inverse matrices; products of small entries do not underflow."""
+    """Return (n, 2, 2) inverse matrices; products of small entries do not underflow."""
     size = np.abs(matrices).max(axis=(1, 2))[:, None, None]
     (a, b), (c, d) = np.moveaxis(matrices / size, 0, -1)
     adjugate = np.moveaxis(np.array([[d, -b], [-c, a]]), -1, 0)
@@ -144,14 +146,14 @@ def _inverse(matrices: np.ndarray) -> np.ndarray:
 
 
 def refined(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """(n, 2) after some steps of Newton's method."""
+    """Return (n, 2) the points after some steps of Newton's method."""
     for _ in range(_REFINING_STEPS):
         points = points - newton_step(derivatives, points)
     return points
 
 
 def newton_step(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """(n, 2) the steps of Newton's method from points (n, 2), to be subtracted."""
+    """Return (n, 2) the steps of Newton's method from points (n, 2), to be subtracted."""
     with np.errstate(all="ignore"):
         step: np.ndarray = np.einsum("nij,nj->ni", _inverse(derivatives.jacobian_at(points)), derivatives.slopes_at(points))
     return step

@@ -1,4 +1,4 @@
-"""What the searches for critical points have in common: an empty list, and the reasons for which they fail."""
+"""An empty list of critical points, and the errors of searches for them."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ NO_POINTS = read_only(np.empty((0, 2)))
 
 
 class NotIsolatedError(ValueError):
-    """The critical points form a curve, so they cannot be listed."""
+    """The critical points form a curve, so that they cannot be listed."""
 
     def __init__(self, message: str = "the force vanishes along a curve instead of at isolated points") -> None:
         super().__init__(message)
 
 
 class UndecidedError(ValueError):
-    """The points are not found within the limit on the work."""
+    """The points were not found within the limit on the work."""
 
 
 class DescentError(ValueError):
-    """A line of steepest descent whose end is not found."""
+    """The end of a line of steepest descent was not found."""

@@ -32,9 +32,10 @@ MOST_TERMS = 60
 COEFFICIENT_RANGE = (1e-9, 1e9)
 """Smallest and largest magnitude of a coefficient."""
 
-# Smallest coefficient as a share of the largest one, beyond which one of them has no effect in double precision.
+# Smallest coefficient as a share of the largest; a smaller one would have no effect in double precision.
 _SMALLEST_RATIO = 1e-18
-# Coefficients below this share of the largest one, after a shift of the origin or among those of one degree, are errors of zero.
+# Coefficients below this share of the largest, after a shift of the origin or among those of one degree, are rounding errors of
+# 0.
 _ZERO_COEFFICIENT = 1e-12
 
 
@@ -87,20 +88,20 @@ class PolynomialForm:
         return (0, 0) in self.coefficients
 
     def value(self, x: Any, y: Any) -> Any:
-        """V at (x, y); arrays broadcast."""
+        """Return V at (x, y); arrays broadcast."""
         return evaluate(self.coefficients, x, y)
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """(V_x, V_y)."""
+        """Return (V_x, V_y)."""
         along_x, along_y = self.slopes
         return evaluate(along_x, x, y), evaluate(along_y, x, y)
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
-        """(V_xx, V_xy, V_yy)."""
+        """Return (V_xx, V_xy, V_yy)."""
         return tuple(evaluate(self.derivative(*order), x, y) for order in ((2, 0), (1, 1), (0, 2)))
 
     def derivative(self, nx: int, ny: int) -> dict[Powers, float]:
-        """The nonzero terms of ∂^(nx+ny) V / ∂x^nx ∂y^ny, as {(i, j): c}."""
+        """Return the nonzero terms of ∂^(nx+ny) V / ∂x^nx ∂y^ny, as {(i, j): c}."""
         terms = self.coefficients
         for axis in (0,) * nx + (1,) * ny:
             terms = derivative(terms, axis)
@@ -112,15 +113,15 @@ class PolynomialForm:
         return self.derivative(1, 0), self.derivative(0, 1)
 
     def force(self, axis: int) -> PolynomialForm:
-        """−∂V/∂x or −∂V/∂y."""
+        """Return −∂V/∂x or −∂V/∂y."""
         return PolynomialForm(tuple((i, j, -c) for (i, j), c in self.slopes[axis].items()))
 
     def find_critical_points(self) -> np.ndarray:
-        """(n, 3) all of them, see `engine.systems.forms.critical_points`."""
+        """Return (n, 3) all of them, see `engine.systems.forms.critical_points`."""
         return find_critical_points(self.coefficients)
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """−sign ∇V, slower far away, where a descent takes a finite time to −∞."""
+        """Return −sign ∇V, slowed down far away, where a descent reaches −∞ in a finite time."""
         highest = max(map(degree, self.slopes))
         table = np.zeros((2, highest + 1, highest + 1))
         for axis, terms in enumerate(self.slopes):
@@ -147,21 +148,21 @@ class PolynomialForm:
         return False
 
     def plus(self, terms: Terms) -> PolynomialForm:
-        """The terms added, those that cancel left out."""
+        """Add terms, leaving out those that cancel."""
         added = self.coefficients | {powers: self.coefficients.get(powers, 0.0) + c for powers, c in terms.items()}
         return checked_form(tuple((i, j, c) for (i, j), c in added.items() if c))
 
     def scaled(self, length: float, energy: float) -> PolynomialForm:
-        """V(length x, length y) / energy."""
-        # Not through `checked_form`: the legal range of the coefficients is for the potential's own units.
+        """Return V(length x, length y) / energy."""
+        # `checked_form` is not used, because the legal range of coefficients applies to the units of the potential.
         return PolynomialForm(tuple((i, j, c * length ** (i + j) / energy) for i, j, c in self.terms))
 
     def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> PolynomialForm:
-        """Each term with its factor."""
+        """Return the terms, each multiplied by its factor."""
         return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
 
     def moved(self, x: float, y: float) -> PolynomialForm:
-        """The terms of the expansion about (x, y), each rounded once, without the linear ones."""
+        """Return the terms of the expansion about (x, y), each rounded once, without the linear terms."""
         terms: dict[Powers, Fraction] = {}
         for i, j, c in self.terms:
             for k in range(i + 1):
@@ -182,20 +183,20 @@ class PolynomialForm:
         return math.gcd(*(a - b for a, b in self._complex_terms() if a != b))
 
     def _complex_terms(self) -> dict[Powers, complex]:
-        """{(a, b): c} of V = Σ c z^a z̄^b, without rounding errors of zero coefficients."""
+        """Return {(a, b): c} of V = Σ c z^a z̄^b, without rounding errors of zero coefficients."""
         x, y = {(1, 0): 0.5 + 0j, (0, 1): 0.5 + 0j}, {(1, 0): -0.5j, (0, 1): 0.5j}
         largest = largest_coefficients(self.coefficients)
         terms = substitute(self.coefficients, x, y)
         return {(a, b): c for (a, b), c in terms.items() if abs(c) > _ZERO_COEFFICIENT * largest[a + b]}
 
     def limits_refusal(self) -> str | None:
-        """Degree, number of terms and size of coefficients."""
+        """Check the degree, the number of terms and the size of the coefficients."""
         highest = degree(self.coefficients)
         if highest > HIGHEST_DEGREE:
             return f"V has degree {highest}; the highest allowed degree is {HIGHEST_DEGREE}."
         if len(self.terms) > MOST_TERMS:
             return f"V has {len(self.terms)} terms; at most {MOST_TERMS} are allowed."
-        # In units of the potential itself, so that the user's units do not matter.
+        # Units of the potential itself are used, so that the user's units do not matter.
         sizes = [abs(c) * self.length ** (i + j) for i, j, c in self.terms]
         if sizes and not min(sizes) >= _SMALLEST_RATIO * max(sizes):
             return f"V has a coefficient below {_SMALLEST_RATIO:g} of the largest one, in units in which its well has the size 1."
@@ -203,7 +204,7 @@ class PolynomialForm:
 
 
 def checked_form(terms: Any) -> PolynomialForm:
-    """The form of ((i, j, c), …); ValueError if they are no legal terms."""
+    """Return the form of ((i, j, c), …); ValueError if the terms are not legal."""
     try:
         checked = tuple(_checked_term(*term) for term in terms)
     except TypeError:
@@ -219,7 +220,7 @@ def _checked_term(i: Any, j: Any, c: Any) -> tuple[int, int, float]:
 
 
 def _parameter_factor(i: int, j: int, omega_1: float, omega_2: float, epsilon: float) -> float:
-    """The factor of the coefficient of x^i y^j in `Potential.with_parameters`."""
+    """Return the factor of the coefficient of x^i y^j in `Potential.with_parameters`."""
     if i + j < 2:
         return 1.0
     return epsilon if i + j > 2 else omega_1**i * omega_2**j

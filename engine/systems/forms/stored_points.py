@@ -1,4 +1,4 @@
-"""Points of a potential, stored on disk beside the compiled kernels: finding them again needs SciPy, which loads slowly."""
+"""Points of a potential, stored on disk beside the compiled kernels, because finding them needs SciPy, which loads slowly."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ log = logging.getLogger(__name__)
 
 
 def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np.ndarray:
-    """The result of `find`, read from a file if the same package has found it before on this machine.
+    """Return the result of `find`, read from a file if the same package has computed it before on this machine.
 
     Parameters
     ----------
     kind
-        What is found, for the name of the file.
+        The kind of points, used in the name of the file.
     form
         The object on which the result depends; its `repr` identifies it.
     find
-        Finds the array, of numbers or flags. Its errors are raised and not stored.
+        Computes the array, of numbers or flags. Its errors are raised and not stored.
     """
     key = repr((form, _versions()))
     path = cache_folder() / f"{kind}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
@@ -47,7 +47,7 @@ def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np
 
 @functools.cache
 def _versions() -> tuple[str, ...]:
-    """Whatever else the results depend on: the modules that find them and the libraries below."""
+    """Return everything else on which the results depend: the modules that find them and the libraries that they use."""
     engine = Path(__file__).parents[2]
     files = [*sorted((engine / "expressions").glob("*.py")), *sorted(Path(__file__).parent.glob("*.py"))]
     sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)

@@ -69,7 +69,7 @@ MOST_LETTERS = 8
 
 @checks_types(text=str, name=(str, type(None)), parameters=(Mapping, type(None)))
 def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, float] | None = None) -> Potential:
-    """The potential given by a formula.
+    """Return the potential given by a formula.
 
     Parameters
     ----------
@@ -77,10 +77,10 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         A formula in x and y, at most 500 characters: numbers (2, 0.5, 1e-3, ½), x, y, r = √(x² + y²), + − * / ^ ** √, exp(),
         log() or ln(), sin(), cos(), sqrt() and round brackets. "2x²y" is a product; "−", "·" and "×" are operators too; "V ="
         in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin but e, E and V, or
-        Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py",
-        "vx" and "vy" are refused. After it there may be what orbits end at: "; centre the Moon (0, 0) 0.0045", a body with a
-        name, its place and its radius of collision, "; escape 10", an escape radius, "; well (1, 0)", a place near a minimum to
-        which the axes are moved, see `Potential.at_minimum`, and "; exits L2, L1", names of the exits in channel order.
+        Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py", "vx" and "vy" are
+        refused. Clauses can follow: "; centre the Moon (0, 0) 0.0045", a body with a name, its place and its radius of collision;
+        "; escape 10", an escape radius; "; well (1, 0)", a place near a minimum to which the axes are moved, see
+        `Potential.at_minimum`; and "; exits L2, L1", names of the exits in channel order.
     name
         Name of the potential; by default the formula as written by `write_formula`.
     parameters
@@ -117,7 +117,7 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     expanded = _Parser(clauses.formula, values).parse()
     if isinstance(expanded, Expression):
         potential = Potential(name or "", expanded)
-        # Whatever is made of it next needs its derivatives.
+        # The next operation on it needs its derivatives.
         if (problem := potential.form.limits_refusal()) is not None:
             raise FormulaError(0, problem)
     else:
@@ -132,7 +132,7 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
 
 
 def formula_letters(text: str) -> tuple[str, ...]:
-    """The letters of a formula that are coefficients, in the order of the text; FormulaError if a character is not understood."""
+    """Return the letters of a formula that are coefficients, in the order of the text; FormulaError for an unknown character."""
     letters: dict[str, int] = {}
     clauses = split_clauses(text)
     for part in (Part(clauses.formula, 0), *clauses.numbers):
@@ -146,7 +146,7 @@ def formula_letters(text: str) -> tuple[str, ...]:
 
 
 def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
-    """The value of a number in a clause; FormulaError if the text is not a number."""
+    """Return the value of a number in a clause; FormulaError if the text is not a number."""
     try:
         number = constant_of(_Parser(part.text, values).parse())
     except FormulaError as error:
@@ -157,7 +157,7 @@ def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
 
 
 def checked_letter_value(name: str, value: float) -> float:
-    """The value of a letter as a float; ValueError if it is not finite or too large."""
+    """Return the value of a letter as a float; ValueError if it is not finite or too large."""
     number = checked_number(name, value)
     if abs(number) > LARGEST_VALUE:
         raise ValueError(f"{name}={value}: must be between {-LARGEST_VALUE:g} and {LARGEST_VALUE:g}")
@@ -237,7 +237,7 @@ class _Parser:
         return negative(value) if is_negative else value
 
     def _parse_signs(self) -> bool:
-        """Whether an odd number of the signs that follow are minus signs."""
+        """Return whether the number of minus signs that follow is odd."""
         is_negative = False
         while self.token.kind == "sign":
             is_negative ^= SIGNS[self._next_token().text] == "-"
@@ -296,7 +296,7 @@ class _Parser:
         return {"x": {(1, 0): one}, "y": {(0, 1): one}, "r": {(2, 0): one, (0, 2): one}}[token.text]
 
     def _parse_function(self, token: Token) -> FormulaValue:
-        """What follows the name of a function: its argument in brackets; after √ any base."""
+        """Parse what follows the name of a function: its argument in brackets, or after √ any base."""
         if token.kind == "root":
             start = self.token
             argument = self._parse_nested(token, self._parse_base) if start.kind == "root" else self._parse_base()
@@ -318,7 +318,7 @@ class _Parser:
         return value
 
     def _parse_nested(self, token: Token, parse: Callable[[], FormulaValue]) -> FormulaValue:
-        """The value of what is inside brackets, or of a root under a root."""
+        """Parse the content of brackets, or of a root under a root."""
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
             raise FormulaError(token.position, f"more than {DEEPEST_NESTING} nested brackets or roots")
@@ -328,7 +328,7 @@ class _Parser:
 
     @staticmethod
     def _bounded[*Operands](token: Token, operation: Callable[[*Operands], FormulaValue], *operands: *Operands) -> FormulaValue:
-        """The result of an operation; if it is too large or no real number, an error at the position of `token`."""
+        """Return the result of an operation; raise an error at the position of `token` if it is too large or not real."""
         try:
             return operation(*operands)
         except TooLargeError as error:
@@ -337,7 +337,7 @@ class _Parser:
             raise FormulaError(token.position, f"{token.text}: its value is not a finite real number") from None
 
     def _next_token(self) -> Token:
-        """Return the current token and move to the next one; the end token is never passed."""
+        """Return the current token and move to the next one; the end token remains the current one."""
         token = self.token
         self.index = min(self.index + 1, len(self.tokens) - 1)
         return token

@@ -26,16 +26,16 @@ _FRACTIONS = {
 SIGNS = {"+": "+", "-": "-", "−": "-", "–": "-"}
 OPERATORS = {"*": "*", "·": "*", "×": "*", "⋅": "*", "∗": "*", "/": "/", "÷": "/", "∕": "/", "⁄": "/"}
 BASE_KINDS = ("number", "fraction", "name", "letter", "open", "function", "root")
-"""Kinds of tokens that a factor begins with."""
+"""Kinds of tokens with which a factor can begin."""
 _TOKEN = re.compile(
     r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
     r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
 )
-# Names that would otherwise be read as letters or products of them; momenta, velocities and time are no part of a potential.
+# Names that would otherwise be read as letters or products; momenta, velocities and time cannot occur in a potential.
 _UNKNOWN = re.compile("tan|abs|pi|[pv][xy]|t")
 _PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
 ALLOWED = "allowed are numbers, x, y, r, letters for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
-"""What a formula consists of."""
+"""The elements of a formula."""
 
 
 class FormulaError(ValueError):
@@ -46,13 +46,13 @@ class FormulaError(ValueError):
         self.position, self.problem = position, problem
 
     def __reduce__(self) -> tuple[type[FormulaError], tuple[int, str]]:
-        """Errors are pickled between processes."""
+        """Support pickling, because errors are passed between processes."""
         return FormulaError, (self.position, self.problem)
 
 
 @dataclass(frozen=True)
 class Token:
-    """A piece of a formula; the digit of a letter is a plain one."""
+    """A piece of a formula; the digit of a letter is stored as a plain digit."""
 
     kind: str
     text: str
@@ -60,7 +60,7 @@ class Token:
 
 
 def tokenize(text: str) -> list[Token]:
-    """The tokens of a text, with one of kind "end" last; FormulaError at a character that belongs to none."""
+    """Split a text into tokens, followed by one of kind "end"; FormulaError for an unknown character."""
     prefix = _PREFIX.match(text)
     position = prefix.end() if prefix else 0
     tokens: list[Token] = []
@@ -83,7 +83,7 @@ def tokenize(text: str) -> list[Token]:
 
 
 def read_number(token: Token) -> Fraction:
-    """The exact value of a number or a fraction; FormulaError if it is too large."""
+    """Return the exact value of a number or a fraction; FormulaError if it is too large."""
     if token.kind == "fraction":
         return Fraction(*_FRACTIONS[token.text])
     exponent = re.search("[eE]([+-]?[0-9]+)$", token.text)

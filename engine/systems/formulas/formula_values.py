@@ -33,26 +33,26 @@ LARGEST_EXPONENT = 12
 
 
 def add(one: FormulaValue, other: FormulaValue) -> FormulaValue:
-    """The sum."""
+    """Return the sum of two values."""
     if isinstance(one, Expression) or isinstance(other, Expression):
         return _simplified(linear_combination([(1.0, _rounded(one)), (1.0, _rounded(other))]))
     return exact_sum(one, other)
 
 
 def negative(value: FormulaValue) -> FormulaValue:
-    """−value."""
+    """Return −value."""
     return linear_combination([(-1.0, value)]) if isinstance(value, Expression) else exact_negative(value)
 
 
 def product(one: FormulaValue, other: FormulaValue) -> FormulaValue:
-    """The product."""
+    """Return the product of two values."""
     if isinstance(one, Expression) or isinstance(other, Expression):
         return _simplified(multiply(_rounded(one), _rounded(other)))
     return exact_product(one, other)
 
 
 def quotient(one: FormulaValue, other: FormulaValue) -> FormulaValue:
-    """one / other; ZeroDivisionError if the divisor is 0."""
+    """Return one / other; ZeroDivisionError if the divisor is 0."""
     divisor = constant_of(other)
     if divisor is not None and not isinstance(other, Expression):
         return product(one, {(0, 0): 1 / divisor})
@@ -60,7 +60,7 @@ def quotient(one: FormulaValue, other: FormulaValue) -> FormulaValue:
 
 
 def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
-    """A power; ArithmeticError or ValueError if it is a number that is not finite and real."""
+    """Return a power; ArithmeticError or ValueError if it is a number that is not finite and real."""
     if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
         return exact_power(base, int(exponent))
     if exponent.denominator == 1 and base and not isinstance(base, Expression):
@@ -69,7 +69,7 @@ def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
 
 
 def _power_of_factors(base: ExactTerms, exponent: int) -> Expression:
-    """A power of a polynomial. Repeated factors are raised separately, so that 1/(x² + 2x + 1) is (x + 1)^−2."""
+    """Return a power of a polynomial. Repeated factors are raised separately, so that 1/(x² + 2x + 1) is (x + 1)^−2."""
     constant, factors = exact_polynomial(base).factor_squarefree()
     if all(n == 1 for _, n in factors):
         return power(_rounded(base), float(exponent))
@@ -87,12 +87,12 @@ def _fraction(value: fmpq) -> Fraction:
 
 
 def applied(name: str, argument: FormulaValue) -> FormulaValue:
-    """A function of `FUNCTIONS`; ArithmeticError or ValueError for a number outside its domain."""
+    """Apply a function of `FUNCTIONS`; ArithmeticError or ValueError for a number outside its domain."""
     return _simplified(apply_function(name, _rounded(argument)))
 
 
 def constant_of(value: FormulaValue) -> Fraction | None:
-    """The value of a formula without x and y; None for others."""
+    """Return the value of a formula without x and y; None for other formulas."""
     if isinstance(value, Expression):
         return None
     return value.get((0, 0), Fraction(0)) if set(value) <= {(0, 0)} else None
@@ -105,7 +105,7 @@ def _rounded(value: FormulaValue) -> Expression:
 
 
 def _simplified(value: Expression) -> FormulaValue:
-    """Turn an expression that is a number or a polynomial into one with exact coefficients; others stay expressions."""
+    """Convert an expression that is a number or a polynomial to one with exact coefficients; keep other expressions."""
     number = as_number(value)
     if number is not None:
         return {(0, 0): Fraction(number)} if number else {}

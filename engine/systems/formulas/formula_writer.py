@@ -1,4 +1,4 @@
-"""Potentials as plain text that the parser reads back."""
+"""Potentials as plain text that the parser can read."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.formulas.outcome_clauses import write_clauses
 from engine.systems.potential import Potential
 
-# Digits that determine a double.
+# Number of digits that determine a double.
 _MOST_DIGITS = 17
 
 
 @checks_types(potential=Potential)
 def write_formula(potential: Potential, digits: int | None = None) -> str:
-    """A potential as plain text, such as "x²/2 + y²/2 − x²y²", in a rotating frame the effective one.
+    """Return a potential as plain text, such as "x²/2 + y²/2 − x²y²"; in a rotating frame, the effective potential.
 
     Parameters
     ----------
     potential
         The potential.
     digits
-        Significant digits of the coefficients, 1 to 17, so that `parse_formula` reads back each with a relative error of at most
-        5·10^−digits; None for as many as it needs to read back exactly the same terms.
+        Significant digits of the coefficients, 1 to 17, so that `parse_formula` reads each of them with a relative error of at
+        most 5·10^−digits; None for all digits needed to read exactly the same terms.
 
     Examples
     --------
@@ -59,6 +59,6 @@ def _write_other(form: ExpressionForm, digits: int | None) -> str:
 
 
 def by_degree(term: tuple[int, int] | tuple[int, int, float]) -> tuple[int, int]:
-    """Sort key of a term (i, j) or (i, j, c): by degree, then by the power of y."""
+    """Return the sort key of a term (i, j) or (i, j, c): by degree, then by the power of y."""
     i, j = term[:2]
     return i + j, j

@@ -1,8 +1,8 @@
 """Clauses after a formula: "−1/r − x² + ½y²; centre the planet (0, 0) 0.001; escape 10", "x + x² + y² + x³; well (−0.2, 0)".
 
-A clause is that of an end, see `engine.systems.outcomes`: its word, a name, which can be left out, its place in brackets and its
-radius. Or it is ``well`` and a place: the axes are moved to the minimum nearest to it. Or it is ``exits`` and their names in
-channel order, "exits L2, L1". Places and radii are formulas without x and y, with the letters of the potential.
+A clause describes an end, see `engine.systems.outcomes`, by its word, an optional name, its place in brackets and its radius. The
+clause ``well`` with a place moves the axes to the nearest minimum. The clause ``exits`` lists the names of the exits in channel
+order, "exits L2, L1". Places and radii are formulas without x and y, which can contain the letters of the potential.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ _WELL = re.compile(r"\s*well\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 
 
 class Part(NamedTuple):
-    """A part of a text, and its position there."""
+    """A part of a text, with its position in the text."""
 
     text: str
     position: int
 
 
 class EndClause(NamedTuple):
-    """The clause of an end: its kind, its place and its radius by name, and its name or ""."""
+    """The clause of an end: its kind, its place and radius by name, and its own name, or ""."""
 
     kind: type[End]
     numbers: Mapping[str, Part]
     name: str
 
     def evaluate(self, value_of: Callable[[Part], float]) -> End:
-        """The end; FormulaError for a number that is out of range."""
+        """Return the end; FormulaError for a number that is out of range."""
         named: dict[str, Any] = {"name": self.name} if self.name else {}
         parameters = named | {key: value_of(part) for key, part in self.numbers.items()}
         try:
@@ -45,7 +45,7 @@ class EndClause(NamedTuple):
 
 
 class Clauses(NamedTuple):
-    """The formula of V, the clauses of ends, a place if there is one, and the names of exits."""
+    """The formula of V, the clauses of ends, the place of a well, or None, and the names of exits."""
 
     formula: str
     ends: tuple[EndClause, ...]
@@ -54,13 +54,13 @@ class Clauses(NamedTuple):
 
     @property
     def numbers(self) -> tuple[Part, ...]:
-        """All places and radii."""
+        """Return all places and radii."""
         of_ends = (part for end in self.ends for part in end.numbers.values())
         return (*of_ends, *(self.well or ()))
 
 
 def split_clauses(text: str) -> Clauses:
-    """The formula and the clauses of a text; FormulaError for a clause that is not understood."""
+    """Split a text into the formula and the clauses; FormulaError for a clause that is not understood."""
     formula, *rest = text.split(SEPARATOR)
     position = len(formula) + 1
     ends: list[EndClause] = []
@@ -88,7 +88,7 @@ def split_clauses(text: str) -> Clauses:
 
 
 def _end_clause(clause: str, position: int) -> EndClause | None:
-    """The clause of an end; None if it is none."""
+    """Return the clause of an end; None for any other clause."""
     for kind in end_kinds():
         if match := kind.match(clause):
             texts = match.groupdict()
@@ -101,6 +101,6 @@ def _part(match: re.Match[str], key: str, position: int) -> Part:
 
 
 def write_clauses(ends: Iterable[End], exits: Sequence[str]) -> str:
-    """The clauses as text, to be read back exactly."""
+    """Write the clauses as text that can be read exactly."""
     names = [f"exits {', '.join(exits)}"] if exits else []
     return "".join(f"{SEPARATOR} {clause}" for clause in (*(end.text for end in ends), *names))

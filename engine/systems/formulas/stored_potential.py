@@ -15,7 +15,7 @@ _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:
-    """Return the potential of attributes; missing attributes stand for no rotation, ends of the kind and shift."""
+    """Return the potential of attributes; by default there is no rotation, no end of a kind, and no shift."""
     text, name = str(attributes["terms"]), str(attributes["potential"])
     terms = [_TERM.fullmatch(term) for term in text.split("; ")]
     if all(terms):

@@ -32,7 +32,7 @@ class CriticalPoint:
 
 
 def classify_points(potential: Potential) -> tuple[CriticalPoint, ...]:
-    """All critical points, the nearest to the origin first; ValueError where they are not found."""
+    """Return all critical points, the nearest to the origin first; ValueError if they are not found."""
     points = [
         CriticalPoint(x, y, _kind(potential, x, y, index), float(potential.value(x, y)), _channel(potential, x, y))
         for (x, y), index in zip(potential.critical_points.tolist(), potential.well.critical_indices.tolist(), strict=True)
@@ -54,17 +54,17 @@ def _channel(potential: Potential, x: float, y: float) -> int:
 
 
 def point_at_origin(points: tuple[CriticalPoint, ...]) -> CriticalPoint | None:
-    """The critical point at the origin; None if there is none."""
+    """Return the critical point at the origin; None if there is none."""
     return next((point for point in points if point.x == point.y == 0.0), None)
 
 
 def minima_of(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
-    """The minima, the nearest to the origin first."""
+    """Return the minima, the nearest to the origin first."""
     return [point for point in points if point.kind is PointKind.MINIMUM]
 
 
 def other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
-    """The nearest minimum that a formula can be moved to by a clause, which it may have once only."""
+    """Return the nearest minimum to which a clause can move the axes of a formula, which may have only one such clause."""
     nearest = next(iter(minima_of(points)), None)
     is_moved = any(potential.origin)
     if nearest is None or nearest is point_at_origin(points) or is_moved or potential.rotation:

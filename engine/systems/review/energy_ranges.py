@@ -11,20 +11,20 @@ from engine.systems.catalogue.entry import EnergyRange
 from engine.systems.potential import Potential
 
 HIGHEST_SHOWN = 4.0
-"""Upper end of the range of a potential in units of the escape energy, unless its exits join below it."""
+"""Upper end of the range of a potential in units of the escape energy, unless its exits merge below it."""
 
 # In units of the escape energy: lower end, initial energy.
 _LOW, _FIRST = 0.8, 1.5
 # Upper limit, as a share of the way from the escape energy to the highest energy with separate exits.
 _BELOW_HIGHEST = 0.99
-# Smallest span in units of the escape energy: narrower spans are dominated by rounding.
+# Smallest span in units of the escape energy, because rounding dominates narrower spans.
 _NARROWEST = 1e-9
-# Least spread of the critical energies, as a share of the largest.
+# Smallest spread of the critical energies, as a share of the largest.
 _LEAST_SPREAD = 0.25
 
 
 def energy_range(potential: Potential, highest_energy: float, critical_energies: Sequence[float]) -> EnergyRange:
-    """The range in multiples of the depth of the well, which is above 0; with an escape radius around the critical energies.
+    """Return the range in multiples of the depth of the well, above 0; with an escape radius, around the critical energies.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def energy_range(potential: Potential, highest_energy: float, critical_energies:
     highest_energy
         The energy up to which its exits are separate.
     critical_energies
-        Those of all critical points.
+        The energies of all critical points.
     """
     if potential.escape_radius is not None:
         return _range_around(potential, np.array(critical_energies or [potential.well.bottom]))
@@ -43,14 +43,14 @@ def energy_range(potential: Potential, highest_energy: float, critical_energies:
         min(potential.well.energy_at(_FIRST), escape + 0.5 * span),
         min(potential.well.energy_at(HIGHEST_SHOWN), escape + span),
     )
-    # Enough decimals to keep all of these distinct.
+    # There are enough decimals to keep all of these distinct.
     decimals = max(2 - math.floor(math.log10(depth)), 1 - math.floor(math.log10(high - escape)))
     low, first, high = (round(energy, decimals) for energy in (potential.well.energy_at(_LOW), first, high))
     return EnergyRange(low, high, (), first, decimals)
 
 
 def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float]:
-    """Energies at multiples of the depth of the well; none with an escape radius, where no well has a depth."""
+    """Return energies at multiples of the depth of the well; none with an escape radius, because there is no depth."""
     return [potential.well.energy_at(multiple) for multiple in multiples] if potential.escape_radius is None else []
 
 

@@ -1,4 +1,4 @@
-"""Tests of the Hill region, the region around the origin with V below an energy, on a polar grid: is it closed by the exits?"""
+"""Tests, on a polar grid, whether the exits close the Hill region, the region around the origin with V below an energy."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
-# The tests use this share of the saddle energy: right at the saddle energy the ridge is too narrow for the grid.
+# The tests use this share of the saddle energy, because at the saddle energy itself the ridge is too narrow for the grid.
 _ENERGY_SHARE = 0.9
 _ANGLES, _RADII_PER_E_FOLD = 720, 35
 # Smallest and largest radius of the grid, in units of the distances of the nearest and of the outermost critical point.
@@ -19,7 +19,7 @@ _CACHE_SIZE = 256
 
 
 def is_open_without_saddle(potential: Potential, points: np.ndarray) -> bool:
-    """Whether a well at the origin without exits is open far above the energies of all critical points (n, 2)."""
+    """Return whether a well at the origin without exits is open far above the energies of all critical points (n, 2)."""
     bottom = float(potential.value(0.0, 0.0))
     energy_range = float(np.abs(potential.value(*points.T) - bottom).max(initial=0.0)) or potential.units.energy
     return is_open_below(potential, bottom + _OPEN_ENERGY_FACTOR * energy_range, points)
@@ -33,14 +33,14 @@ def check_closed_well(potential: Potential) -> None:
     if not (is_regular.any() and potential.well.is_minimum) or is_open_without_saddle(potential, points):
         raise ValueError(
             f"potential={potential.name}: must have exits, or a closed well at the origin, so that it is defined which orbits "
-            "escape; review_potential says more"
+            "escape; see review_potential"
         )
 
 
 def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bool:
-    """Whether the region around the origin slightly below `energy` extends far beyond all critical points (n, 2).
+    """Return whether the region around the origin slightly below `energy` extends far beyond all critical points (n, 2).
 
-    The grid is polar, around a well in coordinates in which V ≈ ½ r² near the origin, so that it resolves narrow ones.
+    The grid is polar, in coordinates in which V ≈ ½ r² near the origin of a well, so that it resolves narrow wells.
     """
     frequencies, axes = (
         np.linalg.eigh(potential.hessian_matrix(0.0, 0.0)) if potential.well.is_minimum else (np.ones(2), np.eye(2))
@@ -61,8 +61,8 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
 
 
 def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
-    """The part of a region on a polar grid that is connected to the innermost circle."""
-    # `scipy.ndimage.label` does the same, but takes ten times as long to import.
+    """Return the part of a region on a polar grid that is connected to the innermost circle."""
+    # `scipy.ndimage.label` gives the same result, but its import takes ten times as long.
     allowed = allowed.copy()
     allowed[0] = True
     connected, count = np.zeros_like(allowed), 0
@@ -77,7 +77,7 @@ def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
 
 
 def _spread(connected: np.ndarray, allowed: np.ndarray) -> None:
-    """Connect, in place, the allowed points that follow a connected one along the first axis without a gap."""
+    """Connect, in place, the allowed points that follow a connected point along the first axis without a gap."""
     index = np.arange(len(allowed))[:, None]
     last_gap = np.maximum.accumulate(np.where(allowed, -1, index))
     connected |= allowed & (np.maximum.accumulate(np.where(connected, index, -1)) > last_gap)

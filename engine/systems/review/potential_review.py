@@ -43,19 +43,19 @@ class PotentialReview(Result):
     channels
         Number of exits.
     highest_energy
-        The energy of the lowest maximum between two exits, above which they are one; infinite if there is none. Lyapunov orbits
-        may cease to exist below it: see `find_lyapunov_orbits`.
+        The energy of the lowest maximum between two exits, above which they form one exit; infinite if there is none. Lyapunov
+        orbits may not exist up to this energy, see `find_lyapunov_orbits`.
     mirror_in_x, mirror_in_y
-        Whether V is even in x, in y.
+        Whether V is even in x, and in y.
     rotations
-        The largest n for which a rotation by 2π/n leaves V unchanged: 1 if none does, 0 if every rotation does.
+        The largest n for which a rotation by 2π/n leaves V unchanged; 0 if every rotation does.
     refusal
-        A sentence that says why the potential cannot be used; None if it can.
+        A sentence with the reason why the potential cannot be used; None if it can be used.
     remarks
         Unusual properties, one sentence each.
     well
-        (x, y) of the nearest minimum if there is no well at the origin, see `Potential.at_minimum`; None if there is none, and
-        for rotating frames, escape radii and axes that are moved already.
+        (x, y) of the nearest minimum if there is no well at the origin, see `Potential.at_minimum`; None if there is no minimum,
+        and for rotating frames, escape radii and axes that have already been moved.
     """
 
     potential: Potential
@@ -74,21 +74,21 @@ class PotentialReview(Result):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore: multiples of the escape energy; not for a potential that is refused."""
+        """Energies to explore: multiples of the escape energy. They are not available for a potential that is refused."""
         return energy_range(self.potential, self.highest_energy, [point.energy for point in self.critical_points])
 
     def provenance(self) -> dict[str, Any]:
-        """The potential and the version."""
+        """Return the potential and the version."""
         return super().provenance() | describe_potential(self.potential)
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Place, kind, energy and channel of each critical point."""
+        """Return place, kind, energy and channel of each critical point."""
         names = [field.name for field in fields(CriticalPoint)]
         columns = {name: np.array([getattr(point, name) for point in self.critical_points]) for name in names}
         return columns | {"kind": np.array([point.kind.value for point in self.critical_points], dtype=str)}
 
     def describe(self) -> str:
-        """Why the potential cannot be used, or what is unusual about it; empty for an ordinary one."""
+        """Describe why the potential cannot be used, or its unusual properties; empty for an ordinary potential."""
         return self.refusal or " ".join(self.remarks)
 
 
@@ -116,7 +116,7 @@ class SystemReview(PotentialReview):
 def review_potential(potential: Potential) -> PotentialReview:
     """Check whether a potential can be used, without compiling or integrating anything.
 
-    It takes a tenth of a second usually, and about 2 s at most; repeated calls are answered from a cache. All iterations have
+    This usually takes a tenth of a second, and at most about 2 s; the results of repeated calls are cached. All iterations have
     limits on their steps, so that the result does not depend on the speed of the machine.
 
     Parameters
@@ -126,7 +126,7 @@ def review_potential(potential: Potential) -> PotentialReview:
 
     Returns
     -------
-    The review. No error is raised for a potential that cannot be used; its review has a `refusal`.
+    The review. A potential that cannot be used does not raise an error, but its review has a `refusal`.
 
     Examples
     --------
@@ -182,16 +182,16 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
 
 
 def review_system(system: System) -> SystemReview:
-    """The review of the potential of a system; ValueError if the formula or a parameter is invalid."""
+    """Review the potential of a system; ValueError if the formula or a parameter is invalid."""
     review = review_potential(system.potential)
     shared = {each.name: getattr(review, each.name) for each in fields(review)}
     return SystemReview(**{**shared, "formula": system.formula_shown}, system=system)
 
 
 def critical_energies(potential: Potential) -> tuple[float, ...]:
-    """The energies whose equipotentials are the limits of connected regions.
+    """Return the energies whose equipotentials are the limits of connected regions.
 
-    With exits that of the lowest one; with an escape radius those of all saddles.
+    With exits it is the energy of the lowest exit; with an escape radius, those of all saddles.
     """
     if potential.escape_radius is None:
         return (potential.escape_energy,)

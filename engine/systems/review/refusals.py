@@ -1,4 +1,4 @@
-"""Why a potential cannot be used, each reason a sentence."""
+"""Reasons why a potential cannot be used, as sentences."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ MOST_CHANNELS = 16
 
 
 def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
-    """The critical points, none where they are not known, and why the potential cannot be used; None if it can."""
+    """Return the critical points, none if unknown, and the reason why the potential cannot be used, or None if it can."""
     refusal = potential.form.limits_refusal() or singularity_refusal(potential)
     if refusal is not None:
         return (), refusal
     if potential.escape_radius is not None:
         return _known_points(potential), None
     try:
-        # Both follow lines of steepest descent or ascent, which may fail.
+        # Both functions follow lines of steepest descent or ascent, which may fail.
         points, _ = classify_points(potential), potential.well.channel_mergers
     except DescentError as error:
         return (), f"Which saddles are exits of the well is not known. {error}"
@@ -43,7 +43,7 @@ def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, .
 
 
 def _known_points(potential: Potential) -> tuple[CriticalPoint, ...]:
-    """Those of a system with an escape radius, which does not need them; none where they are not found."""
+    """Return the critical points; none if they are not found for a system with an escape radius, which does not need them."""
     try:
         return classify_points(potential)
     except (UndecidedError, NotIsolatedError):

@@ -1,4 +1,4 @@
-"""Whether V is defined wherever orbits can go: singular points must lie beyond the ends of orbits."""
+"""Check that V is defined wherever orbits can go: singular points must lie beyond the ends of orbits."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
-# Places at which V must be defined: radii in units of the escape radius, and angles off the axes.
+# Points at which V must be defined: radii in units of the escape radius, and angles away from the axes.
 _SCANNED_RADII, _SCANNED_ANGLES = np.geomspace(1e-3, 1.0, 60), 0.1 + np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
 _CACHE_SIZE = 256
 
@@ -19,12 +19,12 @@ def check_defined(potential: Potential) -> None:
     if singularity_refusal(potential) is not None:
         raise ValueError(
             f"potential={potential.name}: must be defined everywhere within the escape radius, except in discs of centres; "
-            "review_potential says more"
+            "see review_potential"
         )
 
 
 def singularity_refusal(potential: Potential) -> str | None:
-    """Orbits must end before they reach a point where V is not defined; points beyond the exits are not reached."""
+    """Return the reason if orbits can reach a point where V is not defined; points beyond the exits are not reached."""
     if potential.escape_radius is None:
         return _origin_refusal(potential)
     for x, y in potential.form.singular_points.tolist():
@@ -34,14 +34,14 @@ def singularity_refusal(potential: Potential) -> str | None:
     x, y = radius * np.cos(angle), radius * np.sin(angle)
     missing = ~np.isfinite([potential.value(x, y), *potential.gradient(x, y)]).all(axis=0) & ~_is_beyond(potential, x, y)
     if potential.form.is_singular_on_curve(x, y):
-        return "V is not defined along a curve within the escape radius, where what is divided by changes its sign."
+        return "V is not defined along a curve within the escape radius, where a divisor changes its sign."
     if not missing.any():
         return None
     return f"V is not defined at ({x[missing][0]:.6g}, {y[missing][0]:.6g}), which is within the escape radius."
 
 
 def _origin_refusal(potential: Potential) -> str | None:
-    """Without an escape radius there must be a smooth well or a centre at the origin."""
+    """Return the reason if, without an escape radius, there is neither a smooth well nor a centre at the origin."""
     values = [potential.value(0.0, 0.0), *potential.gradient(0.0, 0.0), *potential.hessian(0.0, 0.0)]
     if np.isfinite(values).all() or _is_beyond(potential, np.zeros(1), np.zeros(1))[0]:
         return None
@@ -52,6 +52,6 @@ def _origin_refusal(potential: Potential) -> str | None:
 
 
 def _is_beyond(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether points lie beyond an end besides the exits."""
+    """Return whether points lie beyond an end that is not an exit over a saddle."""
     beyond: np.ndarray = np.any([np.zeros(x.shape, bool), *(end.contains(x, y) for end in potential.ends)], axis=0)
     return beyond

@@ -1,4 +1,4 @@
-"""What the server hears from the components in the browser: legal messages are reported, and all others are ignored."""
+"""Messages from the components in the browser to the server: legal ones are reported, and all others are ignored."""
 
 from __future__ import annotations
 

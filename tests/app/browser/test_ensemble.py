@@ -223,5 +223,5 @@ def test_of_the_orbits_at_the_tubes_one_half_leaves_where_the_other_turns_back(d
     path = sample_orbits(potential, states[~leave], [BEFORE_EXIT])
     exits = np.concatenate([orbit.half_path for orbit in find_lyapunov_orbits(potential, 0.45)])
     gaps = np.hypot(path.x - exits[:, 0], path.y - exits[:, 1]).min(axis=1)
-    # The others are close to an exit then, some have left through another one before.
+    # The other orbits are close to an exit at that time; some have left through another exit before.
     assert (gaps < 0.05).mean() > 0.9

@@ -15,6 +15,7 @@ from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, compute_m
 from engine.jobs.manager import Jobs
 from engine.results import RegularityMap
 from plots.layers.regularity import REGULARITY
+from tests.waiting import SECONDS
 
 ON = frozenset({REGULARITY.name})
 
@@ -94,7 +95,7 @@ def test_a_late_result_is_not_shown(session: Session) -> None:
 
     requests = FollowUpRequests(session.state, session.jobs, [follow_up], session.problems.append, lock)
     requests.follow(bounded_map(0.2))
-    assert arrived.wait(60)
+    assert arrived.wait(SECONDS)
     requests.follow(None)
     for call in held:
         call()
@@ -106,5 +107,5 @@ def test_an_error_gives_a_message(session: Session) -> None:
     session.request = lambda frame: REGULARITY.job(bad, {})
     session.requests.follow(bounded_map(0.2))
     with session.changed:
-        assert session.changed.wait_for(lambda: bool(session.problems), 60)
+        assert session.changed.wait_for(lambda: bool(session.problems), SECONDS)
     assert session.problems[0].startswith("h = 50: ")

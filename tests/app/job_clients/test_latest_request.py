@@ -13,6 +13,7 @@ from app.job_clients.latest_request import LatestRequest
 from engine import CASES, Orbit, integrate_orbit
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
+from tests.waiting import SECONDS
 
 ORBIT = Job(integrate_orbit, (CASES["I"], (0.1, 0.0, 0.05, 0.5), 50.0), queue=Queue.LONG_CALL)
 LONG_ORBIT = replace(ORBIT, arguments=(CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e7))
@@ -35,7 +36,7 @@ class Client:
         self.called.set()
 
     def wait(self) -> None:
-        assert self.called.wait(30)
+        assert self.called.wait(SECONDS)
         self.called.clear()
 
 

@@ -18,6 +18,7 @@ from engine.jobs.subscription import Subscription
 from engine.slices.slice_text import read_slice
 from engine.sweeps.warmup import prepare_for_maps
 from engine.systems.system import TYPED
+from tests.waiting import SECONDS
 
 
 class Recorder:
@@ -35,9 +36,9 @@ class Recorder:
     def names(self) -> list[str]:
         return [what for what, _ in self.calls]
 
-    def wait_for(self, true: Callable[[], bool], seconds: float = 30.0) -> None:
+    def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
-            assert self.changed.wait_for(true, seconds), self.names()
+            assert self.changed.wait_for(true, SECONDS), self.names()
 
     def map_requested(self, *, compiling: bool = False) -> None:
         self.record("map requested")

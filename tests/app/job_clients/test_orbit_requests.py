@@ -16,6 +16,7 @@ from engine import System, integrate_orbit
 from engine.jobs.manager import Jobs
 from engine.results import Separation
 from tests.engine.jobs.inbox import wait_until_idle
+from tests.waiting import SECONDS
 
 
 class Recorder:
@@ -43,7 +44,7 @@ class Recorder:
 
     def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
-            assert self.changed.wait_for(true, 30.0), (self.orbits, self.messages)
+            assert self.changed.wait_for(true, SECONDS), (self.orbits, self.messages)
 
     def all_computed(self, count: int) -> bool:
         return len(self.orbits) == count and all(one.orbit is not None or one.problem for one in self.orbits)

@@ -19,6 +19,7 @@ from engine import System, parse_formula
 from engine.systems.formulas.formula_tokens import FormulaError
 from engine.systems.review.potential_review import review_system
 from tests import forked
+from tests.waiting import SECONDS
 
 
 @pytest.fixture(scope="module")
@@ -122,5 +123,5 @@ def test_the_process_ends_after_its_server_is_killed() -> None:
     left = psutil.Process(receiver.recv())
     server.kill()
     server.join()
-    psutil.wait_procs([left], timeout=60.0)
+    psutil.wait_procs([left], timeout=SECONDS)
     assert not left.is_running()

@@ -13,6 +13,7 @@ import pytest
 
 from app.runtime.memory_allocation import reduce_fragmentation
 from tests import forked
+from tests.waiting import SECONDS
 
 THREADS = 12
 
@@ -46,9 +47,9 @@ def count_arenas(results: Connection, folder: Path, variables: dict[str, str]) -
 def arenas(folder: Path, variables: dict[str, str]) -> int:
     receiver, sender = forked.fork_context().Pipe(duplex=False)
     process = forked.start(count_arenas, sender, folder, variables)
-    assert receiver.poll(forked.SECONDS)
+    assert receiver.poll(SECONDS)
     count: int = receiver.recv()
-    process.join(forked.SECONDS)
+    process.join(SECONDS)
     return count
 
 

@@ -18,6 +18,7 @@ from panel.io.state import set_curdoc
 
 from app.runtime.session_callbacks import SessionCallbacks
 from tests.app.other_loop import run_on_new_loop
+from tests.waiting import SECONDS
 
 
 async def new_session() -> tuple[ServerSession, ApplicationContext]:
@@ -42,7 +43,7 @@ class Calls:
 
     async def take(self, count: int) -> list[Any]:
         """The next calls."""
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(SECONDS):
             return [await self._calls.get() for _ in range(count)]
 
 

@@ -13,13 +13,15 @@ from bokeh.server.server import Server
 from panel.command.serve import Serve
 from tornado.routing import PathMatches, RuleRouter
 
+from tests.waiting import SECONDS
+
 ROOT = Path(__file__).parents[3]
 
 
 def mounted_routes() -> list[str]:
     """The patterns, listed by a process of its own."""
     command = [sys.executable, "-m", "tests.app.server.mounted_routes"]
-    return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True, timeout=120).stdout.splitlines()
+    return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True, timeout=SECONDS).stdout.splitlines()
 
 
 class ListRoutes(Serve):

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from bokeh.application import Application
 from bokeh.protocol.exceptions import ProtocolError
-from bokeh.util.token import generate_jwt_token, generate_session_id
+from bokeh.server.tornado import BokehTornado
+from bokeh.util.token import get_session_id
+from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 from tornado.web import HTTPError
 
 from app.runtime.process_state import ProcessState
@@ -18,8 +22,9 @@ from app.server.admission import (
     check_session,
     count_socket,
 )
+from app.server.session_tokens import issue_token
 
-TOKEN = generate_jwt_token(generate_session_id())
+APPLICATION = BokehTornado({"/app": Application()})
 
 
 @pytest.fixture
@@ -37,6 +42,14 @@ class OpenedDocument:
 
 def session_of(address: str) -> Any:
     return SimpleNamespace(document=OpenedDocument(address), connection_count=1)
+
+
+def new_token(age: float) -> str:
+    """A token that was issued some seconds ago."""
+    request = HTTPServerRequest(
+        start_line=RequestStartLine("GET", "/app", "HTTP/1.1"), headers=HTTPHeaders({"Host": "localhost"})
+    )
+    return issue_token(APPLICATION, request, {}, clock=lambda: time.monotonic() - age)
 
 
 def ask(address: str, uri: str = "/app") -> tuple[int, str]:
@@ -67,10 +80,18 @@ def test_the_only_visitor_of_a_busy_server_may_reload_the_page(state: ProcessSta
     count_socket("192.0.2.1")
     assert ask("192.0.2.1")[0] == 200
     assert ask("192.0.2.2")[0] == 503
-    context = SimpleNamespace(sessions=[])
-    check_session(TOKEN, context, "192.0.2.1")
+    context, token = SimpleNamespace(sessions=[]), new_token(age=0.0)
+    check_session(token, context, "192.0.2.1", APPLICATION)
     with pytest.raises(ProtocolError, match="is busy"):
-        check_session(TOKEN, context, "192.0.2.2")
+        check_session(token, context, "192.0.2.2", APPLICATION)
+
+
+@pytest.mark.usefixtures("state")
+def test_an_old_token_is_good_for_its_open_session_only() -> None:
+    token = new_token(age=300.0)
+    check_session(token, SimpleNamespace(sessions=[SimpleNamespace(id=get_session_id(token))]), "192.0.2.1", APPLICATION)
+    with pytest.raises(ProtocolError, match="ended"):
+        check_session(token, SimpleNamespace(sessions=[]), "192.0.2.1", APPLICATION)
 
 
 @pytest.mark.parametrize(("length", "status"), [(LONGEST_LINK, 200), (LONGEST_LINK + 1, 414)])

@@ -16,6 +16,7 @@ from tornado.websocket import WebSocketHandler, websocket_connect
 from app.runtime.process_state import ProcessState
 from app.server.limited_http_server import CONNECTIONS_PER_PAGE, LIMITS, LimitedHTTPServer
 from tests.app.other_loop import run_on_new_loop
+from tests.waiting import SECONDS
 
 REQUEST = b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"
 Scenario = Callable[[int], Awaitable[None]]
@@ -57,7 +58,7 @@ async def served(**options: Any) -> AsyncIterator[int]:
 
 def run(scenario: Scenario, **options: Any) -> None:
     async def with_server() -> None:
-        async with asyncio.timeout(30), served(**options) as port:
+        async with asyncio.timeout(SECONDS), served(**options) as port:
             await scenario(port)
 
     run_on_new_loop(with_server)

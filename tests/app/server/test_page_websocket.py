@@ -30,6 +30,7 @@ from app.server.routes import install_handlers
 from app.views.components.notice import Notice
 from tests.app.other_loop import run_on_new_loop
 from tests.page_channel import Channel
+from tests.waiting import SECONDS
 
 # More than the buffers of a connection hold.
 LONG = "x" * 8 * 2**20
@@ -77,7 +78,7 @@ async def receive(channel: Channel, kind: str) -> str:
 
 def run(count: int, scenario: Callable[[Channel, Document], Awaitable[None]], make: Callable[[Document], None] = build) -> None:
     async def with_pages() -> None:
-        async with asyncio.timeout(30), pages(count, make) as (channel, document):
+        async with asyncio.timeout(SECONDS), pages(count, make) as (channel, document):
             await scenario(channel, document)
 
     run_on_new_loop(with_pages)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import random
+import time
 import tracemalloc
 import zlib
 
@@ -16,7 +17,7 @@ from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
 from app.server.admission import LONGEST_LINK
 from app.server.limited_http_server import LIMITS
-from app.server.session_tokens import brings_own_token, issue_token, use_token
+from app.server.session_tokens import brings_own_token, issue_token, may_begin_session, use_token
 from tests.app.server.login import server_with_login
 
 OTHER_KEY = b"the key of another server, long enough"
@@ -96,8 +97,22 @@ def test_tokens_in_other_places_are_refused(offered: str | None, application: Bo
 def test_token_contains_the_parameters_of_the_link_only(application: BokehTornado) -> None:
     asked = request("/app?h=0.2&h=0.3&theme=dark&bytes=1&bokeh-absolute-url=x", Cookie="a=b", User_Agent="browser")
     payload = get_token_payload(issue_token(application, asked, {"app_path": "/app"}))
-    del payload["session_expiry"]
+    del payload["session_expiry"], payload["issued"]
     assert payload == {"headers": {}, "cookies": {}, "arguments": {"h": [b"0.2"]}, "app_path": "/app"}
+
+
+@pytest.mark.parametrize(("age", "fresh"), [(0.0, True), (299.0, True), (300.0, False), (-1.0, False)])
+def test_a_token_may_begin_a_session_for_a_time_of_the_monotonic_clock(
+    age: float, fresh: bool, application: BokehTornado, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    token = issue_token(application, request(), {}, clock=lambda: 50.0)
+    # The clock of the wall does not matter.
+    monkeypatch.setattr(time, "time", lambda: 2.0**33)
+    assert may_begin_session(application, token, clock=lambda: 50.0 + age) == fresh
+
+
+def test_a_token_without_its_time_begins_no_session(application: BokehTornado) -> None:
+    assert not may_begin_session(application, generate_jwt_token(generate_session_id()))
 
 
 def test_cookies_are_in_the_token_if_there_is_a_login() -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.server.start_checks import SEVERAL_PROCESSES, asks_for_several_processes
+from tests.waiting import SECONDS
 
 ROOT = Path(__file__).parents[3]
 COMMAND = [sys.executable, "-m", "panel", "serve", "app", "--port", "0"]
@@ -25,5 +26,7 @@ def test_other_arguments_are_accepted(option: list[str]) -> None:
 
 
 def test_several_processes_are_refused_with_a_sentence_and_no_process_remains() -> None:
-    refused = subprocess.run([*COMMAND, "--num-procs", "2"], cwd=ROOT, capture_output=True, text=True, timeout=240, check=False)
+    refused = subprocess.run(
+        [*COMMAND, "--num-procs", "2"], cwd=ROOT, capture_output=True, text=True, timeout=SECONDS, check=False
+    )
     assert (refused.returncode, refused.stderr) == (2, f"{SEVERAL_PROCESSES}\n")

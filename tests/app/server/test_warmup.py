@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.runtime.process_state import ProcessState
 from app.server.warmup import STEPS, start_warmup
 from app.state.view_state import ViewState
+from tests.waiting import SECONDS
 
 
 def fail() -> None:
@@ -13,14 +14,14 @@ def fail() -> None:
 
 def test_kernels_are_ready_after_the_last_step() -> None:
     state, seen = ProcessState(), []
-    start_warmup(state, {"one": lambda: seen.append(state.kernels_ready.is_set())}).join(10)
+    start_warmup(state, {"one": lambda: seen.append(state.kernels_ready.is_set())}).join(SECONDS)
     assert seen == [False]
     assert state.kernels_ready.is_set()
 
 
 def test_failed_step_ends_the_warmup() -> None:
     state, seen = ProcessState(), []
-    start_warmup(state, {"one": fail, "two": lambda: seen.append(2)}).join(10)
+    start_warmup(state, {"one": fail, "two": lambda: seen.append(2)}).join(SECONDS)
     assert state.kernels_failed.is_set()
     assert not state.kernels_ready.is_set()
     assert seen == []
@@ -28,7 +29,7 @@ def test_failed_step_ends_the_warmup() -> None:
 
 def test_shutdown_ends_the_warmup_before_the_next_step() -> None:
     state, seen = ProcessState(), []
-    start_warmup(state, {"one": state.stopping.set, "two": lambda: seen.append(2)}).join(10)
+    start_warmup(state, {"one": state.stopping.set, "two": lambda: seen.append(2)}).join(SECONDS)
     assert seen == []
 
 

@@ -20,10 +20,9 @@ from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
+from tests.waiting import SECONDS
 
 NO_LINK: Mapping[str, str] = {}
-SECONDS = 60.0
-"""Longest wait, on a busy machine."""
 
 
 # Bokeh calls other handlers in a thread.
@@ -79,7 +78,7 @@ async def tell_ready(session: ServerSession) -> None:
 
 
 async def wait_for(watched: param.Parameterized, name: str, condition: Callable[[Any], bool]) -> None:
-    """Wait until a parameter has a value of which a condition holds."""
+    """Wait until a condition holds for the value of a parameter."""
     changed, loop = asyncio.Event(), asyncio.get_running_loop()
     watcher = watched.param.watch(lambda event: loop.call_soon_threadsafe(changed.set), name)
     async with asyncio.timeout(SECONDS):

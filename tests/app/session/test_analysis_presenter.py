@@ -21,6 +21,7 @@ from plots.layers.table import LAYERS
 from plots.pictures.palette import CLEAR
 from tests.app.map_actions import make_maps
 from tests.app.session.session_lock import context_of
+from tests.waiting import SECONDS
 
 
 class Session:
@@ -46,7 +47,7 @@ class Session:
 
     def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
-            assert self.changed.wait_for(true, 60), (
+            assert self.changed.wait_for(true, SECONDS), (
                 self.context.notice.layout().object,
                 self.presenter.notes.object,
                 self.presenter.measures.text.object,
@@ -222,7 +223,7 @@ def test_curves_arrive_one_by_one_stop_at_a_click_and_end_with_their_case(begin:
 def test_a_click_on_a_curve_against_a_parameter_opens_its_system(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
-    assert list(curves.against.options) == ["h", "ω1", "ω2", "ε", "Ω"]
+    assert list(curves.against.options) == ["h", "ω₁", "ω₂", "ε", "Ω"]
     curves.against.value = "epsilon"
     curves.button.clicks += 1
     session.wait_for(lambda: len(curves.points.data["value"]) >= 2)

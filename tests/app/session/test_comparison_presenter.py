@@ -21,6 +21,7 @@ from engine.systems.system import TYPED
 from plots.pictures.image_columns import map_columns
 from tests.app.map_actions import make_maps
 from tests.app.session.session_lock import context_of
+from tests.waiting import SECONDS
 
 SPEC = MapSpec(CASES["I"], Plane.X_PX, 0.2, (56, 56), window=(-0.6, 0.6, -0.6, 0.6), t_max=100.0)
 OTHER = View(System("I"), Plane.X_PX, 0.3)
@@ -42,11 +43,11 @@ class Session:
 
     def wait_for(self, text: str) -> None:
         with self.changed:
-            assert self.changed.wait_for(lambda: text in self.said[-1], 60), self.said
+            assert self.changed.wait_for(lambda: text in self.said[-1], SECONDS), self.said
 
     def wait_for_refusal(self, text: str) -> None:
         with self.changed:
-            assert self.changed.wait_for(lambda: text in self.refused[-1], 60), self.refused
+            assert self.changed.wait_for(lambda: text in self.refused[-1], SECONDS), self.refused
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ from app.session.notebook import Explorer
 from app.state.permalink import read_link
 from app.state.view_state import ViewState
 from engine import CASES, MapSpec, Plane, Window
+from tests.waiting import SECONDS
 
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (224, 224), Window(-0.4, 0.4, -0.3, 0.3), t_max=1e4)
 
@@ -24,7 +25,7 @@ def explorer() -> Iterator[Explorer]:
     explorer.close()
     for thread in threading.enumerate():
         if thread.name == "explorer":
-            thread.join(10.0)
+            thread.join(SECONDS)
 
 
 def test_frame_in_the_cell_opens_the_page_at_the_map(explorer: Explorer) -> None:
@@ -36,7 +37,7 @@ def test_frame_in_the_cell_opens_the_page_at_the_map(explorer: Explorer) -> None
     assert unescape(address) == explorer.address
     values, problems = read_link(dict(parse_qsl(urlsplit(explorer.address).query)))
     assert (ViewState(**values).map_spec(), problems) == (SPEC, [])
-    with urllib.request.urlopen(explorer.address, timeout=60) as page:
+    with urllib.request.urlopen(explorer.address, timeout=SECONDS) as page:
         assert "Case III on the plane (x, px) at h = 0.36" in page.read().decode()
     assert explorer.map is None
     assert explorer.orbits == ()

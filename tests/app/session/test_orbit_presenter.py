@@ -16,6 +16,7 @@ from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from engine.jobs.manager import Jobs
 from engine.trajectories.chaos_indicators import Verdict
 from tests.app.session.session_lock import context_of
+from tests.waiting import SECONDS
 
 
 class RecordingMarkers(Markers):
@@ -51,7 +52,7 @@ class Session:
 
     def wait_for_paths(self) -> None:
         with self.changed:
-            assert self.changed.wait_for(self.has_paths, 60.0)
+            assert self.changed.wait_for(self.has_paths, SECONDS)
 
 
 @pytest.fixture
@@ -104,7 +105,7 @@ def test_a_bounded_orbit_gets_four_verdicts(begin: Callable[[Slice], Session]) -
     session.state.param.update(energy=0.1, t_max=1e4)
     session.state.add_start((0.1, 0.05))
     with session.changed:
-        assert session.changed.wait_for(lambda: session.presenter.controls.indicators.object.count("<tr>") == 4, 60.0)
+        assert session.changed.wait_for(lambda: session.presenter.controls.indicators.object.count("<tr>") == 4, SECONDS)
     assert Verdict.CHAOTIC in session.presenter.controls.indicators.object
 
 

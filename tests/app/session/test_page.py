@@ -12,6 +12,7 @@ from panel.io.state import set_curdoc
 
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
+from tests.waiting import SECONDS
 
 
 def build() -> weakref.ref[Explorer]:
@@ -30,7 +31,7 @@ def alive(built: list[weakref.ref[Explorer]]) -> list[Explorer]:
 def test_a_closed_page_is_freed() -> None:
     built = [build() for _ in range(2)]
     # A cancelled computation ends within moments, not at once.
-    deadline = time.monotonic() + 60.0
+    deadline = time.monotonic() + SECONDS
     while alive(built) and time.monotonic() < deadline:
         pass
     assert alive(built) == []

@@ -18,6 +18,7 @@ from engine.systems.review.potential_review import review_system
 from engine.systems.system import TYPED
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
+from tests.waiting import SECONDS
 
 # With the integrator of case I.
 WEAKER = "½(x² + y²) − 0.5xy²"
@@ -48,7 +49,7 @@ class Session:
 
     def wait_for(self, condition: Callable[[], bool]) -> None:
         with self.changed:
-            assert self.changed.wait_for(condition, 60.0), self.panel.message.object
+            assert self.changed.wait_for(condition, SECONDS), self.panel.message.object
 
     def wait_for_message(self, text: str) -> None:
         self.wait_for(lambda: text in self.panel.message.object)

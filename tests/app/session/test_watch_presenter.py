@@ -20,6 +20,7 @@ from engine.sweeps.warmup import prepare_for_maps
 from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
 from tests.disc import disc_map
+from tests.waiting import SECONDS
 
 
 class Session:
@@ -83,7 +84,7 @@ def test_the_player_gets_the_rate_of_mixed_motion_where_starts_share_energy_and_
     expected = compute_flux(CASES["III"], 0.45).decay_rate
     with session.changed:
         session.context.results.frame = disc_map()
-        assert session.changed.wait_for(lambda: session.player.rate == expected, 60)
+        assert session.changed.wait_for(lambda: session.player.rate == expected, SECONDS)
     for several in (Plane.X_H, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))):
         session.state.plane = several
         assert session.player.rate == 0.0

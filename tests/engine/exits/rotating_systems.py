@@ -14,7 +14,7 @@ EARTH_MOON = 1.215058560962404e-2
 
 
 def hill() -> Potential:
-    """Φ = −1/r − 3x²/2, Ω = 1; that of the catalogue, whose compiled kernels other tests use, too."""
+    """Φ = −1/r − 3x²/2, Ω = 1: the entry of the catalogue, whose compiled kernels other tests also use."""
     return POTENTIALS["Hill"]
 
 

@@ -15,6 +15,7 @@ import pytest
 
 from engine.foundations.output_lock import hold_lock
 from tests.forked import fork_context, start
+from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such locks")
 
@@ -28,14 +29,14 @@ def hold(path: Path, held: Event, end: Event) -> None:
 def test_the_second_process_learns_who_holds_the_lock(tmp_path: Path) -> None:
     held, end = fork_context().Event(), fork_context().Event()
     process = start(hold, tmp_path / "out", held, end)
-    assert held.wait(60)
+    assert held.wait(SECONDS)
     with (
         pytest.raises(BlockingIOError, match=rf"out: is being written by process {process.pid} on .* since"),
         hold_lock(tmp_path / "out"),
     ):
         pass
     end.set()
-    process.join(60)
+    process.join(SECONDS)
     with hold_lock(tmp_path / "out"):
         pass
     assert not any(tmp_path.iterdir())
@@ -44,10 +45,10 @@ def test_the_second_process_learns_who_holds_the_lock(tmp_path: Path) -> None:
 def test_a_killed_process_holds_no_lock(tmp_path: Path) -> None:
     held, end = fork_context().Event(), fork_context().Event()
     process = start(hold, tmp_path / "out", held, end)
-    assert held.wait(60)
+    assert held.wait(SECONDS)
     assert process.pid is not None
     os.kill(process.pid, signal.SIGKILL)
-    process.join(60)
+    process.join(SECONDS)
     assert any(tmp_path.iterdir())
     with hold_lock(tmp_path / "out"):
         pass
@@ -74,7 +75,7 @@ def test_processes_that_take_turns_never_hold_the_lock_together(tmp_path: Path) 
     """Each holder deletes the file of the lock, which others may have opened."""
     processes = [start(append_alone, tmp_path / "out", 50) for _ in range(3)]
     for process in processes:
-        process.join(60)
+        process.join(SECONDS)
     assert [process.exitcode for process in processes] == [0, 0, 0]
     assert not any(tmp_path.iterdir())
 

@@ -10,9 +10,9 @@ import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
 from tests import forked
+from tests.waiting import SECONDS
 
 SPEC = MapSpec(CASES["I"], Plane.X_PX, 0.3, (30, 30), t_max=50.0)
-SECONDS = 120.0
 
 
 def shares_of(spec: MapSpec) -> dict[int, float]:

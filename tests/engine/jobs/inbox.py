@@ -28,5 +28,5 @@ class Inbox:
         self.done.set()
 
 
-def wait_until_idle(jobs: Jobs, seconds: float = 20.0) -> None:
-    wait_until(lambda: jobs.in_flight == 0, seconds)
+def wait_until_idle(jobs: Jobs) -> None:
+    wait_until(lambda: jobs.in_flight == 0)

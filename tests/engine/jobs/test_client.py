@@ -10,6 +10,7 @@ from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.sweeps.map_jobs import map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
+from tests.waiting import SECONDS
 
 SLOW = [MapSpec(CASES["III"], Plane.X_PX, 0.26, (128, 128), t_max=t_max) for t_max in (1e6, 2e6, 3e6)]
 ORBIT = Job(integrate_orbit, (CASES["I"], (0.1, 0.0, 0.05, 0.6), 10.0), queue=Queue.LONG_CALL)
@@ -43,11 +44,11 @@ def test_first_frame_does_not_wait_for_the_maps_of_other_clients() -> None:
     inboxes = [Inbox() for _ in SLOW]
     for spec, inbox in zip(SLOW, inboxes, strict=True):
         early.request(map_job(spec), inbox.result, inbox.error)
-        assert inbox.first.wait(20)
+        assert inbox.first.wait(SECONDS)
     frame = Inbox()
     begun = time.monotonic()
     late.request(map_job(MapSpec(CASES["III"], Plane.X_PX, 0.5, (64, 64))), frame.result, frame.error)
-    assert frame.first.wait(20)
+    assert frame.first.wait(SECONDS)
     assert jobs.in_flight >= len(SLOW), f"the other maps finished first, after {time.monotonic() - begun} s"
     for client in (early, late):
         client.close()

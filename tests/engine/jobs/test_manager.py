@@ -31,7 +31,7 @@ from engine.jobs.map_priority import CROWDED_REST_SECONDS
 from engine.sweeps.map_jobs import map_job
 from tests.app.clock import Clock
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
-from tests.waiting import wait_until
+from tests.waiting import SECONDS, wait_until
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
 SEARCH = Job(find_divergent_start, (CASES["I"], Plane.X_PX, 0.2, -0.2, 0.1, 500.0))
@@ -42,7 +42,7 @@ def compute_cached_map(jobs: Jobs) -> EscapeMap:
     """Compute the map of `QUICK`, so that it is in the cache."""
     inbox = Inbox()
     jobs.request(map_job(QUICK), inbox.result, inbox.error)
-    assert inbox.done.wait(30)
+    assert inbox.done.wait(SECONDS)
     wait_until_idle(jobs)
     result = inbox.results[-1]
     assert isinstance(result, EscapeMap)
@@ -53,7 +53,7 @@ def test_regularity_uses_the_cached_map() -> None:
     jobs, second = Jobs(), Inbox()
     first = compute_cached_map(jobs)
     jobs.request(Job(compute_regularity, (map_job(QUICK),)), second.result, second.error)
-    assert second.done.wait(30)
+    assert second.done.wait(SECONDS)
     expected = compute_regularity(first)
     np.testing.assert_array_equal(second.results[-1].character, expected.character)
 
@@ -71,7 +71,7 @@ def test_shared_job_continues_until_its_last_subscription_is_cancelled() -> None
     one = jobs.request(map_job(LONG), first.result, first.error)
     two = jobs.request(map_job(LONG), second.result, second.error)
     assert jobs.in_flight == 1
-    assert first.first.wait(30)
+    assert first.first.wait(SECONDS)
     one.cancel()
     assert jobs.in_flight == 1
     count = len(second.results)
@@ -84,12 +84,12 @@ def test_cancelled_map_is_resumed() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.4, (64, 64), t_max=1e3)
     subscription = jobs.request(map_job(spec), first.result, first.error)
-    assert first.first.wait(30)
+    assert first.first.wait(SECONDS)
     subscription.cancel()
     wait_until(lambda: jobs.cache.get(map_job(spec)) is not None)
     assert jobs.cache.get(map_job(spec)).complete is False
     jobs.request(map_job(spec), second.result, second.error)
-    assert second.done.wait(60)
+    assert second.done.wait(SECONDS)
     np.testing.assert_array_equal(second.results[-1].crossings, compute_map(spec).crossings)
 
 
@@ -100,7 +100,7 @@ def test_longer_t_max_resumes_the_cached_map() -> None:
     job = map_job(longer)
 
     jobs.request(job, second.result, second.error)
-    assert second.done.wait(60)
+    assert second.done.wait(SECONDS)
     np.testing.assert_array_equal(second.results[-1].fate, compute_map(longer).fate)
 
 
@@ -110,12 +110,12 @@ def test_an_interrupted_result_does_not_replace_a_complete_one() -> None:
 
     def interrupted(_spec: MapSpec) -> EscapeMap:
         begun.set()
-        assert goes_on.wait(30)
+        assert goes_on.wait(SECONDS)
         return replace(complete, complete=False)
 
     job = Job(interrupted, (QUICK,), queue=Queue.LONG_CALL)
     jobs.request(job, inbox.result, inbox.error)
-    assert begun.wait(30)
+    assert begun.wait(SECONDS)
     jobs.cache.put(job, complete)
     goes_on.set()
     wait_until_idle(jobs)
@@ -126,7 +126,7 @@ def test_invalid_request_delivers_its_error() -> None:
     jobs, inbox = Jobs(), Inbox()
     job = Job(integrate_orbit, (CASES["I"], (0.1, 0.0, 0.05, float("nan")), 500.0), queue=Queue.LONG_CALL)
     jobs.request(job, inbox.result, inbox.error)
-    assert inbox.done.wait(30)
+    assert inbox.done.wait(SECONDS)
     assert isinstance(inbox.errors[0], ValueError)
 
 
@@ -138,14 +138,14 @@ def test_failing_callback_does_not_affect_other_subscriptions() -> None:
 
     jobs.request(map_job(QUICK), fail, fail)
     jobs.request(map_job(QUICK), inbox.result, inbox.error)
-    assert inbox.done.wait(30)
+    assert inbox.done.wait(SECONDS)
     assert inbox.results[-1].complete
 
 
 def test_stop_ends_all_jobs_without_callbacks() -> None:
     inbox, jobs = Inbox(), Jobs()
     jobs.request(map_job(LONG), inbox.result, inbox.error)
-    assert inbox.first.wait(30)
+    assert inbox.first.wait(SECONDS)
     jobs.stop()
     delivered = len(inbox.results)
     wait_until_idle(jobs)
@@ -179,22 +179,22 @@ def test_jobs_of_jobs_are_computed_once() -> None:
 def compile_kernels(begun: threading.Event, end: threading.Event) -> None:
     """A compilation that lasts until `end` is set."""
     begun.set()
-    end.wait(30)
+    end.wait(SECONDS)
 
 
 def test_orbits_do_not_wait_for_a_compilation() -> None:
     jobs, inbox, begun, end = Jobs(threads=1), Inbox(), threading.Event(), threading.Event()
     jobs.request(Job(compile_kernels, (begun, end), queue=Queue.COMPILATION), Inbox().result, Inbox().error)
-    assert begun.wait(30)
+    assert begun.wait(SECONDS)
     jobs.request(SEARCH, inbox.result, inbox.error)
-    assert inbox.done.wait(30)
+    assert inbox.done.wait(SECONDS)
     end.set()
 
 
 def wait_for(begun: threading.Event, end: threading.Event) -> str:
     """A call that lasts until `end` is set."""
     begun.set()
-    end.wait(30)
+    end.wait(SECONDS)
     return "waited"
 
 
@@ -202,7 +202,7 @@ def wait_for(begun: threading.Event, end: threading.Event) -> str:
 def test_all_pages_of_an_account_share_a_turn(queue: Queue) -> None:
     jobs, begun, end, order = Jobs(threads=2), threading.Event(), threading.Event(), list[str]()
     jobs.request(Job(wait_for, (begun, end), queue=queue), Inbox().result, Inbox().error)
-    assert begun.wait(30)
+    assert begun.wait(SECONDS)
     inboxes = list[Inbox]()
     for account, client in (("crowd", 1), ("crowd", 2), ("crowd", 3), ("other", 4)):
         inboxes.append(Inbox())
@@ -210,7 +210,7 @@ def test_all_pages_of_an_account_share_a_turn(queue: Queue) -> None:
         jobs.request(job, inboxes[-1].result, inboxes[-1].error, client=client, account=account)
         wait_until(lambda: jobs.stats().calls_waiting == len(inboxes))
     end.set()
-    assert all(inbox.done.wait(30) for inbox in inboxes)
+    assert all(inbox.done.wait(SECONDS) for inbox in inboxes)
     assert order == ["crowd 1", "other 4", "crowd 2", "crowd 3"]
 
 
@@ -226,17 +226,17 @@ def paused() -> Iterator[Jobs]:
 def test_first_frames_are_computed_while_background_is_paused(paused: Jobs) -> None:
     jobs, inbox = paused, Inbox()
     jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
-    assert inbox.first.wait(30)
+    assert inbox.first.wait(SECONDS)
     wait_until(lambda: jobs.stats().calls_waiting > 0)
     assert not inbox.done.is_set()
     jobs.pause_background(False)
-    assert inbox.done.wait(60)
+    assert inbox.done.wait(SECONDS)
 
 
 def test_cancelled_map_ends_while_background_is_paused(paused: Jobs) -> None:
     jobs, inbox = paused, Inbox()
     subscription = jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
-    assert inbox.first.wait(30)
+    assert inbox.first.wait(SECONDS)
     subscription.cancel()
     wait_until_idle(jobs)
     assert jobs.stats().calls_waiting == 0
@@ -257,11 +257,11 @@ def test_all_but_the_first_frame_is_put_off_while_the_process_is_crowded() -> No
     jobs = Jobs(threads=1, clock=clock)
     jobs.spare_first_frames(True)
     jobs.request(Job(show_two_frames, (clock, shown), queue=Queue.FIRST_FRAME), inbox.result, inbox.error)
-    assert shown.wait(30)
+    assert shown.wait(SECONDS)
     assert (jobs.stats().calls_waiting, jobs.stats().computed) == (1, 0.0)
     clock.now += CROWDED_REST_SECONDS
     jobs.spare_first_frames(True)
-    assert inbox.done.wait(30)
+    assert inbox.done.wait(SECONDS)
     wait_until(lambda: jobs.stats().computed == 2.0)
 
 
@@ -271,7 +271,7 @@ def test_finished_job_leaves_no_reference_cycles() -> None:
     gc.disable()
     try:
         jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
-        assert inbox.done.wait(60)
+        assert inbox.done.wait(SECONDS)
         wait_until_idle(jobs)
         frames = [ref(frame) for frame in inbox.results]
         inbox.results.clear()

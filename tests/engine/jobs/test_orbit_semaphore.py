@@ -9,6 +9,7 @@ import pytest
 
 from engine.foundations.execution import Execution
 from engine.jobs.orbit_semaphore import SMALL_JOB, OrbitSemaphore
+from tests.waiting import SECONDS
 
 LARGE = 4 * SMALL_JOB
 
@@ -25,7 +26,7 @@ def test_large_job_waits_for_the_release_of_another() -> None:
             waiting = threads.submit(second)
             assert not waiting.done()
             released.set()
-        assert waiting.result(10)
+        assert waiting.result(SECONDS)
     assert semaphore.held == 0
 
 

@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
-
-SECONDS = 10.0
+from tests.waiting import SECONDS
 
 
 def background() -> Priority:

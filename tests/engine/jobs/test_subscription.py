@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 
 from engine.jobs.subscription import Subscription
+from tests.waiting import SECONDS
 
 
 def ignore(_: object) -> None:
@@ -18,19 +19,19 @@ def test_final_result_waits_for_a_partial_one_in_delivery() -> None:
     def receive(result: str) -> None:
         if result == "partial":
             entered.set()
-            assert proceed.wait(10)
+            assert proceed.wait(SECONDS)
         delivered.append(result)
 
     subscription = Subscription(ignore, receive, ignore)
     partial = threading.Thread(target=subscription.deliver, args=("partial",), kwargs={"last": False})
     final = threading.Thread(target=subscription.deliver, args=("final",), kwargs={"last": True})
     partial.start()
-    assert entered.wait(10)
+    assert entered.wait(SECONDS)
     final.start()
     final.join(0.1)
     proceed.set()
-    partial.join(10)
-    final.join(10)
+    partial.join(SECONDS)
+    final.join(SECONDS)
     assert delivered == ["partial", "final"]
     assert not subscription.open
 

@@ -230,7 +230,7 @@ def test_shares_refer_to_the_interior_pixels() -> None:
     trust = TrustMap(MapSpec(CASES["I"], Plane.X_PX, 0.2, (5, 2)), codes, complete=False)
     assert trust.doubtful_share == 1 / 8
     assert trust.tested_share == 4 / 8
-    assert trust.describe().startswith("12.50 % of the pixels inside are doubtful so far: 50.00 % were tested")
+    assert trust.describe().startswith("Of the pixels inside, 50.00 % were tested so far and 12.50 % are doubtful")
 
 
 @pytest.mark.parametrize("size", [1.0, 1e-10, 1e-13])

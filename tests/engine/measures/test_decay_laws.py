@@ -219,7 +219,7 @@ def test_a_chosen_window_excludes_an_early_burst() -> None:
         laws = fit(np.concatenate([burst, exponential_times(2000, seed, window=(5.0, T_HIGH))]), None)
         fitted, _ = both(laws)
         held += laws.preferred is DecayLaw.EXPONENTIAL and laws.t_low > 10.0 and fitted.low <= KAPPA <= fitted.high
-    # Each holds with a probability of 0.88, of which the intervals' 0.95 is a part; fewer than 8 have one of 1e-7.
+    # Each trial succeeds with a probability of 0.88, which includes the 0.95 of the intervals; that of fewer than 8 is 1e-7.
     assert held >= 8
 
 

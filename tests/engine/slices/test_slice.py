@@ -94,7 +94,7 @@ def slices_of_coordinates(draw: st.DrawFn) -> Slice:
 
 @st.composite
 def slices_with_an_angle(draw: st.DrawFn) -> Slice:
-    """An angle as axis or held, of which the energy decides the speed."""
+    """An angle as an axis or held; the energy determines the speed."""
     angle = draw(st.sampled_from((Coordinate.THETA, Coordinate.BETA)))
     axes = draw(st.permutations((Coordinate.X, Coordinate.Y, angle, Coordinate.H)))
     fixed = tuple((c, draw(HELD)) for c in (Coordinate.X, Coordinate.Y, angle) if c not in axes[:2])

@@ -13,6 +13,7 @@ from engine.jobs.manager import Jobs
 from engine.sweeps.map_jobs import sweep_job
 from engine.systems.system import TYPED
 from tests.engine.jobs.inbox import Inbox
+from tests.waiting import SECONDS
 
 LETTER = System(TYPED, "½(x² + y²) − a x²y + y³/3")
 KNOWN = System("I")
@@ -33,6 +34,6 @@ def test_a_sweep_along_a_parameter_of_a_typed_formula_first_finds_the_potentials
 ) -> None:
     inbox = Inbox()
     Jobs(limited=refuse).request(sweep_job(sweep_along(system, name)), inbox.result, inbox.error)
-    assert inbox.done.wait(60.0)
+    assert inbox.done.wait(SECONDS)
     assert [str(error) for error in inbox.errors] == (["beyond its limits"] if limited else [])
     assert bool(inbox.results) is not limited

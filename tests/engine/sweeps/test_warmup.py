@@ -15,6 +15,7 @@ from engine.sweeps.warmup import (
     prepare_for_maps,
     seconds_until_ready_for_maps,
 )
+from tests.waiting import SECONDS
 
 # Hénon-Heiles with the orientation of the original paper, and with another term: structures that no other test compiles.
 POTENTIAL = Potential("rotated", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3)))
@@ -44,7 +45,7 @@ def test_background_compilation_lets_maps_go_first() -> None:
         order.append("maps")
 
     compilations.run(POTENTIAL, (compile_for_maps,))
-    thread.join(10)
+    thread.join(SECONDS)
     assert order == ["maps", "background"]
 
 

@@ -21,7 +21,7 @@ from engine.propagation.section_points import find_section_points
 from engine.trajectories.chaos_indicators import Verdict
 
 POTENTIAL, ENERGY = CASES["III"], 0.24
-# An energy of each case at which some orbits escape and others are regular.
+# For each case, an energy at which some orbits escape and others are regular.
 MIXED = [("I", 0.14), ("III", 0.3)]
 
 

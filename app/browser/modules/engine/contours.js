@@ -1,11 +1,11 @@
 // @ts-check
 /** Level lines of a function on a rectangle, by marching squares. */
 
-/** Samples along a side; between them the function is taken to be linear. */
+/** Samples along a side; between samples the function is interpolated linearly. */
 export const SAMPLES = 101
 
 /**
- * Values of a function on a grid over a window, from which the lines of any level follow.
+ * Values of a function on a grid over a window, from which the lines of any level are found.
  *
  * @typedef {object} Grid
  * @property {import("./starts.js").Window} window
@@ -13,7 +13,7 @@ export const SAMPLES = 101
  */
 
 /**
- * The pieces of the line on which the function has a level.
+ * Find the pieces of the line on which the function has a level.
  *
  * @param {Grid} grid
  * @param {number} level
@@ -49,12 +49,12 @@ function joinCell(values, level, corner, join) {
   const isInside = (/** @type {number} */ sample) => values[sample] <= level
   const [right, opposite, above] = [corner + 1, corner + SAMPLES + 1, corner + SAMPLES]
   const first = isInside(corner)
-  // Nearly all cells are left here.
+  // Nearly all cells have no crossed edge.
   if (isInside(right) === first && isInside(opposite) === first && isInside(above) === first) return
   const inside = [corner, right, opposite, above].map(isInside)
   const sides = [2 * corner, 2 * (corner + 1) + 1, 2 * (corner + SAMPLES), 2 * corner + 1]
   const crossed = sides.filter((_, k) => inside[k] !== inside[(k + 1) % 4])
-  // Two lines pass a saddle.
+  // At a saddle two lines cross the cell.
   for (let k = 0; k < crossed.length; k += 2) join(crossed[k], crossed[k + 1])
 }
 
@@ -79,9 +79,9 @@ function edgePoint(window, values, level, edge) {
 }
 
 /**
- * Follow the lines: those with ends first, then closed ones.
+ * Follow the lines: first those with ends, then the closed ones.
  *
- * @param {Map<number, number[]>} joined  emptied
+ * @param {Map<number, number[]>} joined  empty afterwards
  * @returns {number[][]}
  */
 function takeLines(joined) {

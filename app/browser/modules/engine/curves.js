@@ -1,5 +1,5 @@
 // @ts-check
-/** The lines over the pictures at an energy of a preview: the limiting curve, and the exits, circles included. */
+/** The lines over the pictures at the energy of a preview: the limiting curve, and the exits including circles. */
 
 import {Exits} from "./exits.js"
 import {levelLines, SAMPLES} from "./contours.js"
@@ -7,10 +7,10 @@ import {describeSlice, energyAxis, placeWindow} from "./starts.js"
 
 /** Points along an exit over a saddle, and along a circle. */
 const [EXIT_POINTS, CIRCLE_POINTS] = [41, 121]
-/** Place of the number of a channel, as a share of the distance of its exit. */
+/** Place of the number of an exit, as a share of the exit's distance. */
 const LABEL_SHARE = 0.86
 
-/** Traces limiting curves; those of one window need the values of V only once. */
+/** Traces limiting curves; all curves of one window use the same values of V. */
 export class LimitingCurves {
   /** @type {import("./contours.js").Grid | null} */
   #grid = null
@@ -32,7 +32,7 @@ export class LimitingCurves {
 }
 
 /**
- * The lowest energies at which starts exist on a lattice of a window, row by row.
+ * Return the lowest energies at which starts exist on a lattice of a window, row by row.
  *
  * @param {import("./integrator.js").Integrator} integrator
  * @param {import("./system.js").Slice} slice
@@ -47,7 +47,7 @@ const requiredEnergies = (integrator, slice, window) =>
   })
 
 /**
- * The lines of the open exits in units of the page, with the places of their numbers; NaN for circles.
+ * Return the lines of the open exits in units of the page, with the places of their numbers; NaN for circles.
  *
  * @param {import("./integrator.js").Integrator} integrator
  * @param {number} energy  in units of the page

@@ -1,21 +1,21 @@
 // @ts-check
 /**
- * Many orbits at the same time. Each keeps the series of its present step, so that its place at any time within the step costs two
- * polynomials; see `engine/integrator/kernels/ensemble.py`. And the exits at which they will end.
+ * Many orbits at the same time, and the exits at which they will end. Each orbit keeps the series of its present step, so that
+ * its place at any time within the step costs two polynomials; see `engine/integrator/kernels/ensemble.py`.
  */
 
 import {Exits} from "./exits.js"
 import {Integrator} from "./integrator.js"
 import {findAllEnds} from "./orbits.js"
 
-/** Orbits are followed for this long beyond an exit that is no disc, in units of the well. */
+/** Orbits are followed for this long beyond an exit that is not a disc, in units of the well. */
 const FOLLOWED_BEYOND = 1.5
-/** Orbits whose outcomes are found at a time. */
+/** Number of orbits whose outcomes are found at a time. */
 const PORTION = 256
 
 export class Ensemble {
   /**
-   * @param {Integrator} integrator  whose memory the ensemble keeps
+   * @param {Integrator} integrator  the ensemble keeps its memory
    * @param {number} energy  in units of the well
    * @param {ArrayLike<number>} states  x, y, px, py of each start, in units of the well
    */
@@ -25,7 +25,7 @@ export class Ensemble {
     this.#integrator = integrator
     this.#exits = new Exits(integrator, [energy])
     this.#starts = integrator.array("float64", [count, 4], states)
-    /** In the order of the kernel. */
+    /** The arrays in the order of the kernel's parameters. */
     this.#arrays = {
       ends: integrator.array("float64", [rows, count]),
       begin: integrator.array("float64", [count]),
@@ -64,7 +64,7 @@ export class Ensemble {
     return this.#channels.values
   }
 
-  /** When each orbit leaves, as far as it is known. */
+  /** Time at which each orbit leaves, as far as it is known. */
   get escapeTime() {
     return this.#arrays.escapeTime.values
   }
@@ -74,7 +74,7 @@ export class Ensemble {
     return this.#arrays.section.at(0).values
   }
 
-  /** px there. */
+  /** px of the last upward crossing. */
   get sectionPx() {
     return this.#arrays.section.at(1).values
   }
@@ -86,7 +86,7 @@ export class Ensemble {
   }
 
   /**
-   * Follow all orbits to a time, in units of the well; an earlier one than the present begins at the starts again.
+   * Follow all orbits to a time, in units of the well; for a time before the present one they begin at the starts again.
    *
    * @param {number} time
    */
@@ -102,12 +102,12 @@ export class Ensemble {
     if (time > 0) this.#integrator.call("place_ensemble", time, ...arrays, this.#places, this.#channels)
   }
 
-  /** How many times as wide as at their starts the orbits are spread that are still inside. */
+  /** The spread of the orbits that are still inside, relative to the spread of their starts. */
   growth() {
     return this.#integrator.call("measure_spread", this.#starts, this.#places, this.#channels)
   }
 
-  /** The states of the orbits that are still inside, after the first step, with reversed momenta. */
+  /** The states of the orbits that are still inside after the first step, with reversed momenta. */
   reversed() {
     return this.#integrator.temporarily(() => {
       const states = this.#integrator.array("float64", [this.count, 4])
@@ -118,7 +118,7 @@ export class Ensemble {
   }
 }
 
-/** The exits at which the orbits of an ensemble will end, found in portions between the frames of the display. */
+/** The exits at which the orbits of an ensemble will end; they are found in portions between the frames of the display. */
 export class Outcomes {
   /**
    * @param {import("./system.js").System} system
@@ -132,7 +132,7 @@ export class Outcomes {
     this.#exits = new Exits(this.#integrator, [energy])
     this.#states = states
     this.#horizon = horizon
-    /** Number of the exit of each orbit; 0 where it is not known yet, and for those that stay until the horizon. */
+    /** Number of the exit of each orbit; 0 where it is not known yet, and for orbits that stay until the horizon. */
     this.channel = new Uint8Array(states.length / 4)
   }
 
@@ -142,12 +142,12 @@ export class Outcomes {
   #horizon
   #known = 0
 
-  /** Whether all are known. */
+  /** Whether all outcomes are known. */
   get complete() {
     return this.#known === this.channel.length
   }
 
-  /** Find those of the next portion. */
+  /** Find the outcomes of the next portion. */
   continue() {
     const first = this.#known
     this.#known = Math.min(first + PORTION, this.channel.length)

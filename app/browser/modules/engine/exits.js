@@ -1,5 +1,5 @@
 // @ts-check
-/** Exits at some energies as the kernels take them, see `engine/integrator/kernels/events.py`, and their points. */
+/** Exits at some energies in the form of the kernels (see `engine/integrator/kernels/events.py`), and their points. */
 
 /**
  * An exit at one energy.
@@ -7,12 +7,12 @@
  * @typedef {object} Exit
  * @property {number} number
  * @property {boolean} isOpen
- * @property {boolean} isCircle  within or beyond which orbits end
+ * @property {boolean} isCircle  whether orbits end inside or outside a circle
  */
 
 export class Exits {
   /**
-   * The exits of a system at some energies, in units of the well. Their memory is that of the integrator.
+   * The exits of a system at some energies, in units of the well, in the memory of the integrator.
    *
    * @param {import("./integrator.js").Integrator} integrator
    * @param {ArrayLike<number>} energies
@@ -23,9 +23,9 @@ export class Exits {
     this.#columns = layout.exits
     this.count = exits.length
     const shape = [energies.length, exits.length]
-    /** Of each energy, (energies, exits, columns). */
+    /** Values of the exits at each energy, (energies, exits, columns). */
     this.curves = integrator.array("float64", [...shape, layout.exits.count])
-    /** Of all energies, (exits, 3). */
+    /** Values for all energies, (exits, 3). */
     this.gates = integrator.array("float64", [exits.length, 3])
     exits.forEach((exit, k) => ("row" in exit ? this.#placeCircle(exit, k) : this.#interpolate(exit, k, energies)))
   }
@@ -58,7 +58,7 @@ export class Exits {
   }
 
   /**
-   * The exits at one of the energies.
+   * Return the exits at one of the energies.
    *
    * @param {number} [row]
    * @returns {Exit[]}
@@ -76,7 +76,7 @@ export class Exits {
   }
 
   /**
-   * x and y of points of an exit at the first energy, at s from −1 to 1; around a circle s goes from −1 to 1, too.
+   * Return x and y of points of an exit at the first energy, for s from −1 to 1; s goes once around a circle.
    *
    * @param {{number: number}} exit
    * @param {number[]} positions

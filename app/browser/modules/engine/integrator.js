@@ -1,20 +1,20 @@
 // @ts-check
-/** The compiled kernels for one system, and the memory with their arrays; see `engine/integrator/portable_kernels.py`. */
+/** The compiled kernels for one system, and the memory of their arrays; see `engine/integrator/portable_kernels.py`. */
 
 /**
- * WebAssembly: the kernels of all systems, and the functions of those of one structure.
+ * WebAssembly modules: the kernels of all systems, and the functions of all systems of one structure.
  *
  * @typedef {{kernels: WebAssembly.Module, system: WebAssembly.Module}} Modules
  */
 
 const PAGE = 65536
-/** Space for local variables, and what is always free for arrays that a kernel makes, in bytes. */
+/** Space for local variables, and space that is always free for arrays that a kernel makes, in bytes. */
 const [STACK, SLACK] = [PAGE, 4 * PAGE]
 const ALIGNMENT = 16
 
 /** @typedef {{float64: Float64Array, int64: Int32Array, int8: Int8Array}} Views */
 
-/** Bytes of a number, and the array that shows it; of an integer of 64 bits the lower half is at an even place. */
+/** Size of a number in bytes, and the array that shows it; the lower half of a 64-bit integer is at an even index. */
 const KINDS = {
   float64: {bytes: 8, view: Float64Array},
   int64: {bytes: 8, view: Int32Array},
@@ -38,7 +38,7 @@ export class Numbers {
     this.#kind = kind
     this.address = address
     this.shape = shape
-    /** What a kernel takes for the array. */
+    /** The argument that a kernel takes for the array. */
     this.passed = [address, ...shape]
   }
 
@@ -47,7 +47,7 @@ export class Numbers {
   /** @type {Views[K] | null} */
   #view = null
 
-  /** The numbers; not to be kept, because the memory moves when it grows. */
+  /** The numbers. Do not keep this array, because the memory moves when it grows. */
   get values() {
     if (this.#view?.buffer !== this.#memory.buffer) this.#view = this.#look()
     return this.#view
@@ -60,7 +60,7 @@ export class Numbers {
   }
 
   /**
-   * The first of the arrays along the first axis.
+   * Return the first of the arrays along the first axis.
    *
    * @param {number} count
    */
@@ -70,7 +70,7 @@ export class Numbers {
   }
 
   /**
-   * One of the arrays along the first axis.
+   * Return one of the arrays along the first axis.
    *
    * @param {number} index
    */
@@ -108,7 +108,7 @@ export class Integrator {
     this.#exports = exportsOf(modules.kernels, env)
     const own = exportsOf(modules.system, env)
     functions.forEach((name, k) => name in own && table.set(k + 1, own[name]))
-    /** The addresses of the functions of the system, by their names. */
+    /** The addresses of the functions of the system, by name. */
     this.address = Object.fromEntries(functions.map((name, k) => [name, k + 1]))
     this.#free = STACK
     this.table = this.array("float64", [system.table.length], system.table)
@@ -124,7 +124,7 @@ export class Integrator {
   #heap
   #exports
 
-  /** Where memory is free. */
+  /** The address at which memory is free. */
   get #free() {
     return this.#heap.values[0]
   }
@@ -134,7 +134,7 @@ export class Integrator {
   }
 
   /**
-   * A polynomial as the interior test takes it.
+   * Return a polynomial in the form that the interior test takes.
    *
    * @param {import("./system.js").PolynomialTable} polynomial
    */
@@ -159,7 +159,7 @@ export class Integrator {
   }
 
   /**
-   * An array of zeros or of numbers.
+   * Make an array of zeros or of given numbers.
    *
    * @template {keyof Views} K
    * @param {K} kind
@@ -180,7 +180,7 @@ export class Integrator {
   }
 
   /**
-   * An array of integers.
+   * Make an array of integers.
    *
    * @param {ArrayLike<number>} numbers
    */
@@ -192,7 +192,7 @@ export class Integrator {
   }
 
   /**
-   * Give back the memory of the arrays that are made meanwhile.
+   * Call a function and release the memory of the arrays that it makes.
    *
    * @template T
    * @param {() => T} use

@@ -1,7 +1,7 @@
 // @ts-check
-/** Orbits at t = 0, and their ends. */
+/** Orbits at t = 0, and their outcomes. */
 
-/** Steps of lanes, at most. */
+/** Largest number of steps of lanes. */
 const MOST_STEPS = 2 ** 31 - 1
 
 /**
@@ -9,13 +9,13 @@ const MOST_STEPS = 2 ** 31 - 1
  * @typedef {import("./integrator.js").Numbers<"float64">} Floats
  * @typedef {ReturnType<typeof makeOrbits>} Orbits
  *
- * What is found of starts: their fates, the times at which they leave, NaN for others, and their crossings of the section until then.
+ * The outcomes of starts: fates, times at which they leave (NaN for others), and crossings of the section until then.
  *
  * @typedef {{fate: Int8Array, time: Float64Array, crossings: Uint16Array}} Ends
  */
 
 /**
- * The arrays of orbits that the kernel changes, in its order.
+ * The arrays of orbits that the kernel changes, in the order of its parameters.
  *
  * @param {Integrator} integrator
  * @param {Floats} states  (n, 4) x, y, px, py
@@ -35,13 +35,13 @@ export function makeOrbits(integrator, states) {
 }
 
 /**
- * Propagate orbits until a horizon; returns the number of steps.
+ * Propagate orbits until a horizon; return the number of steps.
  *
  * @param {Integrator} integrator
  * @param {Orbits} orbits
  * @param {import("./exits.js").Exits} exits
- * @param {import("./integrator.js").Numbers<"int64">} rows  of the energy of each orbit in the exits
- * @param {{horizon: number, tolerance: number, steps?: Floats}} options  steps (m, 5): those of the only orbit are recorded
+ * @param {import("./integrator.js").Numbers<"int64">} rows  row of each orbit's energy in the exits
+ * @param {{horizon: number, tolerance: number, steps?: Floats}} options  steps (m, 5): steps of a single orbit are recorded here
  */
 export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, steps}) {
   const {step, jets} = integrator.address
@@ -55,13 +55,13 @@ export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, 
 }
 
 /**
- * Find the ends of starts that are inside; those still there at the horizon are undecided.
+ * Find the outcomes of starts that are inside; orbits that are still inside at the horizon are undecided.
  *
  * @param {Integrator} integrator
  * @param {import("./starts.js").Inside} inside
  * @param {import("./exits.js").Exits} exits
  * @param {{horizon: number, tolerance: number}} options
- * @param {import("./integrator.js").Numbers<"int8">} fate  of all starts, set for those that are left out
+ * @param {import("./integrator.js").Numbers<"int8">} fate  of all starts; it is already set for starts that are left out
  * @returns {Ends}
  */
 export function findEnds(integrator, {kept, states, rows}, exits, options, fate) {
@@ -81,7 +81,7 @@ export function findEnds(integrator, {kept, states, rows}, exits, options, fate)
 }
 
 /**
- * The ends of states that are all inside.
+ * Find the outcomes of states that are all inside.
  *
  * @param {Integrator} integrator
  * @param {ArrayLike<number>} states  x, y, px, py of each

@@ -18,17 +18,18 @@ import {findStarts, keepInside} from "./starts.js"
  * @property {number} energy
  */
 
-/** Points of the path in a step. */
+/** Number of points of the path in a step. */
 const POINTS = 6
-/** Steps that are taken at a time. */
+/** Number of steps that are taken at a time. */
 const PORTION = 512
 
 /**
- * Follow the orbit of a point of a slice until it escapes or for a duration, all in units of the well; null if there is none inside.
+ * Follow the orbit of a point of a slice until it escapes or for a duration, in units of the well; null if the start is not
+ * inside.
  *
  * @param {Integrator} integrator
  * @param {import("./system.js").Slice} slice
- * @param {number} energy  of all starts, unless it is an axis
+ * @param {number} energy  of all starts, unless the energy is an axis
  * @param {[number, number]} point
  * @param {number} duration
  * @returns {Path | null}

@@ -17,7 +17,7 @@ import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
  * @property {number} rows
  * @property {number} horizon  longest time, in units of the well
  *
- * The pixels of a view in some rows and in the first columns of these.
+ * Some rows of the pixels of a view, and the first columns of these rows.
  *
  * @typedef {object} Part
  * @property {Uint32Array} rows
@@ -30,15 +30,15 @@ import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
  */
 
 /**
- * Error of an orbit's integration in pixels: a preview needs no steps as short as those of an orbit that is followed to t = 1e5.
- * The last coefficients of a step are about its error in units of the well.
+ * Integration error of an orbit, in pixels: a preview can take longer steps than an orbit that is followed to t = 1e5.
+ * The last coefficients of a step are about as large as its error in units of the well.
  */
 const ERROR_IN_PIXELS = 1e-6
 const LARGEST_TOLERANCE = 1e-9
 
 /**
- * Norm of the last coefficients of a step, small enough for the pixels of a view. An orbit that passes close to a body magnifies
- * errors, the more so the smaller the body.
+ * Norm of the last coefficients of a step, small enough for the pixels of a view. An orbit that passes close to a body amplifies
+ * errors, more so for a smaller body.
  *
  * @param {import("./system.js").System} system
  * @param {View} view

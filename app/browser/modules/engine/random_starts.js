@@ -8,8 +8,9 @@ import {findStarts, keepInside, placeWindow, windowAt} from "./starts.js"
 import {reversedInTime} from "./system.js"
 
 /**
- * Where the starts are: "well", evenly on the energy surface; "view" and "box", evenly on the slice in a window; "disc", evenly on it
- * around a point; "exits", on the exits and going inward; "tubes", at the edge of the tubes that lead out.
+ * Where the starts are placed: "well", uniformly on the energy surface; "view" and "box", uniformly on the slice in a window;
+ * "disc", uniformly on the slice around a point; "exits", on the exits, moving inward; "tubes", at the edge of the tubes that
+ * lead out.
  *
  * @typedef {object} Request
  * @property {"well" | "view" | "box" | "disc" | "exits" | "tubes"} where
@@ -20,11 +21,11 @@ import {reversedInTime} from "./system.js"
  * @property {number} radius  of the disc, as a share of half the window
  */
 
-/** Draws for each start, at most; of a window without an interior there are no starts. */
+/** Largest number of draws for each start; in a window without an interior there are no starts. */
 const MOST_DRAWS = 200
 
 /**
- * The states x, y, px, py of the starts inside all exits, in units of the well.
+ * Return the states x, y, px, py of the starts inside all exits, in units of the well.
  *
  * @param {Request} request
  * @param {import("../workers/frames.js").Scene} scene  slice, energy and window
@@ -55,7 +56,7 @@ function drawAtExits(integrator, {count, seed}, energy, ofTubes) {
 }
 
 /**
- * The states from which orbits come to these ones: the ends of orbits that go into the well backward in time.
+ * Return the states from which orbits come to these states: the ends of orbits that are followed into the well backward in time.
  *
  * @param {Integrator} integrator
  * @param {number} energy
@@ -97,7 +98,7 @@ function drawOnSlice(integrator, request, scene, energy) {
 }
 
 /**
- * The rectangle of a request; a disc is the ellipse in it.
+ * Return the rectangle of a request; the disc is the ellipse in it.
  *
  * @param {Integrator} integrator
  * @param {Request} request

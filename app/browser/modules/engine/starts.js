@@ -19,7 +19,7 @@
  *
  * @typedef {{states: Floats, energies: Floats}} Starts
  *
- * Those beyond no exit: (m,) their numbers among the starts, (m, 4) states, and (m,) rows of their energies in the exits.
+ * Starts beyond no exit: (m,) their indices among the starts, (m, 4) states, and (m,) rows of their energies in the exits.
  *
  * @typedef {{kept: Integers, states: Floats, rows: Integers}} Inside
  */
@@ -32,14 +32,14 @@
 export const showsPositions = ({axes}) => axes[0] === "x" && axes[1] === "y"
 
 /**
- * The axis along which the energy differs: 0 for the abscissa, 1 for the ordinate, -1 for neither.
+ * The axis along which the energy varies: 0 for the horizontal axis, 1 for the vertical one, -1 for neither.
  *
  * @param {Pick<Slice, "axes">} slice
  */
 export const energyAxis = ({axes}) => axes.indexOf("h")
 
 /**
- * A window in units of the well, as kernels take it.
+ * A window in units of the well, in the form that kernels take.
  *
  * @param {Integrator} integrator
  * @param {Window} window
@@ -50,11 +50,11 @@ export function placeWindow(integrator, {xLow, xHigh, ordinateLow, ordinateHigh}
 }
 
 /**
- * The numbers of a slice as kernels take them.
+ * The numbers of a slice in the form that kernels take.
  *
  * @param {Integrator} integrator
  * @param {Pick<Slice, "axes" | "motion" | "decided">} slice
- * @param {number} energy  of all starts, unless it is an axis
+ * @param {number} energy  of all starts, unless the energy is an axis
  * @returns {[number, Floats, Floats, number]}
  */
 export function describeSlice(integrator, {axes, motion, decided}, energy) {
@@ -70,7 +70,7 @@ export function describeSlice(integrator, {axes, motion, decided}, energy) {
  *
  * @param {Integrator} integrator
  * @param {Pick<Slice, "axes" | "motion" | "decided" | "sign">} slice
- * @param {number} energy  of all starts, unless it is an axis
+ * @param {number} energy  of all starts, unless the energy is an axis
  * @param {Floats} points  (axes, n)
  * @returns {Starts}
  */
@@ -102,7 +102,7 @@ export function keepInside(integrator, {states, energies}, exits, rows, fate) {
 }
 
 /**
- * The default window of a slice at an energy; null beyond the table.
+ * Return the default window of a slice at an energy; null for an energy beyond the table.
  *
  * @param {Integrator} integrator
  * @param {string} plane  name of the slice

@@ -1,34 +1,34 @@
 // @ts-check
 /**
- * The orbit under the cursor, drawn over the picture of the well, or on a narrow screen over half of the only map. With a finger:
- * press, and move.
+ * The orbit under the cursor, drawn over the picture of the well. On a narrow screen it covers half of the only map. A finger
+ * shows orbits when it is pressed and moved.
  */
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"
 import {Integrator} from "../engine/integrator.js"
 import {findPath} from "../engine/path.js"
 import {windowAt} from "../engine/starts.js"
+import {number} from "../numbers.js"
 import {cover, frames, strokeLine, wellFrame} from "../painting/pictures.js"
 
-/** Longest time that is followed, in units of the well. */
+/** Longest time for which an orbit is followed, in units of the well. */
 const LONGEST = 200
 /** A finger that rests for this long, in ms, and moves by less than this, in pixels, shows orbits instead of moving the picture. */
 const [PRESS_MS, PRESS_PIXELS] = [350, 8]
-/** Distance from a click within which the card stays away. */
+/** Within this distance of a click the card stays hidden. */
 const CLICK_PIXELS = 12
-/** Side of the card if only a map is shown, as a share of it. */
+/** Side of the card if only one map is shown, as a share of the map. */
 const ALONE = 0.55
-/** Of the text, in pixels. */
+/** Height of the text, in pixels. */
 const [PADDING, TEXT_HEIGHT] = [6, 22]
 const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-surface,#fff);
   border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
 
-/** What is known of an orbit, in words. @type {(path: Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">, unit: number, labels: string[]) => string} */
+/** Describe the outcome of an orbit. @type {(path: Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">, unit: number, labels: string[]) => string} */
 export function describe({channel, time, crossings}, unit, labels) {
-  const t = Number((time * unit).toPrecision(4))
   const count = crossings === 1 ? "1 crossing" : `${crossings} crossings`
   const label = labels[channel - 1] ?? "inside until"
-  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${t}, ${count}`
+  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${number(time * unit)}, ${count}`
 }
 
 /**
@@ -80,7 +80,7 @@ export class Card {
   /** @type {{timer: ReturnType<typeof setTimeout>, x: number, y: number} | null} */
   #finger = null
   #pressed = false
-  /** Where the mouse was pressed last, until it moves away. @type {{x: number, y: number} | null} */
+  /** Where the mouse was last pressed, until it moves away. @type {{x: number, y: number} | null} */
   #clicked = null
 
   /**
@@ -96,7 +96,7 @@ export class Card {
     this.#lift()
     const picture = this.#viewAt(event)
     if (event.pointerType !== "touch") {
-      // The click chooses an orbit, which is drawn where the card is.
+      // A click chooses an orbit, which is then drawn in the place of the card.
       this.#clicked = {x: event.clientX, y: event.clientY}
       this.#hide()
       return
@@ -120,14 +120,14 @@ export class Card {
   #move(event) {
     if (event.pointerType === "touch") {
       const finger = this.#finger
-      // The picture would move.
+      // Otherwise the picture would move.
       if (this.#pressed) event.stopPropagation()
       else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
       if (!this.#pressed) return
     }
     if (this.#clicked && Math.hypot(event.clientX - this.#clicked.x, event.clientY - this.#clicked.y) < CLICK_PIXELS) return
     this.#clicked = null
-    // While the energy or the window is dragged with a mouse, the pictures are being watched.
+    // No card while the energy or the window is dragged with a mouse.
     const dragged = event.buttons && event.pointerType !== "touch"
     this.#show(dragged ? undefined : this.#viewAt(event), event)
   }
@@ -165,7 +165,7 @@ export class Card {
   }
 
   /**
-   * The centre of the pixel under the pointer; the point itself between pictures.
+   * The centre of the pixel under the pointer, or the point under the pointer where there is no pixel.
    *
    * @param {import("../painting/pictures.js").Frame} picture
    * @param {PointerEvent} event
@@ -226,7 +226,7 @@ export class Card {
     context.fillStyle = paper
     context.fillRect(0, box.height - height, width, height)
     context.fillStyle = ink
-    // Beside a small picture the letters are narrower.
+    // Beside a small picture the text is narrower.
     context.fillText(text, PADDING, box.height - PADDING, box.width - 2 * PADDING)
     this.#canvas.setAttribute("aria-label", text)
   }

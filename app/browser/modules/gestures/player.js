@@ -1,8 +1,10 @@
 // @ts-check
-/** Plays the energy: raises it to the end of its range, once per frame of the display. */
+/** Plays the energy: raises it to the end of its range in each frame of the display. */
 
-/** Duration of the whole range. */
+/** Duration of playing the whole range. */
 const SWEEP_MS = 20_000
+/** Least number of steps of the range: those of a decimal, so that the numbers beside the picture are short. */
+const STEPS = 1000
 
 export class Player {
   /**
@@ -24,7 +26,7 @@ export class Player {
   }
 
   /**
-   * Start at an energy, from the beginning of the range if it is at the end; no effect while it plays.
+   * Start at an energy, or at the beginning of the range if the energy is at its end; no effect while the energy is playing.
    *
    * @param {number} energy
    * @param {number} low
@@ -33,12 +35,14 @@ export class Player {
   start(energy, low, high) {
     if (this.playing) return
     this.#energy = energy >= low && energy < high ? energy : low
-    let last = performance.now()
+    const decimals = Math.max(Math.ceil(Math.log10(STEPS / (high - low))), 0)
+    let [exact, last] = [this.#energy, performance.now()]
     const tick = (/** @type {number} */ now) => {
-      this.#energy = Math.min(this.#energy + ((high - low) * Math.max(now - last, 0)) / SWEEP_MS, high)
+      exact = Math.min(exact + ((high - low) * Math.max(now - last, 0)) / SWEEP_MS, high)
       last = now
+      this.#energy = Math.min(Number(exact.toFixed(Math.min(decimals, 20))), high)
       this.#show(this.#energy)
-      if (this.#energy >= high) this.stop()
+      if (exact >= high) this.stop()
       else this.#frame = requestAnimationFrame(tick)
     }
     this.#frame = requestAnimationFrame(tick)

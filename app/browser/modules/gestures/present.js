@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * What the page shows now, for modules that are loaded later; `main.js` writes it.
+ * What the page shows now, for modules that are loaded later; `main.js` sets it.
  *
  * @typedef {object} Shown
  * @property {import("../engine/system.js").System} system
@@ -20,7 +20,7 @@ const listeners = new Set()
 export const present = () => shown
 
 /**
- * Say that the page shows something else: another system, or another view of it.
+ * Set what the page shows: another system, or another view of it.
  *
  * @param {Shown | null} next
  */
@@ -30,7 +30,7 @@ export function setPresent(next) {
 }
 
 /**
- * Call a function when the page shows something else; returns a function that ends this.
+ * Call a function whenever the page shows something else; return a function that ends the calls.
  *
  * @param {() => void} listener
  */

@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * The pictures of the page while the energy or the window moves. The browser's pixels stay until the server's map shows the same
- * view with at least as many.
+ * view with at least as many pixels.
  */
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"
@@ -14,7 +14,7 @@ import {Outlines} from "../painting/outlines.js"
 import {LEAST_SIDE} from "../workers/frames.js"
 
 /**
- * The view as the server describes it.
+ * The view in the server's description.
  *
  * @typedef {object} ServerView
  * @property {string} system  key of the system
@@ -27,14 +27,14 @@ import {LEAST_SIDE} from "../workers/frames.js"
  * @property {import("../painting/columns.js").Coding} coding
  * @property {number} resolution  pixels along a side of the server's map
  *
- * Models of Bokeh by their names; null for those that are not on the page.
+ * Finds a model of Bokeh by name; null if it is not on the page.
  *
  * @typedef {(name: string) => any} FindModel
  */
 
 /**
- * Edges that are this close, as a share of the side, are not moved while the energy changes: to paint axes takes longer than to
- * paint pixels. The default window has more space than that around its interior.
+ * While the energy changes, edges that differ by less than this share of the side do not move, because painting axes takes longer
+ * than painting pixels. The default window has a wider margin around its interior.
  */
 const NEAR_EDGE = 0.02
 
@@ -87,9 +87,9 @@ export class Preview {
   #integrator = null
   /** @type {ServerView | null} */
   #view = null
-  /** Energy of the slider or of the player, until the server has it. @type {number | null} */
+  /** Energy of the slider or of the player, until the server has received it. @type {number | null} */
   #energy = null
-  /** Default window at that energy; null for that of the ranges. @type {import("../engine/starts.js").Window | null} */
+  /** Default window at that energy; null if the window of the ranges is shown. @type {import("../engine/starts.js").Window | null} */
   #window = null
   #held = false
   #waiting = false
@@ -97,7 +97,7 @@ export class Preview {
   #shown = null
 
   /**
-   * Use a system, which is that of the view or will be.
+   * Use a system: that of the view, or that of the next view.
    *
    * @param {import("../engine/system.js").System} system
    * @param {import("../engine/integrator.js").Modules} modules
@@ -135,12 +135,12 @@ export class Preview {
     this.#follow()
   }
 
-  /** The energy has been handed to the server. */
+  /** Called when the server has received the energy. */
   release() {
     this.#held = false
   }
 
-  /** What is to be seen now; null if it cannot be computed here. @returns {import("../workers/frames.js").Scene | null} */
+  /** The scene to show; null if it cannot be computed here. @returns {import("../workers/frames.js").Scene | null} */
   get scene() {
     const [view, system, window] = [this.#view, this.#system, this.#present]
     if (!view?.slice || !system || view.system !== system.key) return null
@@ -150,19 +150,19 @@ export class Preview {
     return coversEnergy(system, highest / system.units.energy) ? {slice: view.slice, energy, window, most: view.resolution} : null
   }
 
-  /** The window that is shown, or is about to be. @returns {import("../engine/starts.js").Window} */
+  /** The window that is shown or about to be shown. @returns {import("../engine/starts.js").Window} */
   get #present() {
     const [x, y] = this.#ranges()
     return this.#window ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
   }
 
-  /** Columns of the view with which this one is compared pixel by pixel, as the server does; null for none. */
+  /** Columns of the view with which this one is compared pixel by pixel, as on the server; null without a comparison. */
   get #compared() {
     const isCompared = this.#maps.server.data.difference?.[0].length > 1
     return isCompared ? (this.#find("compared_map")?.data ?? null) : null
   }
 
-  /** A range changes: its other end and the pixels from the server may follow at once. */
+  /** A range has changed; its other end and the pixels from the server may follow immediately. */
   #moved() {
     if (this.#waiting) return
     this.#waiting = true
@@ -172,7 +172,7 @@ export class Preview {
     })
   }
 
-  /** Show what is wanted: the server's map if it has it, else a preview. */
+  /** Show the requested view: the server's map if it has this view, otherwise a preview. */
   #follow() {
     const scene = this.scene
     if (!scene) {
@@ -190,7 +190,7 @@ export class Preview {
   }
 
   /**
-   * Show the pixels of a preview: in Bokeh's pictures, or over them while the energy moves.
+   * Show the pixels of a preview: in Bokeh's pictures, or on canvases over them while the energy moves.
    *
    * @param {import("../engine/pixels.js").View} view
    * @param {import("../engine/pixels.js").Pixels} pixels
@@ -206,7 +206,7 @@ export class Preview {
     const coloured = exitLines(integrator, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
     const exits = showsPositions(view.slice) ? coloured : []
     const well = this.#traceWell(integrator, view)
-    // Each change of a range repaints all pictures: together with the pixels, or seldom.
+    // Each change of a range repaints all pictures, so ranges change together with the pixels, or seldom.
     if (this.#window) {
       this.#x.show({start: view.window.xLow, end: view.window.xHigh})
       this.#y.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
@@ -229,7 +229,7 @@ export class Preview {
   }
 
   /**
-   * The window of the well and its zero-velocity curve; null where the energy is an axis, and the well stays as it is.
+   * The window of the well and its zero-velocity curve; null where the energy is an axis and the well does not change.
    *
    * @param {Integrator} integrator
    * @param {import("../engine/pixels.js").View} view

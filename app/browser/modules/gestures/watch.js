@@ -5,6 +5,7 @@ import {Ensemble, Outcomes} from "../engine/ensemble.js"
 import {Integrator} from "../engine/integrator.js"
 import {drawStarts} from "../engine/random_starts.js"
 import {energyAxis, windowAt} from "../engine/starts.js"
+import {count as whole, number, percent} from "../numbers.js"
 import {cover, frames, onMoved, wellFrame} from "../painting/pictures.js"
 import {drawSurvival} from "../painting/survival_chart.js"
 import {onPresent, present} from "./present.js"
@@ -14,21 +15,21 @@ const LONGEST = 100
 /** Time of the first frame after the start on a logarithmic scale. */
 const FIRST = 0.5
 const STEPS = 1000
-/** What a press of "Step" shows of a playing ensemble. */
+/** Playing time by which the button "Step" advances the ensemble. */
 const STEP_SECONDS = 0.05
-/** Side of a particle, in pixels, and how fast trails fade: the share of the light that is left after a frame. */
+/** Side of a particle, in pixels, and the speed at which trails fade: the share of the light that remains after a frame. */
 const [SIDE, TRAIL] = [2.5, 0.88]
 const FRAMES_PER_NUMBER = 6
-/** Share of the map under the passages of the section that is covered. */
+/** Opacity of the cover over the map under the passages of the section. */
 const COVERED = 0.85
 /** Time in each frame for finding the outcomes of orbits, in ms. */
 const OUTCOMES_MS = 6
-/** A longer frame, such as one of a hidden page, advances the time by this only. */
+/** Largest time by which a frame advances the orbits; frames of a hidden page take longer. */
 const LONGEST_FRAME_MS = 100
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none"
 
 /**
- * How the time goes on: in units of time per second, or in factors of two per second.
+ * The pace of the time: in units of time per second, or in factors of two per second.
  *
  * @type {Record<string, (time: number, seconds: number) => number>}
  */
@@ -152,7 +153,7 @@ class Watch {
   }
 
   /**
-   * Tell the server of a choice, which comes back as a change of the model.
+   * Send a choice to the server, which returns it as a change of the model.
    *
    * @param {object} choice
    */
@@ -161,7 +162,7 @@ class Watch {
     this.#model.send_msg({where, count, seed, radius, ...choice})
   }
 
-  /** Follow the page and the choices. Other starts begin at time 0; a playing ensemble keeps playing. */
+  /** Follow the page and the choices. Other starts begin at time 0; a playing ensemble continues to play. */
   #follow() {
     const {where, count, seed, radius, point, box} = this.#model
     Object.assign(this.#where, {value: where})
@@ -182,7 +183,7 @@ class Watch {
     this.#show(0)
   }
 
-  /** Find in the next frames through which exits the orbits leave. */
+  /** Find, in the next frames, the exits through which the orbits leave. */
   #findOutcomes() {
     cancelAnimationFrame(this.#nextSearch)
     const tick = () => {
@@ -213,7 +214,7 @@ class Watch {
   #setPlaying(on) {
     cancelAnimationFrame(this.#frame)
     this.#frame = 0
-    // With the counters of the moment, which are not written in every frame.
+    // Update the counters, which are not written in every frame.
     if (!on || !this.#ensemble) return this.#draw()
     if (this.#hasEnded) this.#begin()
     let last = performance.now()
@@ -229,12 +230,12 @@ class Watch {
     this.#label()
   }
 
-  /** Whether the time is where the pace leads. */
+  /** Whether the time is at the end of the pace. */
   get #hasEnded() {
     return this.#pace.value === "backwards" ? this.#time <= 0 : this.#time >= LONGEST
   }
 
-  /** Go to the time from which the pace leads on. */
+  /** Go to the time at which the pace begins. */
   #begin() {
     this.#show(this.#pace.value === "backwards" ? LONGEST : 0)
   }
@@ -267,7 +268,7 @@ class Watch {
     this.#text.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
     this.#paintWell(ensemble, shown)
     this.#paintSection(ensemble, shown)
-    // While the time goes on, numbers that change in every frame cannot be read.
+    // While the time runs, numbers that change in every frame could not be read.
     if (this.#frame !== 0 && this.#painted++ % FRAMES_PER_NUMBER) return
     this.#writeCounters(ensemble, shown)
     this.#writeGrowth(ensemble, time)
@@ -284,7 +285,7 @@ class Watch {
     if (where === "disc" && !point.length) return "Click a map first. These starts are in the view."
     if (explanations[where]) return explanations[where]
     const words = this.#where.selectedOptions[0].textContent
-    return `${this.#ensemble.count} starts ${words}, in the colours of the exits that they will take; grey ones stay.`
+    return `${whole(this.#ensemble.count)} starts ${words}, in the colours of the exits that they will take; grey ones stay.`
   }
 
   /**
@@ -309,7 +310,7 @@ class Watch {
   }
 
   /**
-   * On (x, px): each orbit at its last passage.
+   * Draw each orbit on (x, px), at its last passage.
    *
    * @param {Ensemble} ensemble
    * @param {import("./present.js").Shown} shown
@@ -318,7 +319,7 @@ class Watch {
     const [frame, view] = [frames()[0], scene()]
     // The second coordinate of the origin is y.
     const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
-    // Before the first passage the map stays as it is.
+    // Before the first passage the map is not covered.
     if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
       return void (this.#section.style.display = "none")
     const style = getComputedStyle(this.#note)
@@ -328,7 +329,7 @@ class Watch {
   }
 
   /**
-   * Paint the orbits as particles in the colours of the exits that they will take, others in that of the text.
+   * Paint the orbits as particles in the colours of the exits through which they will leave; others have the colour of the text.
    *
    * @param {HTMLCanvasElement} canvas
    * @param {DOMRect} box
@@ -369,11 +370,10 @@ class Watch {
    */
   #writeCounters({channel, count}, shown) {
     const [names, colours] = [["inside", ...shown.labels()], shown.colours()]
-    const numbers = new Array(names.length).fill(0)
-    for (const code of channel) numbers[code]++
-    const cells = numbers.map((number, code) => {
-      const share = count ? ((100 * number) / count).toFixed(1) : "0"
-      const cell = make("td", {}, `${names[code]}: ${number} (${share} %)`)
+    const sums = new Array(names.length).fill(0)
+    for (const code of channel) sums[code]++
+    const cells = sums.map((sum, code) => {
+      const cell = make("td", {}, `${names[code]}: ${whole(sum)} (${percent(count ? sum / count : 0)})`)
       if (code) cell.style.setProperty("--colour", colours[code - 1])
       return cell
     })
@@ -381,7 +381,8 @@ class Watch {
   }
 
   /**
-   * The growth of a disc, as a factor and as a rate: where it is small and the motion chaotic, the rate is near the Lyapunov exponent.
+   * Describe the growth of a disc, as a factor and as a rate. While the disc is small and the motion chaotic, the rate is close
+   * to the Lyapunov exponent.
    *
    * @param {Ensemble} ensemble
    * @param {number} time
@@ -393,7 +394,7 @@ class Watch {
     const growth = ensemble.growth()
     const isKnown = time > 0 && growth > 0 && growth < Infinity
     this.#growth.textContent = isKnown
-      ? `${growth.toPrecision(3)} times as wide as at the start: ln(width)/t = ${(Math.log(growth) / time).toFixed(3)}`
+      ? `${number(growth, 3)} times as wide as at the start: ln(width)/t = ${number(Math.log(growth) / time, 3)}`
       : ""
   }
 

@@ -1,16 +1,16 @@
 // @ts-check
 /**
- * How pixels are written as codes; the server sends it, see `app/browser/views.py`.
+ * The pixel codes of outcomes and classes. The server sends this object, see `app/browser/views.py`.
  *
  * @typedef {object} Coding
- * @property {[number, number][]} outcomes  fate and code of the outcomes that are no escapes
+ * @property {[number, number][]} outcomes  fate and code of the outcomes that are not escapes
  * @property {number} first  code of the first class
  * @property {number[]} ends  place of the outcomes from fate 1 on among all ends
  * @property {string[]} words  of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class
  * @property {number} undecided  code of pixels that are not decided
  * @property {number[]} withoutOrbit  codes of pixels without an orbit
- * @property {string[]} layers  columns of the layers, which the server alone computes
+ * @property {string[]} layers  columns of the layers, which only the server computes
  *
  * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
  */
@@ -18,13 +18,13 @@
 import {energyAxis} from "../engine/starts.js"
 
 /**
- * The columns of the pictures' data source for the pixels of a view, as the server makes them of a map.
+ * Return the columns of the pictures' data source for the pixels of a view, in the form of the server's columns of a map.
  *
  * @param {Coding} coding
  * @param {import("../engine/pixels.js").View} view
  * @param {import("../engine/pixels.js").Pixels} pixels
- * @param {Columns} like  columns from the server, for the types of their images
- * @param {Columns | null} compared  columns of the view with which this one is compared pixel by pixel; null for none
+ * @param {Columns} like  columns from the server, which determine the types of the images
+ * @param {Columns | null} compared  columns of the view with which this one is compared pixel by pixel; null if there is none
  * @returns {Columns}
  */
 export function pixelColumns(coding, view, pixels, like, compared) {
@@ -60,7 +60,7 @@ export function pixelColumns(coding, view, pixels, like, compared) {
 }
 
 /**
- * Codes of the pixels that have another outcome in another view, as `difference_column` of the server gives them.
+ * Return codes of the pixels that have another outcome in another view, as `difference_column` on the server does.
  *
  * @param {Coding} coding
  * @param {import("../engine/pixels.js").View} view
@@ -85,9 +85,9 @@ function differences({first, undecided, withoutOrbit}, {window, columns, rows}, 
   })
 }
 
-/** Edges of windows closer than this, as a share of its side, are the same. */
+/** Edges of windows that differ by less than this share of a side are equal. */
 const SAME_EDGE = 1e-6
-/** Coarse frames of the server reach this much beyond the window. */
+/** Coarse frames of the server extend beyond the window by this share. */
 const WIDEST = 1.1
 const SAME_ENERGY = 1e-12
 

@@ -1,5 +1,5 @@
 // @ts-check
-/** The item of a legend under the pointer lights its pixels: the colours of the others fade. */
+/** Highlights the pixels of the legend entry under the pointer: the other colours fade. */
 
 /** Opacity of the other colours, as two hexadecimal digits. */
 const FADED = "2e"
@@ -7,12 +7,12 @@ const FADED = "2e"
 /** Fade colours that are not this one. @type {(palette: string[], colour: string) => string[]} */
 export const fade = (palette, colour) => palette.map(other => (other === colour ? other : other.slice(0, 7) + FADED))
 
-/** Follow the pointer for the life of the page. */
+/** Follow the pointer as long as the page exists. */
 export function lightPixels() {
   /** @type {{mapper: any, palette: string[], faded: string[]} | null} */
   let lit = null
   document.addEventListener("pointerover", event => {
-    // The server may have set other colours meanwhile.
+    // The server may have set other colours in the meantime.
     if (lit && lit.mapper.palette === lit.faded) lit.mapper.setv({palette: lit.palette}, {sync: false})
     lit = null
     const [item, foot] = [".patch", ".foot"].map(places => closest(event, places))

@@ -8,7 +8,7 @@
  * @property {(signal: any, slot: () => void) => void} connect
  */
 
-/** Values of a model that may not be on the page yet; before it is, nothing is shown. */
+/** Values of a model that may not be on the page yet; until then nothing is shown. */
 export class LocalWhenPresent {
   /**
    * @param {() => any} find
@@ -25,7 +25,7 @@ export class LocalWhenPresent {
   /** @type {Local | null} */
   #local = null
 
-  /** Values of the server; none before the model is on the page. */
+  /** Values of the server; none until the model is on the page. */
   get server() {
     this.#local ??= this.#make()
     return this.#local?.server ?? {}
@@ -42,12 +42,12 @@ export class LocalWhenPresent {
   }
 }
 
-/** Values of a model that are shown in this browser only, in place of those of the server, which stay known. */
+/** Values of a model that only this browser shows, in place of the server's values, which are kept. */
 export class Local {
   /**
    * @param {Model & Record<string, any>} model
    * @param {string[]} names  of the properties
-   * @param {() => void} onServer  called when the server, or the visitor, changes one
+   * @param {() => void} onServer  called when the server or the visitor changes a value
    */
   constructor(model, names, onServer = () => {}) {
     this.#model = model
@@ -79,12 +79,12 @@ export class Local {
     this.accept()
   }
 
-  /** Leave on the page what was there before a change of the server. */
+  /** Keep the values that the page showed before a change by the server. */
   keep() {
     this.show(this.#displayed)
   }
 
-  /** Take over the values of the server, which are on the page already after a change of it. */
+  /** Take over the values of the server, which are already on the page after a change by the server. */
   accept() {
     this.#displayed = this.server
     this.#shown = false

@@ -37,7 +37,7 @@ export class Outlines {
   /** @param {Exit[]} exits */
   #showExits(exits) {
     this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
-    // Always as many texts: Bokeh fails when texts with colours of their own become fewer.
+    // The number of texts stays the same: Bokeh fails when texts with individual colours become fewer.
     const labels = this.#labels.server.data ?? {text: [], colour: []}
     const fill = (/** @type {any[]} */ values, /** @type {any} */ other) =>
       Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))

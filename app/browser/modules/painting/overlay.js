@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The pictures while the energy moves, on canvases over those of Bokeh, which would take longer to paint a frame, axes included,
- * than the pixels take to compute. Columns, palettes and styles of lines are those of Bokeh's models.
+ * The pictures while the energy moves, on canvases over Bokeh's pictures: painting a frame with axes takes Bokeh longer than
+ * computing the pixels. Columns, palettes and styles of lines come from Bokeh's models.
  */
 
 import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
@@ -10,14 +10,14 @@ import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;background:var(--ui-page)"
 
 /**
- * What is painted.
+ * The content to paint.
  *
  * @typedef {object} Painting
  * @property {number} energy
  * @property {import("../engine/starts.js").Window} window
  * @property {import("./columns.js").Columns} columns
  * @property {Lines} lines  of the maps
- * @property {{window: import("../engine/starts.js").Window, lines: Lines} | null} well  null where the well stays as it is
+ * @property {{window: import("../engine/starts.js").Window, lines: Lines} | null} well  null if the well does not change
  *
  * Lines by the names of Bokeh's data sources.
  *
@@ -68,7 +68,7 @@ export class Overlay {
   }
 
   /**
-   * The empty canvas over a picture.
+   * Return the empty canvas over a picture.
    *
    * @param {string} name
    * @param {DOMRect} box
@@ -150,7 +150,7 @@ function tableOf(palette) {
 }
 
 /**
- * Colours of an image, upside down, as Bokeh's linear and logarithmic mappers give them.
+ * Return the colours of an image, upside down, in the way of Bokeh's linear and logarithmic mappers.
  *
  * @param {any} image  numbers, with NaN for no colour
  * @param {{type: string, palette: any[], low: number, high: number}} mapper

@@ -26,14 +26,14 @@ export function wellFrame() {
 function withBox(view) {
   const canvas = view.canvas_view.el.getBoundingClientRect()
   const {left, top, width, height} = view.frame.bbox
-  // A picture that narrow screens hide has no canvas.
+  // Pictures that narrow screens hide have no canvas.
   return {view, box: new DOMRect(canvas.left + left, canvas.top + top, canvas.width && width, canvas.height && height)}
 }
 
 /**
- * Call a function when a picture that is painted over has moved, or when the theme has changed.
+ * Call a function when a picture under a canvas has moved, or when the theme has changed.
  *
- * No event tells of all causes: windows, layers and panels change the layout, and Bokeh follows some frames later.
+ * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows some frames later.
  *
  * @param {() => void} call
  * @returns {() => void} ends the calls
@@ -74,7 +74,7 @@ export function cover(canvas, box) {
 }
 
 /**
- * Draw a line given in the coordinates of a window that fills a square or a rectangle.
+ * Draw a line whose coordinates refer to a window that fills a square or a rectangle.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {import("../engine/starts.js").Window} window

@@ -1,5 +1,7 @@
 // @ts-check
-/** The share of an ensemble that is still inside, against time, on a logarithmic axis, beside the law of mixed motion. */
+/** The share of an ensemble that is still inside against time, on a logarithmic axis, with the law of mixed motion. */
+
+import {number} from "../numbers.js"
 
 /** Smallest share on the axis. */
 const LEAST = 1e-3
@@ -30,7 +32,7 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
     context.fillRect(LEFT, placeY(share), width - LEFT - 4, 0.5)
   }
   const law = rate > 0 ? "; dashed: flux over volume" : ""
-  context.fillText(`Share inside until t = ${Number((longest * unit).toPrecision(3))}${law}`, LEFT, height - 4)
+  context.fillText(`Share inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4)
   const times = escapeTime.filter(each => each <= time).sort()
   const line = (/** @type {(t: number) => number} */ shareAt, /** @type {number} */ end) => {
     context.beginPath()
@@ -53,7 +55,7 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
 }
 
 /**
- * Number of values of a rising array that are at most a limit.
+ * Return the number of values of a rising array that are at most a limit.
  *
  * @param {Float64Array} values
  * @param {number} limit

@@ -1,29 +1,29 @@
 // @ts-check
 /**
- * Pictures at the rate of the display: as many pixels as fit a frame while the view moves, more of them, and to a later time,
- * when it rests. Only the newest view is kept; the picture that is being computed while the view moves is finished first, so that
- * fast moves show pictures as well.
+ * Pictures at the rate of the display. While the view moves, a picture has as many pixels as fit a frame; at rest it has more
+ * pixels and a longer time. Only the newest view is kept, but a picture that is being computed while the view moves is finished
+ * first, so that fast moves also show pictures.
  *
  * @typedef {import("../engine/pixels.js").View} View
  * @typedef {import("../engine/pixels.js").Pixels} Pixels
  * @typedef {Omit<View, "columns" | "rows" | "horizon">} Scene  slice, energy and window to draw
  */
 
-/** Pixels along a side while the view moves, at least, and longest time in units of the well. */
+/** While the view moves: smallest number of pixels along a side, and longest time in units of the well. */
 export const LEAST_SIDE = 76
 const MOVING_HORIZON = 30
-/** Pictures while the view rests: pixels along a side, and longest time in units of the well. */
+/** Pictures at rest: pixels along a side, and longest time in units of the well. */
 const RESTING = [
   {side: 112, horizon: 100},
   {side: 224, horizon: 100},
 ]
-/** Time for the pixels of a frame, in ms; the rest of it is for painting. */
+/** Time for the pixels of a frame, in ms; the rest of the frame is for painting. */
 const FRAME_MS = 10
 /** Limits of the change of the side from one frame to the next. */
 const [SLOWER, FASTER] = [0.8, 1.25]
-/** A view that has not changed for this long, in ms, rests. */
+/** A view that has not changed for this long, in ms, is at rest. */
 const REST_MS = 60
-/** Pixels of a part while the view rests: a new view waits for one part at most. */
+/** Number of pixels of a part while the view is at rest: a new view waits for at most one part. */
 const PART_PIXELS = 500
 
 export class Frames {
@@ -73,7 +73,7 @@ export class Frames {
     if (this.#computing !== "moving") this.#begin()
   }
 
-  /** Compute nothing more. */
+  /** Stop computing. */
   stop() {
     clearTimeout(this.#rest)
     this.#scene = null
@@ -99,7 +99,7 @@ export class Frames {
   }
 
   /**
-   * Compute the pictures of a resting view, one after the other.
+   * Compute the pictures of a view at rest, one after the other.
    *
    * @param {Scene} scene
    * @param {number} level
@@ -122,7 +122,7 @@ export class Frames {
 
   /**
    * @param {View} view
-   * @param {number} parts  into which the rows are dealt out
+   * @param {number} parts  number of parts into which the rows are divided
    * @param {() => void} done
    */
   #compute(view, parts, done) {
@@ -139,7 +139,7 @@ export class Frames {
   }
 }
 
-/** The pixels of a view; of two mirror images only one is computed. */
+/** Return the pixels of a view; of two mirror images only one is computed. */
 export class Picture {
   /**
    * @param {import("../engine/system.js").System} system
@@ -164,7 +164,7 @@ export class Picture {
   #flips
 
   /**
-   * Deal the rows to compute out into parts.
+   * Divide the rows to compute into parts.
    *
    * @param {number} count
    * @returns {import("../engine/pixels.js").Part[]}
@@ -196,7 +196,7 @@ export class Picture {
   }
 
   /**
-   * The pixels, with mirror images.
+   * Return the pixels, with mirror images.
    *
    * @returns {Pixels}
    */
@@ -220,7 +220,7 @@ export class Picture {
 }
 
 /**
- * Which axes of a view change their direction under x → −x; null if the view is not its own mirror image.
+ * Return which axes of a view change their direction under x → −x; null if the view is not symmetric.
  *
  * @param {import("../engine/system.js").System} system
  * @param {Pick<import("../engine/system.js").Slice, "mirrored">} slice

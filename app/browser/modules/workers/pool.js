@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * Workers that compute parts of one picture at a time. Each has one part; the others wait here, and are dropped when another
- * picture is wanted.
+ * Workers that compute parts of one picture at a time. Each worker has one part; the other parts wait here and are dropped when
+ * another picture is requested.
  *
  * @typedef {import("../engine/pixels.js").View} View
  * @typedef {import("../engine/pixels.js").Part} Part
@@ -33,7 +33,7 @@ export class Pool {
   #picture = null
 
   /**
-   * Give a system to all workers, which are started at the first one.
+   * Give a system to all workers; the first call starts them.
    *
    * @param {import("../engine/system.js").System} system
    * @param {import("../engine/integrator.js").Modules} modules
@@ -48,7 +48,7 @@ export class Pool {
   }
 
   /**
-   * Compute the parts of a picture instead of the present one.
+   * Compute the parts of a picture, in place of the present one.
    *
    * @param {View} view
    * @param {Part[]} parts

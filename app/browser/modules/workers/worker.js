@@ -1,5 +1,5 @@
 // @ts-check
-/** A worker: computes the pixels of parts of views, one after the other. */
+/** A worker, which computes the pixels of parts of views, one after the other. */
 
 import {Integrator} from "../engine/integrator.js"
 import {computePixels} from "../engine/pixels.js"

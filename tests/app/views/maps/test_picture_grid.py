@@ -36,7 +36,14 @@ def test_two_views_stand_side_by_side_before_the_well_and_their_difference() -> 
     maps = make_maps()
     maps.show_pictures(PICTURES_COMPARED)
     assert [pane.object.name for pane in panes(maps.grid)] == ["basins", "compared", "well", "differences"]
-    assert not maps.grid.layout().css_classes[1:]
+    assert not {"enlarged", "many"} & set(maps.grid.layout().css_classes)
+
+
+def test_pictures_without_a_map_are_greyed_out() -> None:
+    pictures = grid()
+    assert "stale" in pictures.layout().css_classes
+    pictures.mark_stale(False)
+    assert "stale" not in pictures.layout().css_classes
 
 
 def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:

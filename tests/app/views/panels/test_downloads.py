@@ -19,6 +19,7 @@ from app.views.panels.downloads import Downloads
 from engine import CASES, EscapeMap, MapSpec, Plane, System, compute_map, integrate_orbit
 from plots.pictures.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
+from tests.waiting import SECONDS
 
 STATE = (0.1, 0.0, 0.05, 0.6)
 
@@ -54,7 +55,7 @@ def test_the_event_loop_runs_while_a_file_is_made(downloads_view: Downloads) -> 
     loop_has_run = threading.Event()
 
     def make() -> bytes:
-        assert loop_has_run.wait(30), "the event loop was blocked"
+        assert loop_has_run.wait(SECONDS), "the event loop was blocked"
         return b"file"
 
     async def save() -> None:

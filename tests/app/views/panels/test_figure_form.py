@@ -31,6 +31,7 @@ from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.printed.figure_style import FigureFormat, FigureStyle
 from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
+from tests.waiting import SECONDS
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +95,7 @@ def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
     loop_has_run = threading.Event()
 
     def make() -> bytes:
-        assert loop_has_run.wait(30), "the event loop was blocked"
+        assert loop_has_run.wait(SECONDS), "the event loop was blocked"
         return b"figure"
 
     async def save() -> None:

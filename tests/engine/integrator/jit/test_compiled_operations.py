@@ -22,6 +22,7 @@ from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.sweeps.warmup import reserve_catalogue
 from tests.engine.jobs.inbox import Inbox
+from tests.waiting import SECONDS
 
 MOST = 1000
 SHARE = MOST // SHARES
@@ -82,7 +83,7 @@ def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool
     compiled_operations.most = SHARES * generate_code(terms, 0).operations - 1
     client, inbox = JobClient(Jobs(), account=account), Inbox()
     client.request(Job(load_kernels, (terms, 0), queue=Queue.COMPILATION), inbox.result, inbox.error)
-    assert inbox.done.wait(20)
+    assert inbox.done.wait(SECONDS)
     assert ["your address" in str(error) for error in inbox.errors] == [True] * is_refused
 
 

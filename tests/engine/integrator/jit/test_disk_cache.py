@@ -11,6 +11,7 @@ from loky import ProcessPoolExecutor
 from engine.foundations.cache_files import CACHE_VARIABLE
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.disk_cache import compile_in
+from tests.waiting import SECONDS
 
 
 @pytest.fixture
@@ -26,7 +27,7 @@ def test_another_process_stores_what_this_one_loads(folder: Path) -> None:
     with ProcessPoolExecutor(1) as other:
 
         def compile_there(call: Callable[[], None]) -> None:
-            other.submit(call).result(300)
+            other.submit(call).result(SECONDS)
             stored.extend(file.name for file in folder.iterdir())
 
         compile_in(compile_there)

@@ -91,7 +91,7 @@ def check(terms: Terms, rng: np.random.Generator) -> None:
 
 
 def random_terms(rng: np.random.Generator, degree: int) -> Terms:
-    """Up to eight terms of up to a degree, half of the time with coefficients of which some are opposite."""
+    """Up to eight terms of limited degree; in half of the cases some coefficients are opposite."""
     exponents = [(i, j) for i in range(13) for j in range(13) if 0 < i + j <= degree]
     chosen = rng.choice(exponents, min(len(exponents), int(rng.integers(1, 9))), replace=False)
     coefficients = rng.choice([-1.0, -0.5, 0.5, 1.0], len(chosen)) if rng.random() < 0.5 else rng.normal(size=len(chosen))

@@ -29,7 +29,7 @@ TEXTS = (
 
 
 def texts_of(fast: int) -> pytest.MarkDecorator:
-    """The texts, of which some are in the fast suite: compilation takes up to seconds for each kernel."""
+    """The texts; only some are in the fast suite, because compilation takes up to seconds for each kernel."""
     return pytest.mark.parametrize(
         "text", [*TEXTS[:fast], *(pytest.param(text, marks=pytest.mark.slow) for text in TEXTS[fast:])]
     )
