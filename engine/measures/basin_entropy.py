@@ -128,6 +128,8 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     """
     made_by = describe_labels(labels)
     labels, valid = checked_labels(labels, valid, bounded=COUNTS_BOUNDED)
+    if min(labels.shape) < 2:
+        raise ValueError(f"labels of shape {labels.shape}: must have at least two rows and two columns")
     box = checked_count("box", box, 2, min(labels.shape))
     boxes = _tile(labels, box)[_tile(valid, box).all(axis=1)]
     entropies, label_counts = _box_entropies(boxes)

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _FINISHED = "finished"
 # Name of the temporary files of Zarr.
 _UNFINISHED = "*.partial"
+# Attributes that follow from the potential, in words that may change from version to version.
+_WORDS = ("outcomes", "exit_names")
 _OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
 
 
@@ -111,7 +113,7 @@ def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, 
     """Raise a ValueError that names the difference if attributes belong to another sweep; those of files have other types."""
     # A default window follows from the other differences.
     for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
-        if name not in but and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
+        if name not in {*but, *_WORDS} and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
             raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")
 
 

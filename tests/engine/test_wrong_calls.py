@@ -100,6 +100,7 @@ WRONG_CALLS = (
     ("compute_regularity(spec)", "escape_map=…: must be an EscapeMap"),
     ("compute_statistics(spec)", "frame=…: must be an EscapeMap"),
     ("compute_basin_entropy(spec)", "labels of shape () and type object: must be integers, (rows, columns)"),
+    ("compute_basin_entropy(np.zeros((1, 1), int))", "labels of shape (1, 1): must have at least two rows and two columns"),
     ("compute_basin_entropy(m, box=1)", "box=1: must be an integer from 2 to 20"),
     ("fit_decay_laws(stats.escape_times)", "statistics=…: must be an EscapeMap, or a dataset of one"),
     ('fit_decay_laws(stats, "long")', "t_max='long': must be above 0 and at most 1e+08"),

@@ -232,3 +232,8 @@ def test_a_sweep_of_which_less_is_known_is_another_one() -> None:
     check_same_sweep("store", wanted, wanted)
     with pytest.raises(ValueError, match=r"store: holds another sweep, with t_max=None; must have t_max=100.0"):
         check_same_sweep("store", {"energy": 0.2}, wanted)
+
+
+def test_a_sweep_whose_exits_had_other_names_is_the_same() -> None:
+    wanted = {"energy": 0.2, "outcomes": '[["exit", "exit 1"]]'}
+    check_same_sweep("store", {"energy": 0.2, "outcomes": '[["exit", "channel 1"]]'}, wanted)
