@@ -110,7 +110,7 @@ def attack(app: RunningApp, count: int, seed: int) -> int:
 
 
 @pytest.mark.parametrize(
-    "count", [pytest.param(2_000, marks=pytest.mark.slow), pytest.param(100_000, marks=pytest.mark.exhaustive)]
+    "count", [pytest.param(4_000, marks=pytest.mark.slow), pytest.param(100_000, marks=pytest.mark.exhaustive)]
 )
 def test_many_random_messages_leave_no_memory_behind(count: int, served: tuple[RunningApp, Path]) -> None:
     app, output = served

@@ -101,7 +101,7 @@ def energy_of(seed: int, potential: Potential) -> float:
 
 
 @pytest.mark.parametrize(
-    "number", [pytest.param(k, marks=pytest.mark.slow if k < 5 else pytest.mark.exhaustive) for k in range(40)]
+    "number", [pytest.param(k, marks=pytest.mark.slow if k < 10 else pytest.mark.exhaustive) for k in range(40)]
 )
 def test_wells_with_functions(number: int) -> None:
     seed, potential = open_wells()[number]
@@ -109,7 +109,7 @@ def test_wells_with_functions(number: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", range(0, 40, 10))
+@pytest.mark.parametrize("number", range(0, 40, 5))
 def test_energy_is_held_in_wells_with_functions(number: int) -> None:
     _, potential = open_wells()[number]
     energy = potential.well.energy_at(0.9)
@@ -135,7 +135,7 @@ def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
 
 
 @pytest.mark.parametrize(
-    "number", [pytest.param(k, marks=pytest.mark.slow if k < 4 else pytest.mark.exhaustive) for k in range(40)]
+    "number", [pytest.param(k, marks=pytest.mark.slow if k < 8 else pytest.mark.exhaustive) for k in range(40)]
 )
 def test_rotating_systems_bodies_and_escape_radii(number: int) -> None:
     seed, potential, energy, starts = accepted_system(number)

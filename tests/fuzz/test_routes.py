@@ -56,9 +56,9 @@ def attack(app: RunningApp, requests: RandomRequests, count: int) -> dict[bytes,
 def test_random_requests_leave_no_memory_behind(served: tuple[RunningApp, Path]) -> None:
     app, output = served
     requests = RandomRequests(mounted_routes()[1:], seed=7)
-    answers = attack(app, requests, 2500)
+    answers = attack(app, requests, 5000)
     early = resting_memory(app)
-    later = attack(app, requests, 2500)
+    later = attack(app, requests, 5000)
     late = resting_memory(app)
     run_on_new_loop(lambda: asyncio.wait_for(open_page(app.address), ANSWER_SECONDS))
     log.info("%s, %s, resident memory from %.0f to %.0f MB", answers, later, early / 2**20, late / 2**20)

@@ -36,7 +36,7 @@ SYSTEMS = (
     System(TYPED, "½(x² + k1 y²) − b x y²", {"b": 0.9, "k1": 1.2}),
 )
 # Random slices, pixels along a side, robust pixels compared on each, and values of a parameter at which they lie.
-COUNT, SIDE, COMPARED, LINES = 24, 24, 10, 3
+COUNT, SIDE, COMPARED, LINES = 30, 24, 10, 3
 T_MAX, TOLERANCE = 60.0, 1e-15
 
 
