@@ -29,7 +29,7 @@ _DIFFERENCE_IN_PREVIEW = """colour => {
 
 
 def test_another_energy_is_compared_with_the_view_that_was_kept(explorer: ExplorerPage) -> None:
-    explorer.page.get_by_label("Compare with this view", exact=True).click()
+    explorer.page.get_by_role("checkbox", name="Compare with this view", exact=True).click()
     explorer.wait_for_data("compared_map", "data.fate[0].length > 1")
     explorer.page.wait_for_url("**with_h=0.19**")
     explorer.type_number("Exact h", "0.3")

@@ -52,7 +52,7 @@ def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplor
     reason = describe_evidence(frame.evidence[row, column])
     explorer.hover("basins", xs[column], ordinates[row])
     expect_tooltip(explorer, "bounded", reason, "regular", "never entered: inside since −t_max")
-    explorer.page.get_by_label("Origin and exit", exact=True).uncheck()
+    explorer.page.get_by_role("checkbox", name="Origin and exit", exact=True).uncheck()
     explorer.hover("basins", xs[column + 1], ordinates[row])
     explorer.hover("basins", xs[column], ordinates[row])
     expect(explorer.page.locator(".bk-Tooltip").get_by_text("never entered")).to_have_count(0)
