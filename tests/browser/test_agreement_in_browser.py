@@ -42,7 +42,7 @@ def on_in_the_address(explorer: ExplorerPage) -> set[str]:
 
 def expect_switches(explorer: ExplorerPage, on: set[str]) -> None:
     for name, layer in LAYERS.items():
-        expect(explorer.page.get_by_label(layer.title, exact=True)).to_be_checked(checked=name in on)
+        expect(explorer.page.get_by_role("checkbox", name=layer.title, exact=True)).to_be_checked(checked=name in on)
 
 
 def test_a_widget_keeps_the_last_state_that_the_server_sets(explorer: ExplorerPage) -> None:
@@ -60,7 +60,7 @@ def test_the_last_choice_is_shown_when_an_older_one_arrives_after_it(explorer: E
 
 
 def test_a_switch_can_be_changed_right_after_the_server_has_set_it(explorer: ExplorerPage) -> None:
-    explorer.page.get_by_label(LAYERS["trust"].title, exact=True).click()
+    explorer.page.get_by_role("checkbox", name=LAYERS["trust"].title, exact=True).click()
     explorer.page.wait_for_url(lambda address: "trust=yes" not in address)
     expect_switches(explorer, {"judge", "origins"})
     assert on_in_the_address(explorer) == {"judge", "origins"}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from playwright.sync_api import expect
@@ -17,13 +18,15 @@ _WATCH_SHIFTS = """() => {
     const place = ({x, y, width, height}) => [x, y, width, height].map(Math.round).join(" ")
     const describe = ({node, previousRect, currentRect}) =>
         `${node?.className || node?.nodeName}: from ${place(previousRect)} to ${place(currentRect)}`
+    const top = ({previousRect, currentRect}) =>
+        Math.min(...[previousRect, currentRect].filter(({width}) => width > 0).map(({y}) => y))
     const add = list => list.getEntries().forEach(entry =>
-        window.shifts.push(...entry.sources.map(source => ({time: entry.startTime, text: describe(source)}))))
+        window.shifts.push(...entry.sources.map(source => ({time: entry.startTime, top: top(source), text: describe(source)}))))
     new PerformanceObserver(add).observe({type: "layout-shift"})
 }"""
 _PAINTED = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now()))))"
-_SHIFTS_SINCE = "since => window.shifts.filter(({time}) => time > since).map(({text}) => text)"
-PARTS = ("orbit-list", "verdict", "player", "interval", "sali", "exponent", "r2", "separation")
+_SHIFTS = "([since, bottom]) => window.shifts.filter(({time, top}) => time > since && top < bottom).map(({text}) => text)"
+PARTS = ("orbit-list", "verdict", "player", "sali", "exponent", "r2")
 
 STARTS = [(0.1, 0.05), (0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (0.0, 0.3)]
 
@@ -62,7 +65,7 @@ def test_a_time_moves_along_path_sali_and_r2_together(explorer: ExplorerPage) ->
     assert spans[0][0][1] > 0
 
 
-def places(explorer: ExplorerPage) -> dict[str, object]:
+def places(explorer: ExplorerPage) -> dict[str, Any]:
     """Places and sizes of the parts of the inspector, which must all be on the page."""
     found = {part: explorer.page.locator(f".{part}").first.bounding_box() for part in PARTS}
     assert None not in found.values()
@@ -74,6 +77,8 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     explorer.wait_for_data("r2_histories", "data.xs.length == 1")
     begin = explorer.page.evaluate(_PAINTED)
     before = places(explorer)
+    # The chart of the distance of two orbits opens below the histories, and moves what follows it.
+    end_of_histories = before["r2"]["y"] + before["r2"]["height"]
     explorer.page.evaluate(_WATCH_SHIFTS)
     explorer.page.get_by_role("slider", name="Time along the orbits").press("ArrowRight")
     explorer.click("basins", *STARTS[1])
@@ -81,7 +86,7 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     expect(explorer.page.get_by_role("radio", name=re.compile("2: .* at t"))).to_have_count(1)
     assert places(explorer) == before
     explorer.page.evaluate(_PAINTED)
-    assert explorer.page.evaluate(_SHIFTS_SINCE, begin) == []
+    assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
     explorer.press("Find divergent start")
     # Its line opens with the button, and stays as it is when the search ends.
     expect(explorer.page.locator(".note").first).to_contain_text(re.compile("divergent start is|start that escapes elsewhere"))
@@ -89,7 +94,7 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     expect(explorer.text("The divergent start is")).to_be_visible()
     explorer.wait_for_data("separation_source", "data.t.length > 100")
     explorer.page.evaluate(_PAINTED)
-    assert explorer.page.evaluate(_SHIFTS_SINCE, begin) == []
+    assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
 
 
 def test_messages_end_with_what_they_were_about(explorer: ExplorerPage) -> None:

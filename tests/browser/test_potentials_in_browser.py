@@ -55,7 +55,7 @@ def test_quick_steps_of_a_parameter_end_at_the_same_number_everywhere(explorer: 
     explorer.wait_for_view("omega_1=1.13&")
     expect(rail).to_have_value("1.13")
     expect(explorer.page.get_by_label("ω₁, number")).to_have_value("1.13")
-    expect(explorer.text("Case I with ω₁ = 1.13")).to_be_visible()
+    expect(explorer.text("Case I with ω1 = 1.13")).to_be_visible()
     # A box takes numbers beyond its slider, up to a limit.
     box = explorer.page.get_by_label("ω₂, number")
     box.fill("2.5")

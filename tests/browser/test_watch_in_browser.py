@@ -13,14 +13,15 @@ from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
-_INSIDE = re.compile(r"inside: (\d+) ")
+# Digits are grouped by thin spaces.
+_INSIDE = re.compile(r"inside: (\d+(?:\s\d{3})*) ")
 
 
 def inside(explorer: ExplorerPage) -> int:
     text = explorer.page.get_by_role("cell", name="inside:").inner_text()
     found = _INSIDE.search(text)
     assert found is not None
-    return int(found.group(1))
+    return int("".join(found.group(1).split()))
 
 
 def move_time_to(explorer: ExplorerPage, share: float) -> None:

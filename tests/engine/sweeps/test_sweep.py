@@ -268,7 +268,7 @@ def test_invalid_parameters_are_named(change: dict[str, Any], message: str) -> N
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"potential": CASES["III"]}, "one of another system"),
+        ({"potential": CASES["III"]}, "belongs to another system"),
         ({"plane": Slice(Coordinate.X, THIRD_EXIT)}, "must be on a slice of one potential"),
         ({"window": None}, "window=None: must be given for maps along a parameter"),
     ],
