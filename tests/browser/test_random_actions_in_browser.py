@@ -222,7 +222,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
         return lambda: page.keyboard.press(name)
 
     def switch(label: str) -> Callable[[], None]:
-        return lambda: page.get_by_label(label, exact=True).click()
+        return lambda: page.get_by_role("checkbox", name=label, exact=True).click()
 
     plain = {f"case {case}": lambda case=case: explorer.pick(case) for case in CASES}
     plain |= {f"plane {plane.title}": lambda plane=plane: explorer.pick(plane.title) for plane in PLANES}
