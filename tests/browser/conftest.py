@@ -53,8 +53,8 @@ def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]
     assert "Traceback" not in text, text
 
 
-# The driver of Chromium without a graphics card reports its own pace. Bokeh rebuilds the label of a button without waiting for the
-# rebuild before it (`AbstractButtonView._rebuild_label`), and warns that it removes the old one twice; the last label is shown.
+# The driver of Chromium without a graphics card reports its own pace. Bokeh rebuilds the label of a button without waiting for
+# the rebuild before it (`AbstractButtonView._rebuild_label`), and warns that it removes the old one twice; the last one is shown.
 _HARMLESS = re.compile(r"GL Driver Message|bokeh\.models\.dom\.TextView\(\w+\)\.remove\(\): view was already destroyed")
 
 
