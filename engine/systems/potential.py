@@ -16,7 +16,14 @@ import numpy as np
 from engine.expressions.nodes import Expression
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
-from engine.foundations.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
+from engine.foundations.validation import (
+    LONGEST_TIME,
+    check_type,
+    checked_finite,
+    checked_number,
+    checked_t_max,
+    replace_unchecked,
+)
 from engine.systems.forms.expression_form import ExpressionForm
 from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
@@ -36,6 +43,9 @@ Terms = tuple[tuple[int, int, float], ...]
 # Marks centres or an escape radius that are given in `ends`.
 _OF_ENDS: Any = ...
 
+MASS_RANGE = 1e-6, 1e6
+"""Legal masses."""
+
 # In units of 1/Ω.
 _SHORT_TIME = 1000.0
 
@@ -43,10 +53,13 @@ _SHORT_TIME = 1000.0
 @with_former_fields
 @dataclass(frozen=True, init=False)
 class Potential(Result):
-    """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
+    """V(x, y), dimensionless: H = (px² + py²)/2m + V, with a mass m of 1 by default.
 
-    In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for the velocities ẋ and ẏ, and H for
-    the Jacobi integral (ẋ² + ẏ²)/2 + Φ: ẍ = 2Ωẏ − Φ_x, ÿ = −2Ωẋ − Φ_y. See `in_rotating_frame`.
+    In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for mẋ and mẏ, and H for the Jacobi
+    integral m(ẋ² + ẏ²)/2 + Φ: mẍ = 2mΩẏ − Φ_x, mÿ = −2mΩẋ − Φ_y. See `in_rotating_frame`.
+
+    Orbits with a mass m are those with a mass of 1 at the same energy, with momenta and times multiplied by √m. They are computed
+    so; the factor rounds unless it is a power of 2.
 
     Without an escape radius, orbits leave a well, or a centre, at the origin through the exits over its saddles. With an escape
     radius, saddles are not exits, and orbits end beyond this radius. See `with_outcomes`.
@@ -75,6 +88,8 @@ class Potential(Result):
     exit_names
         Names of the exits in channel order, such as ("L2", "L1"), which have no influence on any result; they are used if there
         are as many exits as names.
+    mass
+        m, 1e-6 to 1e6, dimensionless.
 
     Raises
     ------
@@ -100,11 +115,12 @@ class Potential(Result):
     lineage: Lineage = field(default=SEARCHED, repr=False)
     system: System | None = field(default=None, repr=False, compare=False)
     exit_names: tuple[str, ...] = field(default=(), repr=False, compare=False)
+    mass: float = 1.0
     inner_names: ClassVar = Result.inner_names | {
         "check_at_rest", "check_without_gaps", "checked_t_max", "continued", "exit_names", "form", "gaps",
         "hessian_matrix", "in_well_units", "lineage", "reversed_in_time", "tori_are_evidence", "units", "well",
     }  # fmt: skip
-    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names"), "terms")
+    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names", "mass"), "terms")
 
     def __init__(
         self,
@@ -119,6 +135,7 @@ class Potential(Result):
         ends: Sequence[End] = (),
         system: System | None = None,
         exit_names: Sequence[str] = (),
+        mass: float = 1.0,
     ) -> None:
         check_type("name", name, str)
         if isinstance(form, Expression):
@@ -139,6 +156,7 @@ class Potential(Result):
             "lineage": lineage,
             "system": system,
             "exit_names": tuple(_checked(exit_names, "exit_names", str)),
+            "mass": _checked_mass(mass),
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
@@ -146,7 +164,7 @@ class Potential(Result):
     @cached_property
     def well(self) -> Well:
         """Quantities derived from the potential: critical points, exits, symmetries, units."""
-        return self.lineage.make_well(self.form, self.rotation, self.ends)
+        return self.lineage.make_well(self.form, self.rotation, self.ends, self.mass)
 
     @property
     def centres(self) -> tuple[Centre, ...]:
@@ -202,9 +220,9 @@ class Potential(Result):
 
     @cached_property
     def in_well_units(self) -> Potential:
-        """Return the system in units of the well: V(L x, L y) / E, with units L of length and E of energy.
+        """Return the system in units of the well: V(L x, L y) / E with a mass of 1, with units L of length and E of energy.
 
-        If both units are 1, it is the potential itself.
+        If all units are 1, it is the potential itself.
         """
         units = self.units
         if units == WellUnits():
@@ -217,6 +235,7 @@ class Potential(Result):
             ends=tuple(end.scaled(1.0 / units.length) for end in self.ends),
             lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
             system=None,
+            mass=1.0,
         )
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
@@ -228,7 +247,7 @@ class Potential(Result):
         return replace(self, lineage=SEARCHED, system=None, **values)
 
     def in_rotating_frame(self, rotation: float) -> Potential:
-        """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).
+        """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ m Ω² (x² + y²).
 
         Parameters
         ----------
@@ -242,7 +261,7 @@ class Potential(Result):
         """
         if self.rotation:
             raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
-        half = -0.5 * checked_number("rotation", rotation) ** 2
+        half = -0.5 * self.mass * checked_number("rotation", rotation) ** 2
         return self._changed(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
 
     def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
@@ -356,19 +375,19 @@ class Potential(Result):
     def energy(self, states: Any) -> Any:
         """Return H of states (…, 4) = x, y, px, py."""
         x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
-        return 0.5 * (px * px + py * py) + self.value(x, y)
+        return 0.5 * (px * px + py * py) / self.mass + self.value(x, y)
 
     def jacobi_constant(self, energy: Any) -> Any:
         """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays have the same shape.
 
         C = −2H about the axis of the frame, which is the barycentre in the three-body problem, where U = Σ m/r + ½ (x² + y²). In
         the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C, so that their values are
-        larger by this amount.
+        larger by this amount. For a mass other than 1, H is divided by it.
 
         Raises
         ------
         ValueError
-            If the frame does not rotate.
+            If the frame does not rotate, or an energy is not finite.
 
         Examples
         --------
@@ -377,17 +396,17 @@ class Potential(Result):
         >>> round(hill.jacobi_constant(hill.escape_energy), 5), round(earth_moon.jacobi_constant(earth_moon.escape_energy), 5)
         (4.32675, 3.18834)
         """
-        return self._squared_speed_of_origin - 2.0 * energy
+        return self._squared_speed_of_origin - 2.0 * checked_finite("energy", energy) / self.mass
 
     def jacobi_energy(self, constant: Any) -> Any:
         """Return the energy H of Jacobi constants, see `jacobi_constant`."""
-        return 0.5 * (self._squared_speed_of_origin - constant)
+        return 0.5 * self.mass * (self._squared_speed_of_origin - checked_finite("constant", constant))
 
     @property
     def _squared_speed_of_origin(self) -> float:
         if not self.rotation:
             raise ValueError(f"potential={self.name}: its frame must rotate for a Jacobi constant")
-        return squared_speed_of_origin(self.form, self.rotation)
+        return squared_speed_of_origin(self.form, self.rotation, self.mass)
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Potential:
         """Return this potential with other frequencies of its well and another strength of its perturbation.
@@ -420,6 +439,15 @@ class Potential(Result):
         changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
         return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)
+
+
+def _checked_mass(mass: float) -> float:
+    """Return the mass as a float; ValueError if it is out of range."""
+    low, high = MASS_RANGE
+    number = checked_number("mass", mass)
+    if not low <= number <= high:
+        raise ValueError(f"mass={number!r}: must be from {low:g} to {high:g}")
+    return number
 
 
 def _checked[T](ends: Sequence[T], name: str, kind: type[T]) -> Sequence[T]:
