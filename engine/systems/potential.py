@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.expressions.nodes import Expression
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
 from engine.foundations.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
 from engine.systems.forms.expression_form import ExpressionForm
@@ -39,6 +40,7 @@ _OF_ENDS: Any = ...
 _SHORT_TIME = 1000.0
 
 
+@with_former_fields
 @dataclass(frozen=True, init=False)
 class Potential(Result):
     """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
