@@ -1,7 +1,6 @@
 """Potentials: a formula, the rotation of its frame, and the ends of orbits besides its exits.
 
-Everything else is derived from these: critical points, exits and units by `engine.systems.well`, the integrator by
-`engine.integrator`.
+All else is derived from these: critical points, exits and units by `engine.systems.well`, kernels by `engine.integrator`.
 """
 
 from __future__ import annotations
@@ -39,8 +38,7 @@ if TYPE_CHECKING:
 # Marks centres or an escape radius that are given in `ends`.
 _OF_ENDS: Any = ...
 
-# In units of 1/Ω.
-_SHORT_TIME = 1000.0
+_SHORT_TIME = 1000.0  # in units of 1/Ω
 
 
 @dataclass(frozen=True, init=False)
@@ -275,7 +273,8 @@ class Potential(Motion):
         """Raise ValueError if there are `gaps`, for computations with fixed steps."""
         if self.gaps:
             raise ValueError(
-                f"potential={self.name}: has {self.gaps[0].word}s; {what} use fixed steps, which cannot pass close to them"
+                f"potential={self.name}: has {self.gaps[0].word}s; "
+                f"{what} are computed with fixed steps, which cannot pass close to them"
             )
 
     @property
