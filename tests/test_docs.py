@@ -86,11 +86,11 @@ def test_scripts_of_the_documents_use_names_that_exist(script: Path) -> None:
 
 @pytest.fixture(scope="module")
 def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The pages of the terms and of chaos, without those that they link to."""
+    """The page with the terms and that of chaos, without those that they link to."""
     folder = tmp_path_factory.mktemp("site")
-    pages = "include_patterns=docs/glossary.md,docs/chaos.md"
+    pages = "include_patterns=docs/page.md,docs/chaos.md"
     subprocess.run(
-        [sys.executable, "-m", "sphinx", "-Q", "-c", "docs", "-D", pages, "-D", "root_doc=docs/glossary", ".", str(folder)],
+        [sys.executable, "-m", "sphinx", "-Q", "-c", "docs", "-D", pages, "-D", "root_doc=docs/page", ".", str(folder)],
         cwd=ROOT,
         check=True,
     )
@@ -98,7 +98,7 @@ def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_all_terms_are_on_the_page_of_terms(small_site: Path) -> None:
-    text = html.unescape((small_site / "glossary.html").read_text(encoding="utf-8")).replace("’", "'")
+    text = html.unescape((small_site / "page.html").read_text(encoding="utf-8")).replace("’", "'")
     assert [term for term, meaning in GLOSSARY.items() if f">{term}<a" not in text or meaning not in text] == []
 
 
@@ -129,7 +129,7 @@ def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["README.md", "docs/slices.md", "docs/start.md", "docs/sweeps.md", "docs/ten-minutes.md", *EXAMPLE_FILES]
+    "name", ["README.md", "docs/api.md", "docs/slices.md", "docs/start.md", "docs/sweeps.md", *EXAMPLE_FILES]
 )
 def test_document_for_users_recommends_public_names_only(name: str) -> None:
     assert not re.search(r"from engine\b", (ROOT / name).read_text(encoding="utf-8"))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.expressions.nodes import Expression
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
 from engine.foundations.validation import (
     LONGEST_TIME,
@@ -41,6 +42,7 @@ _OF_ENDS: Any = ...
 _SHORT_TIME = 1000.0  # in units of 1/Ω
 
 
+@with_former_fields
 @dataclass(frozen=True, init=False)
 class Potential(Motion):
     """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
