@@ -12,7 +12,7 @@ import numbers
 import operator
 import re
 import reprlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -68,6 +68,15 @@ def check_type(name: str, value: Any, kind: Any) -> None:
     if not isinstance(value, kind):
         kinds = kind if isinstance(kind, tuple) else (kind,)
         raise ValueError(f"{name}={short_repr(value)}: must be {' or '.join(map(_describe_type, kinds))}")
+
+
+def checked_items[T](name: str, values: Iterable[T], kind: type[T]) -> tuple[T, ...]:
+    """Return values as a tuple; ValueError unless they are a sequence of values of one type."""
+    check_type(name, values, Iterable)
+    items = tuple(values)
+    for item in items:
+        check_type(name, item, kind)
+    return items
 
 
 def _describe_type(kind: type) -> str:

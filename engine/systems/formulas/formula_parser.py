@@ -52,7 +52,8 @@ from engine.systems.formulas.formula_values import (
 )
 from engine.systems.formulas.formula_writer import by_degree, write_formula
 from engine.systems.formulas.outcome_clauses import Part, split_clauses
-from engine.systems.potential import MASS_RANGE, Potential
+from engine.systems.motion import MASS_RANGE
+from engine.systems.potential import Potential
 
 LONGEST_TEXT = 500
 """Largest number of characters of a formula."""
