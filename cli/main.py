@@ -25,6 +25,9 @@ INVALID_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
 COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
 """Names of the modules in `commands`, which are imported when they are needed."""
 
+FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
+"""Former names of options."""
+
 
 class _Command(TyperCommand):
     """A command whose arguments may begin with a minus, as formulas do: all its options begin with two."""
@@ -35,6 +38,7 @@ class _Command(TyperCommand):
         words, rest, arguments = deque(args), list[str](), list[str]()
         while words and words[0] != "--":
             word = words.popleft()
+            word = FORMER_OPTIONS.get(word, word)
             if re.match("-[^-]", word):
                 arguments.append(word)
                 continue

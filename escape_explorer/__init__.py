@@ -33,7 +33,7 @@ def __getattr__(name: str) -> Any:
         # With `import *` all of these are imported.
         return [*engine.__all__, *(["Explorer"] if find_spec("panel") else [])]
     if name not in engine.__all__:
-        raise AttributeError(f"module 'escape_explorer' has no attribute {name!r}")
+        return import_module("engine.foundations.former_names").find_former_name(name, stacklevel=3)
     return getattr(engine, name)
 
 

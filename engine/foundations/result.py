@@ -17,7 +17,7 @@ import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.foundations.extras import load_pictures
-from engine.foundations.stored_fields import write_field
+from engine.foundations.stored_fields import FORMER_FIELDS, write_field
 from engine.foundations.wording import describe_codes, show_numbers, summarize
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         {
             *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "made_by", "numbers"),
             *("row_dimension", "shown_numbers"),
+            *FORMER_FIELDS,
         }
     )
     """Attributes that `dir` omits, because they are for internal use."""

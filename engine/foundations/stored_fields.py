@@ -16,14 +16,14 @@ from engine.foundations.arrays import read_only
 if TYPE_CHECKING:
     import xarray as xr
 
-FORMER_NAMES: Mapping[str, str] = {"certificate": "evidence", "certify": "use_evidence", "certifies_tori": "tori_are_evidence"}
-"""Former names of variables and attributes in files."""
+FORMER_FIELDS: Mapping[str, str] = {"certificate": "evidence", "certify": "use_evidence", "certifies_tori": "tori_are_evidence"}
+"""Former names of attributes and parameters of public classes, and of variables and attributes in files."""
 
 
 def with_present_names(dataset: xr.Dataset) -> xr.Dataset:
     """Return a dataset of any version with the present names of its variables and attributes."""
-    renamed = dataset.rename({old: new for old, new in FORMER_NAMES.items() if old in dataset.variables})
-    renamed.attrs = {FORMER_NAMES.get(name, name): value for name, value in dataset.attrs.items()}
+    renamed = dataset.rename({old: new for old, new in FORMER_FIELDS.items() if old in dataset.variables})
+    renamed.attrs = {FORMER_FIELDS.get(name, name): value for name, value in dataset.attrs.items()}
     return renamed
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.foundations.arrays import read_only
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import MapResult, Result
 from engine.foundations.validation import checked_flag
 from engine.foundations.wording import describe_codes
@@ -53,6 +54,7 @@ NOTED_SHARE = 0.01
 """Share of the interior pixels not supported by double precision from which a map reports it."""
 
 
+@with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class EscapeMap(MapResult):
     """An escape map, complete or in progress; arrays are read-only and of shape (rows, columns), with row 0 at the bottom.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import check_type, checked_flag, replace_unchecked, short_repr
 from engine.slices.axes import Energy, common_energy, scaled_energy
 from engine.slices.default_window import map_window
@@ -38,6 +39,7 @@ FINEST_PIXEL = 1e-15
 """Smallest distance of neighbouring pixels, in units of the well: a few units in the last place of coordinates of order 1."""
 
 
+@with_former_fields
 @dataclass(frozen=True)
 class MapSpec:
     """An escape map: the orbits, the resolution and the integration time.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from engine.evidence.birkhoff_averages import TORUS_DIGITS
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_count, format_time
 from engine.propagation.evidence import Evidence, describe_evidence
@@ -19,6 +20,7 @@ from engine.trajectories.trajectory import Orbit
 _OF_DEVIATIONS = {indicator.name for indicator in INDICATORS if indicator.of_deviations}
 
 
+@with_former_fields
 @dataclass(frozen=True)
 class OrbitVerdict(OrbitResult):
     """The facts known about one orbit.

@@ -12,6 +12,7 @@ from engine.evidence.birkhoff_averages import compare_halves
 from engine.exits.exit_rows import exits_of_orbit
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
 from engine.propagation.deviation_vectors import DEVIATION_VECTORS
@@ -34,6 +35,7 @@ _MIN_SAMPLES = 400
 _MAX_SAMPLES = 500_000
 
 
+@with_former_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Orbit(OrbitResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.

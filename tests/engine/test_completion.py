@@ -17,6 +17,8 @@ INNER = {
     "numbers",
     "row_dimension",
     "shown_numbers",
+    "certificate",
+    "certifies_tori",
 }
 THINGS = {
     "potential": (CASES["I"], {"value", "saddles", "in_rotating_frame", "save"}, {"lineage", "check_at_rest", "well", *INNER}),

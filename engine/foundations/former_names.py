@@ -1,0 +1,95 @@
+"""Deprecated names of the public objects of the package and of their fields."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Mapping
+from dataclasses import fields
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any
+
+from engine.foundations.stored_fields import FORMER_FIELDS
+
+FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "CHAOS_THRESHOLD": ("its value, 1e-7", "..propagation.fates:CHAOS_THRESHOLD"),
+        "Certificate": ("Evidence", "..propagation.evidence:Evidence"),
+        "Curves": ("escape_explorer.results.Sweep", "..sweeps.sweep:Sweep"),
+        "CurvesSpec": ("SweepSpec", "..sweeps.former_calls:make_curves_spec"),
+        "IndicatorVerdict": ("OrbitVerdict.findings", "..trajectories.chaos_indicators:IndicatorVerdict"),
+        "SweepPlan": ("plan_sweep", "..sweeps.plan:SweepPlan"),
+        "Verdict": ("the words of OrbitVerdict.character", "..trajectories.chaos_indicators:Verdict"),
+        "channel_family": ('POTENTIALS["C3"] to POTENTIALS["C8"]', "..systems.known_potentials:channel_family"),
+        "compute_birkhoff_digits": (
+            "Orbit.compute_birkhoff_digits",
+            "..trajectories.birkhoff_digits:compute_birkhoff_digits",
+        ),
+        "compute_curves": ("compute_sweep", "..sweeps.sweep:compute_sweep"),
+        "default_window": ("MapSpec.find_window", "..slices.default_window:default_window"),
+        "evaluate_indicators": ("OrbitVerdict.findings", "..trajectories.chaos_indicators:evaluate_indicators"),
+        "find_multipliers": ("LyapunovOrbit.find_multipliers", "..sweeps.former_calls:find_multipliers"),
+        "find_section_crossings": ("Orbit.find_section_crossings", "..sweeps.former_calls:find_section_crossings"),
+        "run_sweep": ("compute_sweep", "..sweeps.former_calls:run_sweep"),
+        "trace_zero_velocity_curve": (
+            "MapSpec.trace_zero_velocity_curve",
+            "..slices.limiting_curves:trace_zero_velocity_curve",
+        ),
+    }
+)
+"""Former public names, each with the new name and the "module:object" that it returns, relative to this package."""
+
+
+def find_former_name(name: str, stacklevel: int = 2) -> Any:
+    """Return the object of a former public name, with a warning; AttributeError for any other name.
+
+    stacklevel: the frame to which the warning refers, as in `warnings.warn`; by default the caller.
+    """
+    results = import_module("..results", __package__)
+    if name in results.__all__:
+        _warn(name, f"escape_explorer.results.{name}", stacklevel + 1)
+        return getattr(results, name)
+    if name not in FORMER_NAMES:
+        raise AttributeError(f"module 'escape_explorer' has no attribute {name!r}")
+    new, place = FORMER_NAMES[name]
+    _warn(name, new, stacklevel + 1)
+    module, _, attribute = place.partition(":")
+    return getattr(import_module(module, __package__), attribute)
+
+
+def with_former_fields[T](cls: type[T]) -> type[T]:
+    """Add the former names of its attributes and parameters to a dataclass; the use of each gives a warning."""
+    names = {each.name for each in fields(cls)}  # type: ignore[arg-type]
+    for old, new in FORMER_FIELDS.items():
+        if hasattr(cls, new) or new in names:
+            setattr(cls, old, _former_attribute(old, new))
+    _accept_former_parameters(cls, {old: new for old, new in FORMER_FIELDS.items() if new in names})
+    return cls
+
+
+def _former_attribute(old: str, new: str) -> property:
+    def get(self: Any) -> Any:
+        _warn(old, new)
+        return getattr(self, new)
+
+    return property(get)
+
+
+def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
+    initialize = cls.__init__
+
+    @functools.wraps(initialize)
+    def __init__(self: Any, *args: Any, **options: Any) -> None:  # noqa: N807
+        for old in former.keys() & options.keys():
+            _warn(old, former[old])
+            # `dataclasses.replace` also passes the current value under its new name.
+            options[former[old]] = options.pop(old)
+        initialize(self, *args, **options)
+
+    cls.__init__ = __init__
+
+
+def _warn(old: str, new: str, stacklevel: int = 3) -> None:
+    """Warn; the warning refers by default to the caller of the function that calls this one."""
+    warnings.warn(f"{old} is deprecated: use {new}", DeprecationWarning, stacklevel=stacklevel)

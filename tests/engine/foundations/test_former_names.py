@@ -1,0 +1,100 @@
+"""Former names warn, and stand for the present ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import engine
+import escape_explorer
+from engine import (
+    CASES,
+    Evidence,
+    MapSpec,
+    Plane,
+    SweepSpec,
+    compute_map,
+    find_lyapunov_orbits,
+    integrate_orbit,
+    results,
+)
+from engine.foundations.former_names import FORMER_NAMES
+from engine.sweeps.measures import QUICK_CURVES
+
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (12, 10), t_max=200.0, use_evidence=False)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("Certificate", "Evidence"), ("compute_curves", "compute_sweep")],
+)
+@pytest.mark.parametrize("package", [engine, escape_explorer])
+def test_former_public_names_stand_for_the_present_ones(old: str, new: str, package: ModuleType) -> None:
+    with pytest.warns(DeprecationWarning, match=f"^{old} is deprecated: use {new}$") as caught:
+        assert getattr(package, old) is getattr(engine, new)
+    assert caught[0].filename == __file__
+
+
+@pytest.mark.parametrize("name", [*FORMER_NAMES, *results.__all__])
+def test_a_former_public_name_works_for_a_release_with_a_warning(name: str) -> None:
+    assert name not in engine.__all__
+    with pytest.warns(DeprecationWarning, match=f"^{name} is deprecated: use "):
+        assert getattr(engine, name) is not None
+
+
+def test_the_former_functions_of_orbits_are_their_methods() -> None:
+    orbit, exit_orbit = integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=20.0), find_lyapunov_orbits(CASES["I"], 0.19)[0]
+    with pytest.warns(DeprecationWarning, match="use Orbit.find_section_crossings"):
+        crossings = engine.find_section_crossings(CASES["II"], orbit)  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(crossings, orbit.find_section_crossings())
+    with pytest.warns(DeprecationWarning, match="use LyapunovOrbit.find_multipliers"):
+        multipliers = engine.find_multipliers(CASES["I"], exit_orbit)  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(multipliers, exit_orbit.find_multipliers())
+
+
+def test_the_former_functions_of_orbits_refuse_another_potential() -> None:
+    exit_orbit = find_lyapunov_orbits(CASES["III"], 0.45)[0]
+    with pytest.warns(DeprecationWarning, match="find_multipliers"):
+        find_multipliers = engine.find_multipliers  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="potential=I: must be that of the orbit, III"):
+        find_multipliers(CASES["I"], exit_orbit)
+
+
+def test_the_former_request_of_curves_is_one_of_a_sweep() -> None:
+    with pytest.warns(DeprecationWarning, match="^CurvesSpec is deprecated: use SweepSpec$"):
+        spec = engine.CurvesSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), 500.0, exponent=False)  # type: ignore[attr-defined]
+    assert spec == SweepSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
+
+
+def test_an_unknown_name_is_no_former_one() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'Certificates'"):
+        engine.Certificates  # type: ignore[attr-defined]  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: MapSpec(SPEC.potential, SPEC.plane, 0.36, (12, 10), t_max=200.0, certify=False),  # type: ignore[call-arg]
+        lambda: replace(SPEC, use_evidence=True, certify=False),  # type: ignore[call-arg]
+    ],
+)
+def test_former_parameters_are_taken(make: Callable[[], MapSpec]) -> None:
+    with pytest.warns(DeprecationWarning, match="^certify is deprecated: use use_evidence$"):
+        assert make() == SPEC
+
+
+def test_former_attributes_are_those_of_the_present_names() -> None:
+    orbit, frame = integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=100.0), compute_map(SPEC)
+    for thing, old, value in (
+        (orbit, "certificate", Evidence.CLOSED),
+        (frame, "certificate", frame.evidence),
+        (SPEC, "certify", False),
+        (SPEC.potential, "certifies_tori", True),
+    ):
+        with pytest.warns(DeprecationWarning, match=f"^{old} is deprecated") as caught:
+            assert getattr(thing, old) is value
+        assert caught[0].filename == __file__
