@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.former_names import rename_stored
-from engine.foundations.stored_fields import plain_attributes
+from engine.foundations.stored_fields import plain_attributes, with_present_names
 from engine.foundations.validation import checked_array, short_repr
 from engine.propagation.fates import Fate
 from engine.slices.window import Window
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
 Z_95 = 1.959963984540054
 """Half-width of the central 95 % of the normal distribution, in standard deviations."""
 
+_STARTS = "an EscapeMap, or a dataset of one, or Outcomes"
 # Attributes of datasets that contain results, not the way they were made.
 _FOUND = {"result", "outcomes", "worst_energy_error", "complete", "counts", "rounded_share"}
 
@@ -116,24 +116,46 @@ def read_starts(name: str, value: Any) -> Starts:
     if isinstance(value, Starts):
         return value
     if hasattr(value, "data_vars"):
-        return _read_dataset(name, rename_stored(value))
+        return _read_dataset(checked_dataset(name, value, ("fate", "escape_time", "crossings"), _STARTS))
     try:
         arrays = value.fate, value.escape_time, value.crossings, value.t_max, value.outcomes
     except AttributeError:
-        raise ValueError(f"{name}={short_repr(value)}: must be an EscapeMap, or a dataset of one, or Outcomes") from None
+        raise ValueError(f"{name}={short_repr(value)}: must be {_STARTS}") from None
     if not hasattr(value, "ordinate"):
         return Starts(*arrays, made_by=getattr(value, "made_by", {}))
     return Starts(*arrays, axes=(value.x, value.ordinate), pixel_area=value.pixel_area, made_by=value.spec.provenance())
 
 
-def _read_dataset(name: str, dataset: xr.Dataset) -> Starts:
+def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) -> xr.Dataset:
+    """Return the dataset of one map, or of any orbits, with the present names; ValueError unless it has these arrays.
+
+    Parameters
+    ----------
+    name
+        Name of the parameter, for messages.
+    value
+        The dataset, of any version, or what was given instead of one.
+    arrays
+        The names of the arrays, of which the first one is "fate".
+    legal
+        What would be legal, for messages.
+    """
+    dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
+    missing = [each for each in arrays if each not in dataset]
+    if "fate" in missing:
+        raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
+    if missing:
+        raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
+    if dataset["fate"].ndim > len(("rows", "columns")):
+        raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
+    found: xr.Dataset = dataset
+    return found
+
+
+def _read_dataset(dataset: xr.Dataset) -> Starts:
     """Return the starts of a dataset; its attributes contain the outcomes, except in files of earlier versions."""
-    if not {"fate", "escape_time", "crossings"} <= set(dataset.data_vars):
-        raise ValueError(f"{name}={short_repr(dataset)}: must be an EscapeMap, or a dataset of one, or Outcomes")
     fate, escape_time, crossings = (np.asarray(dataset[each].values) for each in ("fate", "escape_time", "crossings"))
     t_max, outcomes = float(dataset.attrs.get("t_max", np.inf)), read_outcomes(dataset.attrs.get("outcomes", "[]"))
-    if fate.ndim > len(("rows", "columns")):
-        raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
     made_by = {name: each for name, each in plain_attributes(dataset.attrs).items() if name not in _FOUND}
     starts = Starts(fate, escape_time, crossings, t_max, outcomes, made_by=made_by)
     if fate.ndim == 1:
