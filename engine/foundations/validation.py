@@ -128,6 +128,16 @@ def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarr
     return array
 
 
+def checked_finite(name: str, value: Any) -> Any:
+    """Return a finite number as a float, or finite numbers as an array; ValueError for others."""
+    if isinstance(value, numbers.Real):
+        return checked_number(name, value)
+    array = checked_array(name, value)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name}={short_repr(value)}: must be finite numbers")
+    return array
+
+
 def checked_integers(name: str, value: Any) -> np.ndarray:
     """Return an array of int64; an empty one may be of any type."""
     array = checked_array(name, value, keep_type=True)

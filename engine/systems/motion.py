@@ -10,7 +10,7 @@ import numpy as np
 
 from engine.expressions.nodes import Expression, Sum, X, Y, multiply
 from engine.foundations.result import Result
-from engine.foundations.validation import checked_number
+from engine.foundations.validation import checked_finite, checked_number
 from engine.integrator.source.polynomial_recurrence import Terms
 from engine.systems.forms.form import Form, hessian_matrix
 from engine.systems.forms.polynomial_form import PolynomialForm
@@ -19,9 +19,12 @@ from engine.systems.parameters import WELL_PARAMETERS, symbol_of
 _SQUARES = tuple(multiply(axis, axis) for axis in (X, Y))
 _MIXED = multiply(X, Y)
 
+MASS_RANGE = 1e-6, 1e6
+"""Legal masses."""
+
 
 class Motion(Result):
-    """The equations of motion of a unit mass: H = (px² + py²)/2 + V, in a frame that may rotate.
+    """The equations of motion of H = (px² + py²)/2m + V, in a frame that may rotate.
 
     Attributes
     ----------
@@ -31,11 +34,14 @@ class Motion(Result):
         The function V.
     rotation
         Ω, dimensionless.
+    mass
+        m, dimensionless.
     """
 
     name: str
     form: Form
     rotation: float
+    mass: float
 
     def _changed(self, **values: Any) -> Self:
         """Return another motion, with other values of some attributes."""
@@ -67,19 +73,19 @@ class Motion(Result):
     def energy(self, states: Any) -> Any:
         """Return H of states (…, 4) = x, y, px, py."""
         x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
-        return 0.5 * (px * px + py * py) + self.value(x, y)
+        return 0.5 * (px * px + py * py) / self.mass + self.value(x, y)
 
     def jacobi_constant(self, energy: Any) -> Any:
         """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays have the same shape.
 
         C = −2H about the axis of the frame, which is the barycentre in the three-body problem, where U = Σ m/r + ½ (x² + y²). In
         the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C, so that their values are
-        larger by this amount.
+        larger by this amount. For a mass other than 1, H is divided by it.
 
         Raises
         ------
         ValueError
-            If the frame does not rotate.
+            If the frame does not rotate, or an energy is not finite.
 
         Examples
         --------
@@ -88,30 +94,30 @@ class Motion(Result):
         >>> round(hill.jacobi_constant(hill.escape_energy), 5), round(earth_moon.jacobi_constant(earth_moon.escape_energy), 5)
         (4.32675, 3.18834)
         """
-        return self._squared_speed_of_origin - 2.0 * energy
+        return self._squared_speed_of_origin - 2.0 * checked_finite("energy", energy) / self.mass
 
     def jacobi_energy(self, constant: Any) -> Any:
         """Return the energy H of Jacobi constants, see `jacobi_constant`."""
-        return 0.5 * (self._squared_speed_of_origin - constant)
+        return 0.5 * self.mass * (self._squared_speed_of_origin - checked_finite("constant", constant))
 
     @property
     def _squared_speed_of_origin(self) -> float:
         """The square of the speed Ω d with which the origin moves around the axis of the frame.
 
-        A uniform field in Φ = … + a x + b y − ½ Ω² (x² + y²) is the centrifugal force about an axis at (a, b)/Ω², as in the
+        A uniform field in Φ = … + a x + b y − ½ m Ω² (x² + y²) is the centrifugal force about an axis at (a, b)/mΩ², as in the
         three-body problem in the coordinates of one body. If there are other quadratic terms, the axis is at the origin.
         """
         if not self.rotation:
             raise ValueError(f"potential={self.name}: its frame must rotate for a Jacobi constant")
         definition: Any = self.form.definition
         terms: dict[Expression, float] = dict(definition.terms) if isinstance(definition, Sum) else {}
-        is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * self.rotation**2) for square in _SQUARES)
+        is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * self.mass * self.rotation**2) for square in _SQUARES)
         if not is_centrifugal or _MIXED in terms:
             return 0.0
-        return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / self.rotation**2
+        return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / (self.mass * self.rotation) ** 2
 
     def in_rotating_frame(self, rotation: float) -> Self:
-        """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).
+        """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ m Ω² (x² + y²).
 
         Parameters
         ----------
@@ -125,7 +131,7 @@ class Motion(Result):
         """
         if self.rotation:
             raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
-        half = -0.5 * checked_number("rotation", rotation) ** 2
+        half = -0.5 * self.mass * checked_number("rotation", rotation) ** 2
         return self._changed(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
 
     @cached_property
@@ -169,3 +175,12 @@ class Motion(Result):
         """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""
         if self.rotation:
             raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")
+
+
+def checked_mass(mass: float) -> float:
+    """Return the mass as a float; ValueError if it is out of range."""
+    low, high = MASS_RANGE
+    number = checked_number("mass", mass)
+    if not low <= number <= high:
+        raise ValueError(f"mass={number!r}: must be from {low:g} to {high:g}")
+    return number

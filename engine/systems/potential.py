@@ -26,7 +26,7 @@ from engine.foundations.validation import (
 from engine.integrator.source.polynomial_recurrence import Terms
 from engine.systems.forms.expression_form import as_form
 from engine.systems.forms.form import Form
-from engine.systems.motion import Motion
+from engine.systems.motion import Motion, checked_mass
 from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
 from engine.systems.provenance import describe_potential
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
@@ -45,10 +45,13 @@ _SHORT_TIME = 1000.0  # in units of 1/Ω
 @with_former_fields
 @dataclass(frozen=True, init=False)
 class Potential(Motion):
-    """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
+    """V(x, y), dimensionless: H = (px² + py²)/2m + V, with a mass m of 1 by default.
 
-    In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for the velocities ẋ and ẏ, and H for
-    the Jacobi integral (ẋ² + ẏ²)/2 + Φ: ẍ = 2Ωẏ − Φ_x, ÿ = −2Ωẋ − Φ_y. See `in_rotating_frame`.
+    In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for mẋ and mẏ, and H for the Jacobi
+    integral m(ẋ² + ẏ²)/2 + Φ: mẍ = 2mΩẏ − Φ_x, mÿ = −2mΩẋ − Φ_y. See `in_rotating_frame`.
+
+    Orbits with a mass m are those with a mass of 1 at the same energy, with momenta and times multiplied by √m. They are computed
+    so; the factor rounds unless it is a power of 2.
 
     Without an escape radius, orbits leave a well, or a centre, at the origin through the exits over its saddles. With an escape
     radius, saddles are not exits, and orbits end beyond this radius. See `with_outcomes`.
@@ -77,6 +80,8 @@ class Potential(Motion):
     exit_names
         Names of the exits in channel order, such as ("L2", "L1"), which have no influence on any result; they are used if there
         are as many exits as names.
+    mass
+        m, 1e-6 to 1e6, dimensionless.
 
     Raises
     ------
@@ -102,11 +107,12 @@ class Potential(Motion):
     lineage: Lineage = field(default=SEARCHED, repr=False)
     system: System | None = field(default=None, repr=False, compare=False)
     exit_names: tuple[str, ...] = field(default=(), repr=False, compare=False)
+    mass: float = 1.0
     inner_names: ClassVar = Result.inner_names | {
         "check_at_rest", "check_without_gaps", "checked_t_max", "continued", "exit_names", "form", "gaps",
         "hessian_matrix", "in_well_units", "lineage", "reversed_in_time", "tori_are_evidence", "units", "well",
     }  # fmt: skip
-    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names"), "terms")
+    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names", "mass"), "terms")
 
     def __init__(
         self,
@@ -121,6 +127,7 @@ class Potential(Motion):
         ends: Sequence[End] = (),
         system: System | None = None,
         exit_names: Sequence[str] = (),
+        mass: float = 1.0,
     ) -> None:
         check_type("name", name, str)
         if centres is not _OF_ENDS:
@@ -137,6 +144,7 @@ class Potential(Motion):
             "lineage": lineage,
             "system": system,
             "exit_names": checked_items("exit_names", exit_names, str),
+            "mass": checked_mass(mass),
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
@@ -144,7 +152,7 @@ class Potential(Motion):
     @cached_property
     def well(self) -> Well:
         """Quantities derived from the potential: critical points, exits, symmetries, units."""
-        return self.lineage.make_well(self.form, self.rotation, self.ends)
+        return self.lineage.make_well(self.form, self.rotation, self.ends, self.mass)
 
     @property
     def centres(self) -> tuple[Centre, ...]:
@@ -200,9 +208,9 @@ class Potential(Motion):
 
     @cached_property
     def in_well_units(self) -> Potential:
-        """Return the system in units of the well: V(L x, L y) / E, with units L of length and E of energy.
+        """Return the system in units of the well: V(L x, L y) / E with a mass of 1, with units L of length and E of energy.
 
-        If both units are 1, it is the potential itself.
+        If all units are 1, it is the potential itself.
         """
         units = self.units
         if units == WellUnits():
@@ -215,6 +223,7 @@ class Potential(Motion):
             ends=tuple(end.scaled(1.0 / units.length) for end in self.ends),
             lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
             system=None,
+            mass=1.0,
         )
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
