@@ -210,9 +210,11 @@ class Controls:
         """Write the formula, the outcomes, and the slice (HTML) if it has no button."""
         reviewed = self.state.reviewed
         formula, _, _ = reviewed.formula.partition(";")
-        facts = "<br>".join([_outcomes(reviewed.potential), *([f"Slice {plane}"] if plane else [])])
+        mass = reviewed.potential.mass
+        masses = [] if mass == 1.0 else [f"Masses {format_number(mass)}: H = (px² + py²)/{format_number(2.0 * mass)} + V"]
+        facts = "<br>".join([_outcomes(reviewed.potential), *masses, *([f"Slice {plane}"] if plane else [])])
         self.facts.object = (
-            f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
+            f"<div title='H = (px² + py²)/2m + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
             f"V = {escape_text(formula)}<br><span class='quiet'>{facts}</span></div>"
         )
 
