@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from importlib import import_module
 from types import MappingProxyType
@@ -88,6 +88,22 @@ def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
         initialize(self, *args, **options)
 
     cls.__init__ = __init__
+
+
+def with_former_parameters[**P, T](**former: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Decorate a function so that parameters can be given by their former names; the use of each gives a warning."""
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        @functools.wraps(function)
+        def call(*args: P.args, **kwargs: P.kwargs) -> T:
+            for old in former.keys() & kwargs.keys():
+                _warn(old, former[old])
+                kwargs[former[old]] = kwargs.pop(old)
+            return function(*args, **kwargs)
+
+        return call
+
+    return decorate
 
 
 def _warn(old: str, new: str, stacklevel: int = 3) -> None:

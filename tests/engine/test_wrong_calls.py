@@ -22,6 +22,7 @@ from engine import (
     Plane,
     SweepSpec,
     System,
+    compute_lagrangian_descriptor,
     compute_map,
     compute_statistics,
     compute_sweep,
@@ -114,9 +115,9 @@ WRONG_CALLS = (
     ("classify_orbits(III, 0.45, [S])", "states: row 0 has energy 0.18625; must be energy=0.45 to within 1e-09"),
     ("judge_orbit(m)", "orbit=…: must be an Orbit"),
     ("judge_orbit(orbit, 3)", "digits=3: must be a BirkhoffDigits or None"),
-    ('compute_separation(III, S, S, "end")', "t_end='end': must be above 0 and at most 1e+08"),
+    ('compute_separation(III, S, S, "end")', "t_max='end': must be above 0 and at most 1e+08"),
     ('compute_separation(III, S, (0.0, 0.0, float("nan"), 1.0), 10.0)', "second=(0.0, 0.0, nan, 1.0): must be four finite"),
-    ("compute_separation(III, S, S, -1.0)", "t_end=-1.0: must be above 0 and at most 1e+08"),
+    ("compute_separation(III, S, S, -1.0)", "t_max=-1.0: must be above 0 and at most 1e+08"),
     ('find_divergent_start(III, Plane.X_PX, 0.45, "a", 0.0)', "x='a': must be a finite number, at most 1e+09 in magnitude"),
     ("find_divergent_start(III, Plane.X_PX, (0.1, 0.2), 0.1, 0.1)", "energy=(0.1, 0.2): must be one finite number on (x,"),
     ('find_divergent_start(CASES["I"], Plane.X_PX, 0.2, 0.1, 0.9)', "x=0.1, px=0.9: forbidden on (x, px) at h=0.2; must have"),
@@ -323,7 +324,7 @@ def test_motion_without_a_well_is_not_called_bounded(formula: str) -> None:
 
 
 def test_a_misspelt_argument_is_answered_with_the_name_of_the_function() -> None:
-    with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'$"):
+    with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'"):
         sample_orbits(CASES["III"], [(0.1, 0.0, 0.0, 0.3)], (0.0, 1.0), t_max=5.0)  # type: ignore[call-arg]
 
 
@@ -333,3 +334,8 @@ def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
     (tmp_path / "text.nc").write_text("no numbers")
     with pytest.raises(OSError, match=r"^path=.*text\.nc: cannot be read as a NetCDF file: [^\n]*$"):
         open_result(tmp_path / "text.nc")
+
+
+def test_too_many_arguments_are_answered_as_by_python() -> None:
+    with pytest.raises(TypeError, match=r"^compute_lagrangian_descriptor\(\) takes 1 positional argument but 2 were given$"):
+        compute_lagrangian_descriptor(None, 10.0)

@@ -18,6 +18,7 @@ from engine import (
     Plane,
     SweepSpec,
     compute_map,
+    compute_separation,
     find_lyapunov_orbits,
     integrate_orbit,
     results,
@@ -54,6 +55,14 @@ def test_the_former_functions_of_orbits_are_their_methods() -> None:
     with pytest.warns(DeprecationWarning, match="use LyapunovOrbit.find_multipliers"):
         multipliers = engine.find_multipliers(CASES["I"], exit_orbit)  # type: ignore[attr-defined]
     np.testing.assert_array_equal(multipliers, exit_orbit.find_multipliers())
+
+
+def test_the_former_name_of_the_time_of_a_separation_works() -> None:
+    states = (0.1, 0.0, 0.05, 0.6), (0.1 + 1e-9, 0.0, 0.05, 0.6)
+    with pytest.warns(DeprecationWarning, match="^t_end is deprecated: use t_max$") as caught:
+        former = compute_separation(CASES["I"], *states, t_end=5.0)  # type: ignore[call-arg]
+    assert caught[0].filename == __file__
+    np.testing.assert_array_equal(former.distance, compute_separation(CASES["I"], *states, t_max=5.0).distance)
 
 
 def test_the_former_functions_of_orbits_refuse_another_potential() -> None:
