@@ -63,10 +63,9 @@ class ProgressView:
         """The potential of the link is reviewed before a map is requested."""
         self._set(running=False, label=STOP, sentence="Reviewing the potential …")
 
-    def show_compiling(self, seconds: float) -> None:
-        """The kernels of the map are compiled first, which takes about this long."""
-        left = f"about {math.ceil(seconds)} s left" if seconds > 0.0 else "a moment more"
-        self._write(f"Preparing this kind of potential, once: {left}")
+    def show_compiling(self) -> None:
+        """The kernels of the map are compiled first."""
+        self._write("Preparing this kind of potential, once, which takes some seconds …")
 
     def show(self, frame: EscapeMap) -> None:
         """Show the shares of a frame, and how far it is or what is known of a complete map."""
