@@ -12,8 +12,7 @@ import numpy as np
 import panel as pn
 
 from app.views.components.legends import patch
-from app.views.components.numbers import percent
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, percent
 from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number, format_whole
