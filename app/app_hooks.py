@@ -76,8 +76,13 @@ def on_server_unloaded(server_context: Any) -> None:
 
 
 def on_session_created(session_context: Any) -> None:
-    """Count a session that begins."""
+    """Count a session that begins, and build its page.
+
+    Bokeh calls this on a thread, so that the event loop serves other pages meanwhile; `main.py` would run on the loop.
+    """
     process_state().metrics.sessions_created.inc()
+    loop = session_context.server_context.application_context.io_loop.asyncio_loop
+    import_module("app.session.page").build_page(session_context.document, loop)
 
 
 def on_session_destroyed(session_context: Any) -> None:

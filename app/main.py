@@ -1,10 +1,6 @@
-"""The page that `panel serve app` serves, with an explorer for each session."""
+"""The page that `panel serve app` serves; `app_hooks` has built it when Bokeh runs this file for a session."""
 
 import panel as pn
 
-from app.session.explorer import Explorer
-from app.session.page import explorer_page
-
-# Without this call, Panel loads the scripts of all its extensions.
-pn.extension()
-explorer_page(Explorer()).servable()
+if not pn.state.curdoc.roots:
+    raise RuntimeError("The page could not be built; the log of the server says why.")

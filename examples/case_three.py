@@ -55,7 +55,7 @@ for exit_orbit in find_lyapunov_orbits(CASE, ENERGY):
 # Each pixel of the (x, px) plane is an initial condition with y = 0 and py > 0 from the energy. `fractions` gives shares of the
 # interior: starts that are allowed by the energy and do not lie beyond an exit.
 #
-# A bounded pixel has not escaped by `T_MAX`, or there is evidence that it never escapes (`docs/evidence.md`). SALI classifies
+# A bounded pixel has not escaped by `T_MAX`, or there is evidence that it never escapes (`docs/trust.md`). SALI classifies
 # the bounded orbits as regular or chaotic.
 
 # %%

@@ -28,17 +28,24 @@ log = logging.getLogger(__name__)
 
 
 class SessionCallbacks:
-    """Wraps functions that change the document of one session; create it on the event loop, while the page is built.
+    """Wraps functions that change the document of one session; create it while the page is built.
 
     A wrapped function returns at once. Its calls run on the event loop, one at a time and in order, with the document
     locked and set as the current one. Calls after the end of the session are dropped. Without a session, as in a
     notebook, wrapped functions are called directly.
+
+    Parameters
+    ----------
+    document
+        The document of the session.
+    loop
+        The event loop of the server; by default the running one.
     """
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, loop: asyncio.AbstractEventLoop | None = None) -> None:
         self._document = weakref.ref(document)
         self._share = process_state().fair_share(document)
-        self._loop = asyncio.get_running_loop() if document.session_context is not None else None
+        self._loop = (loop or asyncio.get_running_loop()) if document.session_context is not None else None
 
     def every(self, function: Callable[..., Any]) -> Callable[..., Any]:
         """Wrap a function so that all of its calls run."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -44,13 +45,19 @@ from engine.jobs.client import JobClient
 
 
 class Explorer:
-    """The explorer of one session: its state, results, presenters and views."""
+    """The explorer of one session: its state, results, presenters and views.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    loop
+        The event loop of the server; None if the explorer is made on it.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop | None = None) -> None:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
         self._document, self._by_touch = document, False
-        callbacks = SessionCallbacks(document)
+        callbacks = SessionCallbacks(document, loop)
         # Panel may run widget callbacks without the session's lock, which changes of plain Bokeh models need.
         self._locked = callbacks.every
         self._client = JobClient(process_state().jobs, account=account_of(document))

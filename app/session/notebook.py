@@ -10,8 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import panel as pn
-from bokeh.document import Document
-from panel.io.state import set_curdoc
 
 from app.session import explorer as session
 from app.session.page import TITLE, explorer_page
@@ -93,14 +91,10 @@ class Explorer:
         self._loop.run_forever()
 
     def _open(self) -> Any:
-        # Bokeh calls functions in a thread, but an explorer belongs to the event loop.
-        return asyncio.run_coroutine_threadsafe(self._build(pn.state.curdoc), self._loop).result()
-
-    async def _build(self, document: Document) -> Any:
-        with set_curdoc(document):
-            pn.extension()
-            self._session = session.Explorer()
-            return explorer_page(self._session)
+        """Build the page, on a thread of Bokeh."""
+        pn.extension()
+        self._session = session.Explorer(self._loop)
+        return explorer_page(self._session)
 
 
 def _view_of(spec: MapSpec) -> ViewState:

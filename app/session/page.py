@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import panel as pn
 from bokeh.document import Document
 from jinja2 import Template
 from panel.io.resources import parse_template
+from panel.io.state import set_curdoc
 
 from app.session.explorer import Explorer
 from app.state.view import View
@@ -85,6 +87,22 @@ class ExplorerTemplate(pn.Template):
         document = super().server_doc(doc, title or TITLE, location)
         watch_connection(document)
         return document
+
+
+def build_page(document: Document, loop: asyncio.AbstractEventLoop) -> None:
+    """Fill the document of a new session with a page; any thread may call this.
+
+    Parameters
+    ----------
+    document
+        The document, which has no page yet.
+    loop
+        The event loop of the server.
+    """
+    with set_curdoc(document):
+        # Without this call, Panel loads the scripts of all its extensions.
+        pn.extension()
+        explorer_page(Explorer(loop)).server_doc(document)
 
 
 def explorer_page(explorer: Explorer) -> ExplorerTemplate:

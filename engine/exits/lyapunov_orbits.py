@@ -72,7 +72,7 @@ class LyapunovOrbit(Result):
     curve
         (columns,) row of the exit for the kernels of the integrator.
     velocity
-        (2,) px and py at the first point; 0 unless the frame rotates.
+        (2,) px and py at the first point, of a mass of 1 the velocity; 0 unless the frame rotates.
     others
         Other channels that are part of the same exit, above the maxima between them; `channel` is the lowest number.
     potential

@@ -10,7 +10,7 @@ import reprlib
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -205,10 +205,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
 
         @functools.wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> T:
-            try:
-                given = signature.bind(*args, **kwargs).arguments
-            except TypeError as error:
-                raise TypeError(f"{function.__name__}() {error}") from None
+            given = _bind(signature, args, kwargs)
             execution = given.get("execution", DEFAULT_EXECUTION)
             if not isinstance(execution, Execution):
                 # The function itself raises the error.
@@ -224,6 +221,14 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
         return call
 
     return decorate
+
+
+def _bind(signature: inspect.Signature, args: Any, kwargs: Any) -> Mapping[str, Any]:
+    """Return the arguments of a call by name; no execution if the call does not fit the signature."""
+    try:
+        return signature.bind(*args, **kwargs).arguments
+    except TypeError:
+        return {"execution": None}
 
 
 def _is_interactive() -> bool:

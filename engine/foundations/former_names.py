@@ -1,17 +1,16 @@
-"""Deprecated names of the public objects of the package, of their fields, and of variables in files."""
+"""Deprecated names of the public objects of the package and of their fields."""
 
 from __future__ import annotations
 
 import functools
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from importlib import import_module
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    import xarray as xr
+from engine.foundations.stored_fields import FORMER_FIELDS
 
 FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -40,15 +39,6 @@ FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 """Former public names, each with the new name and the "module:object" that it returns, relative to this package."""
-
-FORMER_FIELDS: Mapping[str, str] = MappingProxyType(
-    {
-        "certificate": "evidence",
-        "certify": "use_evidence",
-        "certifies_tori": "tori_are_evidence",
-    }
-)
-"""Former names of attributes and parameters of public classes, and of variables and attributes in files."""
 
 
 def find_former_name(name: str, stacklevel: int = 2) -> Any:
@@ -100,13 +90,22 @@ def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
     cls.__init__ = __init__
 
 
+def with_former_parameters[**P, T](**former: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Decorate a function so that parameters can be given by their former names; the use of each gives a warning."""
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        @functools.wraps(function)
+        def call(*args: P.args, **kwargs: P.kwargs) -> T:
+            for old in former.keys() & kwargs.keys():
+                _warn(old, former[old])
+                kwargs[former[old]] = kwargs.pop(old)
+            return function(*args, **kwargs)
+
+        return call
+
+    return decorate
+
+
 def _warn(old: str, new: str, stacklevel: int = 3) -> None:
     """Warn; the warning refers by default to the caller of the function that calls this one."""
     warnings.warn(f"{old} is deprecated: use {new}", DeprecationWarning, stacklevel=stacklevel)
-
-
-def rename_stored(dataset: xr.Dataset) -> xr.Dataset:
-    """Rename the variables and attributes of a dataset of an earlier version to their current names."""
-    renamed = dataset.rename({old: new for old, new in FORMER_FIELDS.items() if old in dataset.variables})
-    renamed.attrs = {FORMER_FIELDS.get(name, name): value for name, value in dataset.attrs.items()}
-    return renamed

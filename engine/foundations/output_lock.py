@@ -25,8 +25,9 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 def hold_lock(path: Path) -> Iterator[None]:
     """Reserve a path for this process, with a file `.NAME.lock` beside it that is deleted at the end.
 
-    The operating system releases the lock when the process ends, even if it is killed. On Windows, and on file systems without
-    locks, nothing is reserved.
+    The operating system releases the lock when the process ends, even if it is killed. The file of a killed process stays until
+    the next one with this output deletes it: another place would not protect outputs on file systems that machines share. On
+    Windows, and on file systems without locks, nothing is reserved.
 
     Parameters
     ----------

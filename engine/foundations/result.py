@@ -17,8 +17,7 @@ import numpy as np
 
 from engine.foundations.arrays import ReadOnlyArrays
 from engine.foundations.extras import load_pictures
-from engine.foundations.former_names import FORMER_FIELDS
-from engine.foundations.stored_fields import write_field
+from engine.foundations.stored_fields import FORMER_FIELDS, write_field
 from engine.foundations.wording import describe_codes, show_numbers, summarize
 
 if TYPE_CHECKING:

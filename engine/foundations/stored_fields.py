@@ -1,4 +1,4 @@
-"""Fields of results as attributes of files: numbers and texts unchanged, tuples and dataclasses as JSON."""
+"""Fields of results in files: numbers and texts unchanged, tuples and dataclasses as JSON; and their former names."""
 
 from __future__ import annotations
 
@@ -7,11 +7,24 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from types import NoneType, UnionType
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FORMER_FIELDS: Mapping[str, str] = {"certificate": "evidence", "certify": "use_evidence", "certifies_tori": "tori_are_evidence"}
+"""Former names of attributes and parameters of public classes, and of variables and attributes in files."""
+
+
+def with_present_names(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset of any version with the present names of its variables and attributes."""
+    renamed = dataset.rename({old: new for old, new in FORMER_FIELDS.items() if old in dataset.variables})
+    renamed.attrs = {FORMER_FIELDS.get(name, name): value for name, value in dataset.attrs.items()}
+    return renamed
 
 
 def write_field(value: Any) -> Any:

@@ -12,7 +12,7 @@ import numbers
 import operator
 import re
 import reprlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -70,6 +70,15 @@ def check_type(name: str, value: Any, kind: Any) -> None:
         raise ValueError(f"{name}={short_repr(value)}: must be {' or '.join(map(_describe_type, kinds))}")
 
 
+def checked_items[T](name: str, values: Iterable[T], kind: type[T]) -> tuple[T, ...]:
+    """Return values as a tuple; ValueError unless they are a sequence of values of one type."""
+    check_type(name, values, Iterable)
+    items = tuple(values)
+    for item in items:
+        check_type(name, item, kind)
+    return items
+
+
 def _describe_type(kind: type) -> str:
     article = "an" if kind.__name__[0] in "AEIO" else "a"
     return _TYPE_NAMES.get(kind.__name__, f"{article} {kind.__name__}")
@@ -116,6 +125,16 @@ def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarr
         array: np.ndarray = np.asarray(value, dtype=None if keep_type else float)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name}={short_repr(value)}: must be an array of numbers with rows of equal length") from None
+    return array
+
+
+def checked_finite(name: str, value: Any) -> Any:
+    """Return a finite number as a float, or finite numbers as an array; ValueError for others."""
+    if isinstance(value, numbers.Real):
+        return checked_number(name, value)
+    array = checked_array(name, value)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name}={short_repr(value)}: must be finite numbers")
     return array
 
 

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.former_names import rename_stored, with_former_fields
+from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import MapResult, Result
-from engine.foundations.validation import checked_flag, short_repr
+from engine.foundations.validation import checked_flag
 from engine.foundations.wording import describe_codes
 from engine.maps.spec import MapSpec, read_spec
+from engine.measures.starts import checked_dataset
 from engine.propagation.batch import OrbitBatch
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate, name_fate
@@ -37,6 +38,8 @@ PIXEL_ARRAYS: PixelArrays = {
     "started": (np.bool_, False),
 }
 """The (rows, columns) arrays of a map."""
+
+_STORED_ARRAYS = tuple(name for name in PIXEL_ARRAYS if name != "started")
 
 
 def empty_arrays(names: PixelArrays, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
@@ -299,23 +302,14 @@ def as_map(name: str, value: Any) -> EscapeMap:
     """
     if isinstance(value, EscapeMap):
         return value
-    if hasattr(value, "data_vars"):
-        value = rename_stored(value)
-    missing = [each for each in PIXEL_ARRAYS if each != "started" and each not in getattr(value, "data_vars", ())]
-    if "fate" in missing:
-        raise ValueError(f"{name}={short_repr(value)}: must be an EscapeMap, or a dataset of one")
-    if missing:
-        raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
-    if value["fate"].ndim != len(("rows", "columns")):
-        raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
-    return read_map(value)
+    return read_map(checked_dataset(name, value, _STORED_ARRAYS, "an EscapeMap, or a dataset of one"))
 
 
 def read_map(dataset: xr.Dataset) -> EscapeMap:
     """Return the map of a dataset. It has no integration state, so that it cannot be resumed."""
     spec = read_spec(dataset)
     abscissa, ordinate = spec.plane.axis_names
-    arrays: dict[str, Any] = {name: read_only(np.array(dataset[name].values)) for name in PIXEL_ARRAYS if name != "started"}
+    arrays: dict[str, Any] = {name: read_only(np.array(dataset[name].values)) for name in _STORED_ARRAYS}
     started = arrays["fate"] != Fate.NOT_COMPUTED
     return EscapeMap(
         spec=spec, x=read_only(np.array(dataset[abscissa].values)), ordinate=read_only(np.array(dataset[ordinate].values)),

@@ -102,8 +102,8 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     Parameters
     ----------
     labels
-        A map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits are a basin of their own, or
-        (rows, columns) integers; equal ones are one basin.
+        A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits are a basin of their own,
+        or (rows, columns) integers; equal ones are one basin.
     valid
         (rows, columns) bool, the pixels that count; for a map, the interior pixels. None for all, if no label is negative.
     box

@@ -47,7 +47,7 @@ def fit_decay_laws(
     Rates are maximum-likelihood estimates from the escape times inside the window, given that they lie in it, so that neither
     regular orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong to mirror images
     and count once. The others are treated as independent draws although the starts form a grid: where a law held, rates from
-    shifted grids scattered 0.8 to 1.1 times as much as the interval implies (docs/statistics.md). A law is ruled out by Neyman's
+    shifted grids scattered 0.8 to 1.1 times as much as the interval implies (docs/measures.md). A law is ruled out by Neyman's
     smooth test, with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
 
     A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until one law is not ruled

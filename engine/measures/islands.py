@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.foundations.result import RecordedResult
 from engine.foundations.wording import format_count
-from engine.measures.starts import Measurable, Starts, read_starts
+from engine.measures.starts import Measurable, Starts, read_complete_starts
 from engine.propagation.fates import Fate
 
 LEAST_ISLAND = 4
@@ -62,7 +62,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     Parameters
     ----------
     starts
-        A map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep.
+        A complete map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep.
 
     Returns
     -------
@@ -71,7 +71,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     Raises
     ------
     ValueError
-        If it is not a map.
+        If it is not a complete map.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     # This import is slow.
     from scipy import ndimage
 
-    found = read_starts("starts", starts)
+    found = read_complete_starts("starts", starts)
     if found.axes is None:
         raise ValueError("starts: must be a map")
     bounded = found.fate == Fate.BOUNDED

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
-from engine.foundations.former_names import rename_stored
-from engine.foundations.stored_fields import plain_attributes
+from engine.foundations.stored_fields import plain_attributes, with_present_names
 from engine.foundations.validation import checked_array, short_repr
 from engine.propagation.fates import Fate
 from engine.slices.window import Window
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
 Z_95 = 1.959963984540054
 """Half-width of the central 95 % of the normal distribution, in standard deviations."""
 
+_STARTS = "an EscapeMap, or a dataset of one, or Outcomes"
 # Attributes of datasets that contain results, not the way they were made.
 _FOUND = {"result", "outcomes", "worst_energy_error", "complete", "counts", "rounded_share"}
 
@@ -73,6 +73,8 @@ class Starts:
         Area of a pixel of a map, in units of the axes; 1 for other orbits.
     made_by
         How they were made, in plain values; empty if it is not known.
+    complete
+        Whether all of them are computed.
     """
 
     fate: np.ndarray
@@ -83,6 +85,7 @@ class Starts:
     axes: tuple[np.ndarray, np.ndarray] | None = None
     pixel_area: float = 1.0
     made_by: Mapping[str, Any] = field(default_factory=dict)
+    complete: bool = True
 
     def place(self, window: Window) -> tuple[slice, slice]:
         """Return the rows and columns of pixels whose centres lie in a window, edges included; ValueError if there is no map."""
@@ -116,26 +119,58 @@ def read_starts(name: str, value: Any) -> Starts:
     if isinstance(value, Starts):
         return value
     if hasattr(value, "data_vars"):
-        return _read_dataset(name, rename_stored(value))
+        return _read_dataset(checked_dataset(name, value, ("fate", "escape_time", "crossings"), _STARTS))
     try:
         arrays = value.fate, value.escape_time, value.crossings, value.t_max, value.outcomes
     except AttributeError:
-        raise ValueError(f"{name}={short_repr(value)}: must be an EscapeMap, or a dataset of one, or Outcomes") from None
+        raise ValueError(f"{name}={short_repr(value)}: must be {_STARTS}") from None
     if not hasattr(value, "ordinate"):
         return Starts(*arrays, made_by=getattr(value, "made_by", {}))
-    return Starts(*arrays, axes=(value.x, value.ordinate), pixel_area=value.pixel_area, made_by=value.spec.provenance())
+    axes, made_by = (value.x, value.ordinate), value.spec.provenance()
+    return Starts(*arrays, axes=axes, pixel_area=value.pixel_area, made_by=made_by, complete=value.complete)
 
 
-def _read_dataset(name: str, dataset: xr.Dataset) -> Starts:
+def read_complete_starts(name: str, value: Any) -> Starts:
+    """Return starts as `read_starts` does; ValueError if some are not computed, because measures of basins need all."""
+    starts = read_starts(name, value)
+    if not starts.complete:
+        raise ValueError(f"{name}: the map is not complete; must be a complete map, only `compute_statistics` counts the others")
+    return starts
+
+
+def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) -> xr.Dataset:
+    """Return the dataset of one map, or of any orbits, with the present names; ValueError unless it has these arrays.
+
+    Parameters
+    ----------
+    name
+        Name of the parameter, for messages.
+    value
+        The dataset, of any version, or what was given instead of one.
+    arrays
+        The names of the arrays, of which the first one is "fate".
+    legal
+        What would be legal, for messages.
+    """
+    dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
+    missing = [each for each in arrays if each not in dataset]
+    if "fate" in missing:
+        raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
+    if missing:
+        raise ValueError(f"{name}: a dataset of a map without {', '.join(missing)}; must have all arrays of the map")
+    if dataset["fate"].ndim > len(("rows", "columns")):
+        raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
+    found: xr.Dataset = dataset
+    return found
+
+
+def _read_dataset(dataset: xr.Dataset) -> Starts:
     """Return the starts of a dataset; its attributes contain the outcomes, except in files of earlier versions."""
-    if not {"fate", "escape_time", "crossings"} <= set(dataset.data_vars):
-        raise ValueError(f"{name}={short_repr(dataset)}: must be an EscapeMap, or a dataset of one, or Outcomes")
     fate, escape_time, crossings = (np.asarray(dataset[each].values) for each in ("fate", "escape_time", "crossings"))
     t_max, outcomes = float(dataset.attrs.get("t_max", np.inf)), read_outcomes(dataset.attrs.get("outcomes", "[]"))
-    if fate.ndim > len(("rows", "columns")):
-        raise ValueError(f"{name}: a dataset of several maps; must be one of them, such as dataset.sel(h=…)")
     made_by = {name: each for name, each in plain_attributes(dataset.attrs).items() if name not in _FOUND}
-    starts = Starts(fate, escape_time, crossings, t_max, outcomes, made_by=made_by)
+    complete = bool(dataset.attrs.get("complete", True))
+    starts = Starts(fate, escape_time, crossings, t_max, outcomes, made_by=made_by, complete=complete)
     if fate.ndim == 1:
         return starts
     ordinate, x = (np.asarray(dataset[dimension].values) for dimension in dataset["fate"].dims)
@@ -149,13 +184,12 @@ def _spacing(centres: np.ndarray) -> float:
 def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
     """Label the basins of escape of a map and select the pixels that count.
 
-    Forbidden, outside, undecided and failed starts never count. An unfinished map therefore lacks the orbits that escape late,
-    which lie on the basin boundaries, and appears less mixed than the finished map.
+    Forbidden, outside, undecided and failed starts never count.
 
     Parameters
     ----------
     fate
-        (rows, columns) integer `Fate` codes and outcomes of a map, finished or not.
+        (rows, columns) integer `Fate` codes and outcomes of a map.
     bounded
         Whether bounded orbits are a separate label, 0, or do not count; each measure has a constant `COUNTS_BOUNDED`.
 
@@ -182,10 +216,11 @@ def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarra
     Raises
     ------
     ValueError
-        For any other shape or type, and for negative labels without `valid`, because they are codes of starts without an outcome.
+        For any other shape or type, for a map that is not complete, and for negative labels without `valid`, because they are
+        codes of starts without an outcome.
     """
     if hasattr(labels, "fate"):
-        labels, valid = exit_labels(read_starts("labels", labels).fate, bounded=bounded)
+        labels, valid = exit_labels(read_complete_starts("labels", labels).fate, bounded=bounded)
     labels = checked_array("labels", labels, keep_type=True)
     if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
         raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be integers, (rows, columns)")

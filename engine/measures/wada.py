@@ -90,8 +90,8 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     Parameters
     ----------
     labels
-        A map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits do not count; or (rows, columns)
-        integers, where equal integers are one basin.
+        A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits do not count; or (rows,
+        columns) integers, where equal integers are one basin.
     valid
         (rows, columns) bool, the pixels that count; None for all, if no label is negative. Other pixels and the edge of the image
         form no boundary; distances are measured straight across them.

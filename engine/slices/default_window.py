@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 
 import numpy as np
 
@@ -155,7 +156,8 @@ def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Windo
 
 def _exact_unit(axis: Axis, potential: Potential) -> float:
     """Return the unit of an axis with the exact unit of time, so that the shape of a square does not depend on user units."""
-    units = WellUnits(potential.units.length, potential.well.exact_time_unit)
+    mass = potential.mass
+    units = WellUnits(potential.units.length, potential.well.exact_time_unit / math.sqrt(mass), mass)
     if isinstance(axis, Direction):
         return 1.0 / float(np.hypot.reduce([value / c.unit(units) for c, value in axis.components.items()]))
     return axis.unit(units)

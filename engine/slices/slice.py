@@ -158,13 +158,13 @@ class Slice:
         """Whether the axes are x and y, so that paths and exits can be drawn in the slice."""
         return self.axes == POSITIONS
 
-    @property
-    def limiting_curve(self) -> str:
-        """The equation of the boundary of the forbidden region, such as "½px² + V(x, 0) = h"."""
+    def limiting_curve(self, mass: float) -> str:
+        """Return the equation of the boundary of the forbidden region for a mass, such as "½px² + V(x, 0) = h" for 1."""
+        half = "½" if mass == 1.0 else f"{0.5 / mass:.6g} "
         moved = {c for axis in self.axes for c in (axis.components if isinstance(axis, Direction) else {axis})}
         symbols = {**{c: f"{value:.6g}" for c, value in self.fixed}, **{c: c.symbol for c in moved if c in STATE}}
         kinetic = "".join(
-            f"½{symbols[momentum] if momentum in moved else f'({symbols[momentum]})'}² + "
+            f"{half}{symbols[momentum] if momentum in moved else f'({symbols[momentum]})'}² + "
             for momentum in MOMENTA
             if momentum in symbols and momentum is not self.decided
         )

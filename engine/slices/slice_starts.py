@@ -25,8 +25,9 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
     start = _coordinates(plane, x, ordinate)
     with np.errstate(over="ignore", invalid="ignore"):
         # An overflow far from the origin gives a forbidden start.
-        value = potential.value(start[Coordinate.X], start[Coordinate.Y])
-        energies = plane.energies(energy, x, ordinate)
+        # With the mass as factor of H, the kinetic energy is ½(px² + py²).
+        value = potential.mass * potential.value(start[Coordinate.X], start[Coordinate.Y])
+        energies = potential.mass * plane.energies(energy, x, ordinate)
         found = kernel.decided_momentum(energies, value, _held_momentum(plane, start), plane.sign)
         # At the centre of a body the speed is infinite.
         if plane.decided is not Coordinate.SPEED:
@@ -47,8 +48,9 @@ def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, o
             required[here] = compute_required_energy(line, each, x[here], ordinate[here])
         return required
     start = _coordinates(plane, x, ordinate)
-    value = potential.value(start[Coordinate.X], start[Coordinate.Y])
-    lowest: np.ndarray = kernel.rest_energy(_held_momentum(plane, start), value) - plane.energies(0.0, x, ordinate)
+    value = potential.mass * potential.value(start[Coordinate.X], start[Coordinate.Y])
+    at_rest = kernel.rest_energy(_held_momentum(plane, start), value) / potential.mass
+    lowest: np.ndarray = at_rest - plane.energies(0.0, x, ordinate)
     return lowest
 
 

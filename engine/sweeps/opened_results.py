@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, get_type_hints, overload
 
 from engine.exits.lyapunov_orbits import LyapunovOrbit
 from engine.foundations.extras import require_package
-from engine.foundations.former_names import rename_stored
 from engine.foundations.result import RecordedResult, Result
-from engine.foundations.stored_fields import plain_attributes, read_field
+from engine.foundations.stored_fields import plain_attributes, read_field, with_present_names
 from engine.foundations.validation import checks_types
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap, read_map
@@ -148,7 +147,7 @@ def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     if kind is None:
         held = dataset.attrs.get("result", "no result")
         raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(kinds)}. xarray opens it")
-    dataset = rename_stored(dataset)
+    dataset = with_present_names(dataset)
     return _READERS[kind](dataset) if kind in _READERS else _read_fields(kind, dataset)
 
 

@@ -1,12 +1,11 @@
 """Potentials: a formula, the rotation of its frame, and the ends of orbits besides its exits.
 
-Everything else is derived from these: critical points, exits and units by `engine.systems.well`, the integrator by
-`engine.integrator`.
+All else is derived from these: critical points, exits and units by `engine.systems.well`, kernels by `engine.integrator`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -16,13 +15,19 @@ import numpy as np
 from engine.expressions.nodes import Expression
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
-from engine.foundations.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
-from engine.systems.forms.expression_form import ExpressionForm
-from engine.systems.forms.form import Form, hessian_matrix
-from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
-from engine.systems.jacobi import squared_speed_of_origin
+from engine.foundations.validation import (
+    LONGEST_TIME,
+    check_type,
+    checked_items,
+    checked_number,
+    checked_t_max,
+    replace_unchecked,
+)
+from engine.integrator.source.polynomial_recurrence import Terms
+from engine.systems.forms.expression_form import as_form
+from engine.systems.forms.form import Form
+from engine.systems.motion import Motion, checked_mass
 from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
-from engine.systems.parameters import WELL_PARAMETERS, symbol_of
 from engine.systems.provenance import describe_potential
 from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.systems.well import Well
@@ -31,22 +36,22 @@ from engine.systems.well_units import WellUnits
 if TYPE_CHECKING:
     from engine.systems.system import System
 
-Terms = tuple[tuple[int, int, float], ...]
-
 # Marks centres or an escape radius that are given in `ends`.
 _OF_ENDS: Any = ...
 
-# In units of 1/Ω.
-_SHORT_TIME = 1000.0
+_SHORT_TIME = 1000.0  # in units of 1/Ω
 
 
 @with_former_fields
 @dataclass(frozen=True, init=False)
-class Potential(Result):
-    """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
+class Potential(Motion):
+    """V(x, y), dimensionless: H = (px² + py²)/2m + V, with a mass m of 1 by default.
 
-    In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for the velocities ẋ and ẏ, and H for
-    the Jacobi integral (ẋ² + ẏ²)/2 + Φ: ẍ = 2Ωẏ − Φ_x, ÿ = −2Ωẋ − Φ_y. See `in_rotating_frame`.
+    In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for mẋ and mẏ, and H for the Jacobi
+    integral m(ẋ² + ẏ²)/2 + Φ: mẍ = 2mΩẏ − Φ_x, mÿ = −2mΩẋ − Φ_y. See `in_rotating_frame`.
+
+    Orbits with a mass m are those with a mass of 1 at the same energy, with momenta and times multiplied by √m. They are computed
+    so; the factor rounds unless it is a power of 2.
 
     Without an escape radius, orbits leave a well, or a centre, at the origin through the exits over its saddles. With an escape
     radius, saddles are not exits, and orbits end beyond this radius. See `with_outcomes`.
@@ -75,6 +80,8 @@ class Potential(Result):
     exit_names
         Names of the exits in channel order, such as ("L2", "L1"), which have no influence on any result; they are used if there
         are as many exits as names.
+    mass
+        m, 1e-6 to 1e6, dimensionless.
 
     Raises
     ------
@@ -100,11 +107,12 @@ class Potential(Result):
     lineage: Lineage = field(default=SEARCHED, repr=False)
     system: System | None = field(default=None, repr=False, compare=False)
     exit_names: tuple[str, ...] = field(default=(), repr=False, compare=False)
+    mass: float = 1.0
     inner_names: ClassVar = Result.inner_names | {
         "check_at_rest", "check_without_gaps", "checked_t_max", "continued", "exit_names", "form", "gaps",
         "hessian_matrix", "in_well_units", "lineage", "reversed_in_time", "tori_are_evidence", "units", "well",
     }  # fmt: skip
-    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names"), "terms")
+    held_as: ClassVar = dict.fromkeys(("form", "rotation", "ends", "origin", "lineage", "system", "exit_names", "mass"), "terms")
 
     def __init__(
         self,
@@ -119,26 +127,24 @@ class Potential(Result):
         ends: Sequence[End] = (),
         system: System | None = None,
         exit_names: Sequence[str] = (),
+        mass: float = 1.0,
     ) -> None:
         check_type("name", name, str)
-        if isinstance(form, Expression):
-            form = ExpressionForm(form)
-        elif not isinstance(form, PolynomialForm | ExpressionForm):
-            form = checked_form(form)
         if centres is not _OF_ENDS:
-            ends = [*(end for end in ends if not isinstance(end, Centre)), *_checked(centres, "centres", Centre)]
+            ends = [*(end for end in ends if not isinstance(end, Centre)), *checked_items("centres", centres, Centre)]
         if escape_radius is not _OF_ENDS:
             circles = [] if escape_radius is None else [EscapeCircle(escape_radius)]
             ends = [*(end for end in ends if not isinstance(end, EscapeCircle)), *circles]
         values = {
             "name": name,
-            "form": form,
+            "form": as_form(form),
             "rotation": checked_number("rotation", rotation),
-            "ends": tuple(sorted(_checked(ends, "ends", End), key=lambda end: list(KINDS).index(end.key))),
+            "ends": tuple(sorted(checked_items("ends", ends, End), key=lambda end: list(KINDS).index(end.key))),
             "origin": (checked_number("origin", origin[0]), checked_number("origin", origin[1])),
             "lineage": lineage,
             "system": system,
-            "exit_names": tuple(_checked(exit_names, "exit_names", str)),
+            "exit_names": checked_items("exit_names", exit_names, str),
+            "mass": checked_mass(mass),
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
@@ -146,7 +152,7 @@ class Potential(Result):
     @cached_property
     def well(self) -> Well:
         """Quantities derived from the potential: critical points, exits, symmetries, units."""
-        return self.lineage.make_well(self.form, self.rotation, self.ends)
+        return self.lineage.make_well(self.form, self.rotation, self.ends, self.mass)
 
     @property
     def centres(self) -> tuple[Centre, ...]:
@@ -202,9 +208,9 @@ class Potential(Result):
 
     @cached_property
     def in_well_units(self) -> Potential:
-        """Return the system in units of the well: V(L x, L y) / E, with units L of length and E of energy.
+        """Return the system in units of the well: V(L x, L y) / E with a mass of 1, with units L of length and E of energy.
 
-        If both units are 1, it is the potential itself.
+        If all units are 1, it is the potential itself.
         """
         units = self.units
         if units == WellUnits():
@@ -217,6 +223,7 @@ class Potential(Result):
             ends=tuple(end.scaled(1.0 / units.length) for end in self.ends),
             lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
             system=None,
+            mass=1.0,
         )
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
@@ -226,24 +233,6 @@ class Potential(Result):
     def _changed(self, **values: Any) -> Potential:
         """Return another potential, whose well is searched."""
         return replace(self, lineage=SEARCHED, system=None, **values)
-
-    def in_rotating_frame(self, rotation: float) -> Potential:
-        """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).
-
-        Parameters
-        ----------
-        rotation
-            Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
-
-        Raises
-        ------
-        ValueError
-            If the rate is out of range, or the frame of the potential already rotates.
-        """
-        if self.rotation:
-            raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
-        half = -0.5 * checked_number("rotation", rotation) ** 2
-        return self._changed(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
 
     def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
         """Return the potential with its axes moved to the minimum nearest to a place, so that orbits leave the well there.
@@ -282,11 +271,6 @@ class Potential(Result):
         """Return the potential with other centres and another escape radius; the parameters are those of `Potential`."""
         return self._changed(centres=centres, escape_radius=escape_radius)
 
-    @cached_property
-    def reversed_in_time(self) -> Potential:
-        """Return the potential whose orbits are those of this one backward in time, with reversed velocities and Ω."""
-        return self._changed(rotation=-self.rotation) if self.rotation else self
-
     def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
         """Return `t_max` as a float, 0 < t_max ≤ longest, in units of the well if its unit of time is longer than 1.
 
@@ -296,17 +280,12 @@ class Potential(Result):
             t_max = 1e5 if self.tori_are_evidence else _SHORT_TIME / (abs(self.rotation) or 1.0)
         return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
 
-    def check_at_rest(self, what: str) -> None:
-        """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""
-        if self.rotation:
-            raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")
-
     def check_without_gaps(self, what: str) -> None:
         """Raise ValueError if there are `gaps`, for computations with fixed steps."""
         if self.gaps:
-            bodies = f"{self.gaps[0].word}s"
             raise ValueError(
-                f"potential={self.name}: has {bodies}; {what} are computed with fixed steps, which cannot pass close to them"
+                f"potential={self.name}: has {self.gaps[0].word}s; "
+                f"{what} are computed with fixed steps, which cannot pass close to them"
             )
 
     @property
@@ -329,102 +308,3 @@ class Potential(Result):
         """Return number, place and energy of each exit saddle."""
         x, y = self.saddles.T
         return {"channel": np.arange(1, self.channels + 1), "x": x, "y": y, "energy": self.well.saddle_energies}
-
-    @property
-    def terms(self) -> Terms:
-        """((i, j, c), …) of a polynomial; ValueError for other formulas."""
-        if not isinstance(self.form, PolynomialForm):
-            raise ValueError(f"{self.name} is not a polynomial")
-        return self.form.terms
-
-    def value(self, x: Any, y: Any) -> Any:
-        """Return V at (x, y); arrays broadcast."""
-        return self.form.value(x, y)
-
-    def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Return (V_x, V_y) at (x, y); arrays broadcast."""
-        return self.form.gradient(x, y)
-
-    def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
-        """Return (V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
-        return self.form.hessian(x, y)
-
-    def hessian_matrix(self, x: float, y: float) -> np.ndarray:
-        """Return (2, 2) the Hessian matrix of V at one point."""
-        return hessian_matrix(self.form, x, y)
-
-    def energy(self, states: Any) -> Any:
-        """Return H of states (…, 4) = x, y, px, py."""
-        x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
-        return 0.5 * (px * px + py * py) + self.value(x, y)
-
-    def jacobi_constant(self, energy: Any) -> Any:
-        """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays have the same shape.
-
-        C = −2H about the axis of the frame, which is the barycentre in the three-body problem, where U = Σ m/r + ½ (x² + y²). In
-        the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C, so that their values are
-        larger by this amount.
-
-        Raises
-        ------
-        ValueError
-            If the frame does not rotate.
-
-        Examples
-        --------
-        >>> from escape_explorer import POTENTIALS
-        >>> hill, earth_moon = POTENTIALS["Hill"], POTENTIALS["Earth-Moon"]
-        >>> round(hill.jacobi_constant(hill.escape_energy), 5), round(earth_moon.jacobi_constant(earth_moon.escape_energy), 5)
-        (4.32675, 3.18834)
-        """
-        return self._squared_speed_of_origin - 2.0 * energy
-
-    def jacobi_energy(self, constant: Any) -> Any:
-        """Return the energy H of Jacobi constants, see `jacobi_constant`."""
-        return 0.5 * (self._squared_speed_of_origin - constant)
-
-    @property
-    def _squared_speed_of_origin(self) -> float:
-        if not self.rotation:
-            raise ValueError(f"potential={self.name}: its frame must rotate for a Jacobi constant")
-        return squared_speed_of_origin(self.form, self.rotation)
-
-    def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Potential:
-        """Return this potential with other frequencies of its well and another strength of its perturbation.
-
-        V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 consists of the terms of degree 3 and higher.
-        In general V1 is V without the constant, linear and quadratic terms of its expansion about the origin. The term with x² is
-        multiplied by ω1², that with y² by ω2² and that with x y by ω1 ω2, also if the quadratic terms are not ½ (x² + y²), so
-        that the default values give the potential itself. Constant and linear terms are unchanged.
-
-        Parameters
-        ----------
-        omega_1, omega_2
-            Frequencies along x and y, dimensionless, from 0.1 to 10.
-        epsilon
-            Strength of V1, dimensionless, from 0.01 to 100.
-
-        Raises
-        ------
-        ValueError
-            If a parameter is out of range.
-        """
-        chosen = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
-        for name, value in chosen.items():
-            low, high = WELL_PARAMETERS[name].range
-            if not low <= checked_number(name, value) <= high:
-                raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
-        is_changed = not omega_1 == omega_2 == epsilon == 1.0
-        if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
-            raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
-        changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
-        form = self.form.with_parameters(omega_1, omega_2, epsilon)
-        return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)
-
-
-def _checked[T](ends: Sequence[T], name: str, kind: type[T]) -> Sequence[T]:
-    """Return the ends after checking that all are of one kind."""
-    check_type(name, ends, Iterable)
-    for end in ends:
-        check_type(name, end, kind)
-    return ends

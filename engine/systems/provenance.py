@@ -15,11 +15,12 @@ if TYPE_CHECKING:
 
 
 def describe_potential(potential: Potential) -> dict[str, Any]:
-    """Return name, formula with all digits, rotation, an attribute for each kind of end, and origin of the axes."""
+    """Return name, formula with all digits, rotation, mass, an attribute for each kind of end, and origin of the axes."""
     return {
         "potential": potential.name,
         "terms": potential.form.text,
         "rotation": potential.rotation,
+        "mass": potential.mass,
         **{kind.attribute: kind.write([end for end in potential.ends if isinstance(end, kind)]) for kind in end_kinds()},
         "origin": json.dumps(potential.origin),
         **({"exit_names": json.dumps(potential.exit_names)} if potential.exit_names else {}),

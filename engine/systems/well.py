@@ -38,13 +38,14 @@ class Well(ReadOnlyArrays):
 
     Attributes
     ----------
-    form, rotation, ends
+    form, rotation, ends, mass
         The data of the potential.
     """
 
     form: Form
     rotation: float
     ends: tuple[End, ...]
+    mass: float
 
     @property
     def escape_radius(self) -> float | None:
@@ -255,6 +256,11 @@ class Well(ReadOnlyArrays):
         Without a well it is the frequency of a circular orbit of typical radius, whose square is the mean slope of V over the
         radius.
         """
+        return self._fastest_light_frequency / float(np.sqrt(self.mass))
+
+    @cached_property
+    def _fastest_light_frequency(self) -> float:
+        """The fastest frequency for a mass of 1."""
         if self.is_minimum or not self.typical_radius:
             matrix = hessian_matrix(self.form, 0.0, 0.0)
             with np.errstate(invalid="ignore"):
@@ -270,19 +276,23 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def units(self) -> WellUnits:
-        """The units of the well, rounded to powers of 2; both are 1 for the three cases of Zotos (2014).
+        """The units of the well, for a mass of 1 rounded to powers of 2; all are 1 for the three cases of Zotos (2014).
 
         The unit of length is the distance of the nearest exit saddle, and the unit of time is 1/ω of the fastest small
         oscillation in the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of this radius;
-        without exits it is the length of the form.
+        without exits it is the length of the form. The unit of mass is the mass.
         """
-        frequency = self.fastest_frequency
+        frequency = self._fastest_light_frequency
         time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
+        return WellUnits(self._length_unit, time, self.mass)
+
+    @property
+    def _length_unit(self) -> float:
         if self.escape_radius is not None:
-            return WellUnits(nearest_power_of_two(self.typical_radius), time)
+            return nearest_power_of_two(self.typical_radius)
         if not self.channels:
-            return WellUnits(self.form.length, time)
-        return WellUnits(nearest_power_of_two(float(np.hypot(*self.saddles.T).min())), time)
+            return self.form.length
+        return nearest_power_of_two(float(np.hypot(*self.saddles.T).min()))
 
     @property
     def stated_units(self) -> WellUnits:

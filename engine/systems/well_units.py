@@ -1,8 +1,9 @@
-"""Units of length and time of a well, which are powers of 2, so that numbers are converted without rounding.
+"""Units of length, time and mass of a well.
 
-Under x → L x and V → E V, times scale as L/√E, and potentials that differ only by such a scaling are equal in units of the well.
-All tolerances and all constants of time and length of the engine are in these units; for the three cases of Zotos (2014) the
-units are 1.
+Those of length and energy are powers of 2, so that they are converted without rounding, as times and momenta are if √mass is one.
+Under x → L x, V → E V and m → M m, times scale as L √(M/E) and momenta as √(M E), and systems that differ only by such a scaling
+are equal in units of the well. All tolerances and all constants of time and length of the engine are in these units; for the
+three cases of Zotos (2014) the units are 1.
 """
 
 from __future__ import annotations
@@ -13,40 +14,48 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 
-def _quantity(length: int, time: int) -> dict[str, tuple[int, int]]:
-    """Return metadata of a dataclass field: the powers of length and time in the unit of its value, for `WellUnits.restore`."""
-    return {_UNIT: (length, time)}
+def _quantity(length: int, time: int, mass: int = 0) -> dict[str, tuple[int, int, int]]:
+    """Return metadata of a field: the powers of length, time and mass in the unit of its value, for `WellUnits.restore`."""
+    return {_UNIT: (length, time, mass)}
 
 
 _UNIT = "unit"
 LENGTH, TIME, AREA = _quantity(1, 0), _quantity(0, 1), _quantity(2, 0)
-MOMENTUM, RATE, ENERGY = _quantity(1, -1), _quantity(0, -1), _quantity(2, -2)
+RATE, MOMENTUM, ENERGY = _quantity(0, -1), _quantity(1, -1, 1), _quantity(2, -2, 1)
 
 
 @dataclass(frozen=True)
 class WellUnits:
-    """The units of one well, dimensionless, each a power of 2.
+    """The units of one well, dimensionless.
 
     Attributes
     ----------
     length
-        Unit of x and y.
-    time
-        Unit of time.
+        Unit of x and y, a power of 2.
+    light_time
+        Unit of time of the same well for a mass of 1, a power of 2.
+    mass
+        Unit of mass.
     """
 
     length: float = 1.0
-    time: float = 1.0
+    light_time: float = 1.0
+    mass: float = 1.0
+
+    @property
+    def time(self) -> float:
+        """Unit of time, which is proportional to √mass."""
+        return self.light_time * math.sqrt(self.mass)
 
     @property
     def momentum(self) -> float:
-        """Unit of px and py, which are velocities: length / time."""
-        return self.length / self.time
+        """Unit of px and py."""
+        return self.length / self.light_time * math.sqrt(self.mass)
 
     @property
     def energy(self) -> float:
-        """Unit of H and V: momentum²."""
-        return self.momentum**2
+        """Unit of H and V, a power of 2."""
+        return (self.length / self.light_time) ** 2
 
     @property
     def state(self) -> np.ndarray:
@@ -56,10 +65,10 @@ class WellUnits:
     @property
     def inverse(self) -> WellUnits:
         """Return the units with which `restore` converts from the units of the potential to those of the well."""
-        return WellUnits(1.0 / self.length, 1.0 / self.time)
+        return WellUnits(1.0 / self.length, 1.0 / self.light_time, 1.0 / self.mass)
 
     def restore[Computed](self, result: Computed) -> Computed:
-        """Convert a result from these units to the units of the potential, without rounding.
+        """Convert a result from these units to the units of the potential.
 
         Fields whose metadata is a quantity, such as `TIME`, are converted; arrays stay read-only.
         """
@@ -68,12 +77,15 @@ class WellUnits:
         restored = {}
         for each in fields(result):  # type: ignore[arg-type]
             if _UNIT in each.metadata:
-                length, time = each.metadata[_UNIT]
                 value = getattr(result, each.name)
-                restored[each.name] = value * (self.length**length * self.time**time)
+                restored[each.name] = value * self._unit(*each.metadata[_UNIT])
                 if isinstance(value, np.ndarray):
                     restored[each.name].flags.writeable = value.flags.writeable
         return replace(result, **restored)  # type: ignore[type-var]
+
+    def _unit(self, length: int, time: int, mass: int) -> float:
+        """Return the unit of a quantity; √mass, which rounds, has the power 0 in lengths and energies."""
+        return self.length**length * self.light_time**time * math.sqrt(self.mass) ** (time + 2 * mass)
 
 
 def nearest_power_of_two(value: float) -> float:

@@ -126,7 +126,8 @@ class _HalfOrbit:
         times = np.interp(random.uniform(0.0, self.flux[-1], count), self.flux, self.times)
         points, along, inward = self._frame(times)
         points = points + _SHIFT * self._length * inward
-        momentum = np.sqrt(np.maximum(2.0 * (self._energy - self._potential.value(*points.T)), 0.0))
+        kinetic = np.maximum(self._energy - self._potential.value(*points.T), 0.0)
+        momentum = np.sqrt(2.0 * self._potential.mass * kinetic)
         share = random.uniform(-1.0, 1.0, count)
         directions = share[:, None] * along + np.sqrt(1.0 - share * share)[:, None] * inward
         return np.column_stack([points, momentum[:, None] * directions])

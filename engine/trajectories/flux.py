@@ -40,6 +40,8 @@ class EscapeFlux(RecordedResult):
         (n,) phase-space volume that leaves through each exit per unit of time, in the measure δ(H − h) dx dy dpx dpy.
     area, area_error
         Area of the interior in (x, y), and its estimated error.
+    mass
+        m.
     """
 
     energy: float
@@ -47,6 +49,7 @@ class EscapeFlux(RecordedResult):
     flux: np.ndarray
     area: float
     area_error: float = field(repr=False)
+    mass: float = field(default=1.0, repr=False)
     held_as: ClassVar = {"channels": "channel"}
     chart: ClassVar = Chart(
         "channel", "flux", "channel", "flux", title="Flux through the exits at h = {energy:.6g}", by_channel=True
@@ -68,8 +71,8 @@ class EscapeFlux(RecordedResult):
 
     @property
     def volume(self) -> float:
-        """Volume ∫ δ(H − h) dx dy dpx dpy of the energy surface inside: 2π times the area."""
-        return 2.0 * math.pi * self.area
+        """Volume ∫ δ(H − h) dx dy dpx dpy of the energy surface inside: 2π m times the area."""
+        return 2.0 * math.pi * self.mass * self.area
 
     @property
     def total(self) -> float:
@@ -110,7 +113,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
 
     The flux through an exit is the action ∮ p·dq of its Lyapunov orbit, the smallest of all curves that close the exit (Waalkens,
     Burbanks & Wiggins 2005, J. Phys. A 38, L759; for two degrees of freedom MacKay 1990, Phys. Lett. A 145, 425). With two
-    degrees of freedom the momenta at each point inside have the volume 2π.
+    degrees of freedom the momenta at each point inside have the volume 2π m.
 
     Parameters
     ----------
@@ -146,7 +149,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     area, error = _interior_area(potential, h)
     channels = np.array([orbit.channel for orbit in orbits], np.int64)
     made_by = describe_run(potential, energy=h)
-    return EscapeFlux(h, read_only(channels), read_only(np.array(actions)), area, error, made_by=made_by)
+    return EscapeFlux(h, read_only(channels), read_only(np.array(actions)), area, error, potential.mass, made_by=made_by)
 
 
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:

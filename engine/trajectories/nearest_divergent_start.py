@@ -133,7 +133,7 @@ def find_divergent_start(
     search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, execution)
     search.classify_centre(t_max / units.time)
     if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
-        fate, inside = name_fate(search.centre_fate), plane.limiting_curve.replace("=", "≤")
+        fate, inside = name_fate(search.centre_fate), plane.limiting_curve(potential.mass).replace("=", "≤")
         start = ", ".join(f"{name}={value}" for name, value in zip(plane.axis_names, (x, ordinate), strict=True))
         raise ValueError(f"{start}: {fate} on {plane.title} at h={h}; must have {inside} and lie inside all exits")
     found = search.find_nearest(furthest / units.length)

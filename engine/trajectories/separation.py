@@ -9,6 +9,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.foundations.former_names import with_former_parameters
 from engine.foundations.result import Chart, RecordedResult
 from engine.foundations.validation import checked_state, checks_types
 from engine.integrator.kernels.dense_output import sample_path, trace_steps
@@ -46,9 +47,10 @@ class Separation(RecordedResult):
         return self.t.nbytes + self.distance.nbytes
 
 
+@with_former_parameters(t_end="t_max")
 @checks_types(potential=Potential, execution=Execution)
 def compute_separation(
-    potential: Potential, first: Any, second: Any, t_end: float, *, execution: Execution = DEFAULT_EXECUTION
+    potential: Potential, first: Any, second: Any, t_max: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> Separation:
     """Compute the distance of two orbits at 2000 evenly spaced times.
 
@@ -61,8 +63,8 @@ def compute_separation(
         The `Potential`.
     first, second
         (4,) initial x, y, px, py; finite, dimensionless.
-    t_end
-        Last time, 0 < t_end ≤ 1e8, dimensionless; not after the escape of either orbit. Times beyond 2000 units of the well are
+    t_max
+        Last time, 0 < t_max ≤ 1e8, dimensionless; not after the escape of either orbit. Times beyond 2000 units of the well are
         left out.
     execution
         How the computation runs.
@@ -72,17 +74,17 @@ def compute_separation(
     concurrent.futures.CancelledError
         If cancelled.
     ValueError
-        If a state is not four finite numbers or `t_end` is out of range.
+        If a state is not four finite numbers or `t_max` is out of range.
 
     Examples
     --------
     >>> from escape_explorer import CASES, compute_separation
     >>> first, second = (0.1, 0.0, 0.05, 0.6), (0.1 + 1e-9, 0.0, 0.05, 0.6)
-    >>> distance = compute_separation(CASES["I"], first, second, t_end=15.0).distance
+    >>> distance = compute_separation(CASES["I"], first, second, t_max=15.0).distance
     >>> distance.size, round(float(distance[-1] / distance[0]))
     (2000, 235)
     """
-    longest, units = potential.checked_t_max(t_end, name="t_end"), potential.units
+    longest, units = potential.checked_t_max(t_max), potential.units
     times = np.linspace(0.0, min(longest / units.time, LONGEST_SEPARATION), _SAMPLES)
     kernels = kernels_of(potential.in_well_units)
     paths = []

@@ -117,7 +117,7 @@ DESCRIPTORS = Layer(
         title="Lagrangian descriptor",
         short_title="Descriptor",
         help=(
-            "The integral of a power of the speed, |v|^p, along each orbit over a time τ. It changes rapidly where neighbours "
+            "The integral of a power of the speed, |v|ᵖ, along each orbit over a time τ. It changes rapidly where neighbours "
             "separate: forward in time on the stable manifolds of unstable periodic orbits, backward on the unstable ones, in "
             "both directions on both. The integral ends at the exit, so it is small where orbits leave at once."
         ),

@@ -137,8 +137,9 @@ def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Return how pixels of a potential with these outcomes become codes, for programs that make the columns elsewhere.
 
     The result contains the fates that are not ends, the first class, the places and words of the ends, the classes of crossings,
-    and the codes of pixels without a decision or an orbit.
+    the code of pixels that are not decided, and for each code the codes of differences from all codes.
     """
+    codes = np.arange(FIRST_CLASS + len(PAPER.ends), dtype=np.uint8)
     return {
         "outcomes": [[int(fate), code] for fate, code in _OUTCOME_CODES.items()],
         "first": FIRST_CLASS,
@@ -146,7 +147,7 @@ def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "words": end_words(outcomes),
         "leastCrossings": _LEAST_CROSSINGS.tolist(),
         "undecided": _UNDECIDED,
-        "withoutOrbit": list(_WITHOUT_ORBIT),
+        "differences": _difference_codes(codes[:, None], codes).tolist(),
     }
 
 

@@ -25,7 +25,7 @@ def equations(potential: Potential) -> str:
         "Effective potential" if potential.rotation else "Potential": [_potential(potential)],
         "Equations of motion": [_motion(axis, potential) for axis in ("x", "y")],
         _INTEGRAL[bool(potential.rotation)]: [
-            _energy(potential, raised(_above("x", "˙"), 2), raised(_above("y", "˙"), 2)) + op("=") + var("h")
+            _energy(potential, 0.5 * potential.mass, *(raised(_above(axis, "˙"), 2) for axis in "xy")) + op("=") + var("h")
         ],
         **_exits(potential),
     }
@@ -60,7 +60,8 @@ def _hamiltonian(potential: Potential) -> dict[str, list[str]]:
     """H in momenta; omitted in a rotating frame, where the Jacobi integral in velocities is enough."""
     if potential.rotation:
         return {}
-    return {"Hamiltonian": [var("H") + op("=") + _energy(potential, _momentum_squared("x"), _momentum_squared("y"))]}
+    squares = _momentum_squared("x"), _momentum_squared("y")
+    return {"Hamiltonian": [var("H") + op("=") + _energy(potential, 0.5 / potential.mass, *squares)]}
 
 
 def _exits(potential: Potential) -> dict[str, list[str]]:
@@ -74,26 +75,27 @@ def _exits(potential: Potential) -> dict[str, list[str]]:
 
 
 def _motion(axis: str, potential: Potential) -> str:
-    """Acceleration = −∂V/∂axis, with the derivative written out, and the Coriolis term in a rotating frame."""
+    """Mass times acceleration = −∂V/∂axis, with the derivative written out, and the Coriolis term in a rotating frame."""
     force = potential.form.force("xy".index(axis))
     partial = f"<mfrac>{row(op('∂') + var(potential_symbol(potential)))}{row(op('∂') + var(axis))}</mfrac>"
-    acceleration = _above(axis, "¨") + op("=") + row(_coriolis(axis, potential) + op("−") + partial)
+    mass = "" if potential.mass == 1.0 else number(potential.mass)
+    acceleration = mass + _above(axis, "¨") + op("=") + row(_coriolis(axis, potential) + op("−") + partial)
     return acceleration if potential.rotation else acceleration + op("=") + _sum(force)
 
 
 def _coriolis(axis: str, potential: Potential) -> str:
-    """2Ωẏ or −2Ωẋ; empty in a frame that does not rotate."""
+    """2mΩẏ or −2mΩẋ; empty in a frame that does not rotate."""
     if not potential.rotation:
         return ""
-    rate = number(2.0 * abs(potential.rotation))
+    rate = number(2.0 * potential.mass * abs(potential.rotation))
     is_negative = (potential.rotation > 0.0) == (axis == "y")
     return (op("−") if is_negative else "") + rate + _above("y" if axis == "x" else "x", "˙")
 
 
-def _energy(potential: Potential, first: str, second: str) -> str:
-    """½(first + second) + V(x, y)."""
+def _energy(potential: Potential, factor: float, first: str, second: str) -> str:
+    """factor (first + second) + V(x, y)."""
     squares = op("(") + first + op("+") + second + op(")")
-    return number(0.5) + squares + op("+") + _at_point(potential)
+    return (number(factor) if factor != 1.0 else "") + squares + op("+") + _at_point(potential)
 
 
 def _sum(form: Form) -> str:

@@ -1,4 +1,4 @@
-"""Tables of docs/reproduction.md, one row for each map of a paper. Run: python -m reproduction.rotating.tables"""
+"""Numbers of the maps that are compared with papers, a table for each system. Run: python -m reproduction.rotating.tables"""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Every public result is the same one in other units: under x → L x and V → E V, times scale as L/√E.
+"""Every public result is the same one in other units: under x → L x, V → E V and m → M m, times scale as L √(M/E).
 
-With L a power of 2 and E a power of 4 all conversions are exact, and so must be the results.
+With L a power of 2, and E and M powers of 4, all conversions are exact, and so must be the results.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from engine.trajectories.chaos_indicators import evaluate_indicators
 from tests.contracts.scaling import Scaling
 
-EXACT = (Scaling(8.0, 4.0**-3), Scaling(2.0**-6, 1.0), Scaling(1.0, 4.0**8))
-INEXACT = (Scaling(3.0, 0.7),)
+EXACT = (Scaling(8.0, 4.0**-3), Scaling(1.0, 1.0, 16.0), Scaling(2.0**-6, 1.0), Scaling(1.0, 4.0**8))
+INEXACT = (Scaling(3.0, 0.7), Scaling(1.0, 1.0, 8.0))
 # No powers of 2, from the least to the largest that are supported.
-FAR = (Scaling(1e-6, 1e6), Scaling(7e4, 5e5))
+FAR = (Scaling(1e-6, 1e6), Scaling(7e4, 5e5), Scaling(1.0, 1.0, 8.0))
 
 
 def test_a_coefficient_without_effect_is_refused() -> None:
@@ -59,11 +59,11 @@ ENERGY, UNIT_OF_TIME = 1.1 * SKEW.escape_energy, SKEW.units.time
 
 
 def name_of(scaling: Scaling) -> str:
-    return f"L={scaling.length:.3g}, E={scaling.energy:.3g}"
+    return f"L={scaling.length:.3g}, E={scaling.energy:.3g}, m={scaling.mass:.3g}"
 
 
 exactly_scaled = pytest.mark.parametrize(
-    "scaling", [EXACT[0], *(pytest.param(each, marks=pytest.mark.exhaustive) for each in EXACT[1:])], ids=name_of
+    "scaling", [*EXACT[:2], *(pytest.param(each, marks=pytest.mark.exhaustive) for each in EXACT[2:])], ids=name_of
 )
 
 

@@ -24,6 +24,7 @@ from engine import (
     SweepSpec,
     System,
     classify_orbits,
+    compute_lagrangian_descriptor,
     compute_map,
     compute_statistics,
     compute_sweep,
@@ -158,9 +159,9 @@ WRONG_CALLS = (
     ("classify_orbits(III, 0.45, [S])", "states: row 0 has energy 0.18625; must be energy=0.45 to within 1e-09"),
     ("judge_orbit(m)", "orbit=…: must be an Orbit"),
     ("judge_orbit(orbit, 3)", "digits=3: must be a BirkhoffDigits or None"),
-    ('compute_separation(III, S, S, "end")', "t_end='end': must be above 0 and at most 1e+08"),
+    ('compute_separation(III, S, S, "end")', "t_max='end': must be above 0 and at most 1e+08"),
     ('compute_separation(III, S, (0.0, 0.0, float("nan"), 1.0), 10.0)', "second=(0.0, 0.0, nan, 1.0): must be four finite"),
-    ("compute_separation(III, S, S, -1.0)", "t_end=-1.0: must be above 0 and at most 1e+08"),
+    ("compute_separation(III, S, S, -1.0)", "t_max=-1.0: must be above 0 and at most 1e+08"),
     ('find_divergent_start(III, Plane.X_PX, 0.45, "a", 0.0)', "x='a': must be a finite number, at most 1e+09 in magnitude"),
     ("find_divergent_start(III, Plane.X_PX, (0.1, 0.2), 0.1, 0.1)", "energy=(0.1, 0.2): must be one finite number on (x,"),
     ('find_divergent_start(CASES["I"], Plane.X_PX, 0.2, 0.1, 0.9)', "x=0.1, px=0.9: forbidden on (x, px) at h=0.2; must have"),
@@ -296,7 +297,11 @@ WRONG_CALLS = (
     ('III.with_outcomes(escape_radius=float("nan"))', "escape_radius=nan: must be a number from 1e-06 to 1e+06"),
     ('parse_formula("−1/r; centre (0, 0) 0")', "formula, character 20: centre radius=0.0: must be from 1e-06 to 1e+06"),
     ('parse_formula("−1/r; centre (1e10, 0) 1")', "formula, character 23: centre x=10000000000.0: must be a finite number"),
-    ('parse_formula("−1/r; centre (x, 0) 1")', "formula, character 15: a place or a radius must be a number, without x and y"),
+    ('parse_formula("−1/r; centre (x, 0) 1")', "formula, character 15: a place, a radius or a mass must be a number, without"),
+    ("POTENTIALS['HH'].jacobi_energy(float('nan'))", "potential=HH: its frame must rotate for a Jacobi constant"),
+    ("POTENTIALS['Hill'].jacobi_energy(float('nan'))", "constant=nan: must be"),
+    ("POTENTIALS['Hill'].jacobi_constant([1.0, np.inf])", "energy="),
+    ("Potential('', ((2, 0, 0.5),), mass=0.0)", "mass=0.0: must be from 1e-06 to 1e+06"),
     ('integrate_orbit(parse_formula("1/x"), S)', "potential=x⁻¹: must have exits, or a closed well at the origin"),
     ('integrate_orbit(parse_formula("1/r; escape 9"), S)', "potential=(x² + y²)^(−1/2): must be defined everywhere within the "),
     ("integrate_orbit(III, [S])", "state=[(0.1, 0.0, 0.05, 0.6)]: must be four finite numbers x, y, px, py, at most 1e+09 in"),
@@ -334,7 +339,7 @@ WRONG_CALLS = (
     ("III.jacobi_constant(0.2)", "potential=III: its frame must rotate for a Jacobi constant"),
     ('parse_formula("½(x² + y²) − x²y; exits L1,")', "formula, character 18: 'exits L1,' is not understood; allowed are centre"),
     ('parse_formula("x²; well (0 0)")', "formula, character 4: 'well (0 0)' is not understood; allowed are centre"),
-    ('parse_formula("x² + y²; well (x, 0)")', "formula, character 16: a place or a radius must be a number, without x and y"),
+    ('parse_formula("x² + y²; well (x, 0)")', "formula, character 16: a place, a radius or a mass must be a number, without"),
     ('parse_formula("x + y²; well (0, 0)")', "potential=x + y²: V must have a minimum to which its axes can be moved"),
     ('System("typed", "½r² − a x y²", {"a": float("nan")}).potential', "a=nan: must be a finite number, at most 1e+09 in"),
     ('read_slice("x", "", System("I"))', "axes='x': must be one of x_y, x_px, x_h, y_py, tangential, or two axes such as x,py"),
@@ -392,7 +397,7 @@ def test_motion_without_a_well_is_not_called_bounded(formula: str) -> None:
 
 
 def test_a_misspelt_argument_is_answered_with_the_name_of_the_function() -> None:
-    with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'$"):
+    with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'"):
         sample_orbits(CASES["III"], [(0.1, 0.0, 0.0, 0.3)], (0.0, 1.0), t_max=5.0)  # type: ignore[call-arg]
 
 
@@ -402,3 +407,8 @@ def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
     (tmp_path / "text.nc").write_text("no numbers")
     with pytest.raises(OSError, match=r"^path=.*text\.nc: cannot be read as a NetCDF file: [^\n]*$"):
         open_result(tmp_path / "text.nc")
+
+
+def test_too_many_arguments_are_answered_as_by_python() -> None:
+    with pytest.raises(TypeError, match=r"^compute_lagrangian_descriptor\(\) takes 1 positional argument but 2 were given$"):
+        compute_lagrangian_descriptor(None, 10.0)

@@ -119,8 +119,8 @@ def test_integrate_orbit(state: Any, t_max: Any) -> None:
 
 
 @given(states, states, times)
-def test_separation(first: Any, second: Any, t_end: Any) -> None:
-    result_or_error(lambda: compute_separation(CASE, first, second, shortened(t_end)), ["first", "second", "t_max", "t_end"])
+def test_separation(first: Any, second: Any, t_max: Any) -> None:
+    result_or_error(lambda: compute_separation(CASE, first, second, shortened(t_max)), ["first", "second", "t_max"])
 
 
 @given(states, times)

@@ -33,7 +33,8 @@ _LETTER_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
-    "for example 0.5(x^2+y^2) - a x^2 y. “; well (1, 0)” moves the axes to the minimum near (1, 0)."
+    "for example 0.5(x^2+y^2) - a x^2 y. “; well (1, 0)” moves the axes to the minimum near (1, 0); “; masses (8, 8)” "
+    "is for masses of 8."
 )
 # Texts that buttons add: a term, or a clause after all terms.
 _TERMS = {"+ letter": " + a x y"}

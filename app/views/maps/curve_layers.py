@@ -129,7 +129,7 @@ class CurveLayers:
 
     def entries(self, spec: MapSpec) -> list[Entry]:
         """Legend entries of the curves that are shown on this plane."""
-        entries = [Entry(spec.plane.limiting_curve, self._line_colours.limiting_curve)]
+        entries = [Entry(spec.plane.limiting_curve(spec.potential.mass), self._line_colours.limiting_curve)]
         if spec.common_energy is not None:
             has_exits = spec.potential.escape_radius is None
             entries += [Entry("escape energy" if has_exits else "through saddles", self._line_colours.critical_equipotential)]

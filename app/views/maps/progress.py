@@ -23,6 +23,9 @@ from plots.pictures.palette import PAPER, Entry, Palette
 
 STOP, CONTINUE = "Stop", "Continue"
 
+STOPPED = "stopped"
+"""Class of the text of a map that has been stopped: a preview of the browser does not replace it."""
+
 
 class ProgressView:
     """Shows the progress of a map.
@@ -80,6 +83,7 @@ class ProgressView:
         """The map is stopped and can be continued."""
         self._set(running=False, label=CONTINUE, sentence=f"Stopped: {self._sentence}")
         self.button.styles = keep_place(shown=True)
+        self.text.css_classes = ["status", STOPPED]
 
     def fail(self) -> None:
         """There is no map; the last picture stays."""
@@ -109,6 +113,7 @@ class ProgressView:
     def _set(self, *, running: bool, label: str, sentence: str) -> None:
         self.bar.styles = {"opacity": "1" if running else "0"}
         self.button.param.update(label=label, styles=keep_place(shown=running))
+        self.text.css_classes = ["status"]
         self._write(sentence)
 
     def _write(self, sentence: str) -> None:

@@ -124,29 +124,17 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     until it is full; `NO_TRACE` for more than one orbit. Returns the total number of steps of all orbits.
     """
     # Only `np.zeros` is used: Numba takes about 0.1 s to compile each function that makes arrays, for each type of array.
-    now = np.zeros((ROWS, LANES))
-    new = np.zeros((ROWS, LANES))
-    # Lanes without an orbit take harmless steps that never reach the horizon.
-    now[0] = 0.01
-    now[4] = -np.inf
-    flag = np.zeros(LANES, np.int64)
-    crossed = np.zeros(LANES, np.int64)
-    lane_orbit = np.zeros(LANES, np.int64)
-    buffer = _make_buffer(LANES)
-    buffered = 0
+    now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
+    flag, crossed, lane_orbit = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
+    buffer, buffered = _make_buffer(LANES), 0
     # These arrays hold one step; WebAssembly computes the series of pairs.
     single = _make_buffer(2)
     active = min(LANES, todo.shape[0])
-    next_orbit = active
-    taken = 0
-    traced = 0
-    left = budget
-    for i in range(active):
-        _load_orbit(orbits, todo[i], now, i, lane_orbit, crossed)
+    next_orbit, taken, traced, left = active, 0, 0, budget
+    _begin_lanes(orbits, todo, active, now, lane_orbit, crossed)
     while active > 0 and left > 0 and (active >= least or next_orbit < todo.shape[0]):
         if traced < trace.shape[0]:
-            for c in range(5):
-                trace[traced, c] = now[c, 0]
+            _trace_step(now, trace, traced)
             traced += 1
         width = (active + VECTOR - 1) // VECTOR * VECTOR
         call_step(step, coefficients, width, tolerance, horizon, exits.gates, now, new, flag, crossed)
@@ -157,15 +145,9 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
             if flag[i] == 0:
                 continue
             j = lane_orbit[i]
-            ends, channel, failed, has_events = _judge_step(flag[i], now, new, i, final, exits, j)
-            if flag[i] & NEAR != 0 and not ends:
-                channel = _passes_exit(jets, coefficients, now, i, new[5, i], exits.curves[exits.curve_row[j]], single)
-                ends = channel > 0
-                has_events = has_events or ends
+            ends, channel, failed, has_events = _judge_step(jets, coefficients, flag[i], now, new, i, final, exits, j, single)
             if ends:
-                _store_orbit(now, i, crossed, orbits, j)
-                orbits.pending[j] = 0
-                orbits.fate[j] = FAILED if failed else NOT_COMPUTED
+                _end_orbit(now, i, crossed, orbits, j, failed)
             if has_events:
                 _buffer_step(now, new, i, j, channel if ends else GOES_ON, buffer, buffered)
                 buffered += 1
@@ -174,12 +156,8 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
                     buffered = 0
             elif not ends and now[1, i] < 0.0 and new[1, i] >= 0.0:
                 crossed[i] += 1
-            if ends and next_orbit < todo.shape[0]:
-                _load_orbit(orbits, todo[next_orbit], new, i, lane_orbit, crossed)
-                next_orbit += 1
-            elif ends:
-                active -= 1
-                _move_lane(new, active, i, lane_orbit, crossed)
+            if ends:
+                active, next_orbit = _refill_lane(orbits, todo, next_orbit, active, new, i, lane_orbit, crossed)
         now, new = new, now
     if buffered > 0:
         _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
@@ -189,16 +167,53 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
 
 
 @subroutine
-def _judge_step(flags, now, new, i, final, exits, orbit):
+def _begin_lanes(orbits, todo, active, lanes, lane_orbit, crossed):
+    """Load the first `active` orbits; lanes without an orbit take harmless steps that never reach the horizon."""
+    lanes[0] = 0.01
+    lanes[4] = -np.inf
+    for i in range(active):
+        _load_orbit(orbits, todo[i], lanes, i, lane_orbit, crossed)
+
+
+@subroutine
+def _trace_step(now, trace, number):
+    """Record the start of a step of the first lane."""
+    for c in range(5):
+        trace[number, c] = now[c, 0]
+
+
+@subroutine
+def _end_orbit(now, i, crossed, orbits, orbit, failed):
+    """Store the orbit of lane i, which ends in this step; its events may still have to be located."""
+    _store_orbit(now, i, crossed, orbits, orbit)
+    orbits.pending[orbit] = 0
+    orbits.fate[orbit] = FAILED if failed else NOT_COMPUTED
+
+
+@subroutine
+def _refill_lane(orbits, todo, next_orbit, active, lanes, i, lane_orbit, crossed):
+    """Load the next orbit into lane i, or move the last active lane there; return the numbers of lanes and of the next orbit."""
+    if next_orbit < todo.shape[0]:
+        _load_orbit(orbits, todo[next_orbit], lanes, i, lane_orbit, crossed)
+        return active, next_orbit + 1
+    _move_lane(lanes, active - 1, i, lane_orbit, crossed)
+    return active - 1, next_orbit
+
+
+@subroutine
+def _judge_step(jets, coefficients, flags, now, new, i, final, exits, orbit, single):
     """Return what happens in a flagged step: (the orbit ends, exit that it crosses or 0, it fails, events are to be located).
 
-    now, new: lanes at the start and the end of the step; i: lane of the orbit.
+    now, new: lanes at the start and the end of the step; i: lane of the orbit; single: buffer for one step.
     """
     failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[5, i] > 0.0)
     late = flags & OVERSHOOT != 0
+    curves = exits.curves[exits.curve_row[orbit]]
     channel = 0
     if not late and flags & (GATE | NEAR) != 0:
-        channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], exits.curves[exits.curve_row[orbit]], exits.gates)
+        channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, exits.gates)
+    if flags & NEAR != 0 and not late and channel == 0 and not failed:
+        channel = _passes_exit(jets, coefficients, now, i, new[5, i], curves, single)
     ends = late or channel > 0 or failed
     has_events = channel > 0 or (late and final) or (not late and flags & HIDDEN != 0)
     return ends, channel, failed, has_events and not failed

@@ -18,10 +18,10 @@ from engine.expressions.polynomials import Terms
 from engine.expressions.singularities import singular_bases
 from engine.expressions.text import write_expression
 from engine.foundations.arrays import read_only
-from engine.systems.forms.form import Velocity
+from engine.systems.forms.form import Form, Velocity
 from engine.systems.forms.interval_newton import Derivatives
 from engine.systems.forms.point_searches import NO_POINTS, NotIsolatedError, UndecidedError
-from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
 from engine.systems.forms.stationary_points import find_stationary_points
 from engine.systems.well_units import nearest_power_of_two
 
@@ -212,6 +212,13 @@ def _from_zeros(expression: Expression) -> dict[Expression, Expression]:
         if terms is not None and len(zeros) == 1 and zeros.any():
             found[base] = _shifted(terms, *zeros[0].tolist())
     return found
+
+
+def as_form(given: Any) -> Form:
+    """Return the form of an expression, or of the terms of a polynomial; ValueError if they are invalid."""
+    if isinstance(given, PolynomialForm | ExpressionForm):
+        return given
+    return ExpressionForm(given) if isinstance(given, Expression) else checked_form(given)
 
 
 def _shifted(terms: Terms, a: float, b: float) -> Expression:

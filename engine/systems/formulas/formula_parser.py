@@ -52,6 +52,7 @@ from engine.systems.formulas.formula_values import (
 )
 from engine.systems.formulas.formula_writer import by_degree, write_formula
 from engine.systems.formulas.outcome_clauses import Part, split_clauses
+from engine.systems.motion import MASS_RANGE
 from engine.systems.potential import Potential
 
 LONGEST_TEXT = 500
@@ -80,7 +81,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py", "vx" and "vy" are
         refused. Clauses can follow: "; centre the Moon (0, 0) 0.0045", a body with a name, its place and its radius of collision;
         "; escape 10", an escape radius; "; well (1, 0)", a place near a minimum to which the axes are moved, see
-        `Potential.at_minimum`; and "; exits L2, L1", names of the exits in channel order.
+        `Potential.at_minimum`; "; exits L2, L1", names of the exits in channel order; and "; masses (8, 8)", the masses of
+        px²/2m₁ + py²/2m₂, which must be equal: for two masses write V(x/√m₁, y/√m₂), whose axes are √m₁ x and √m₂ y.
     name
         Name of the potential; by default the formula as written by `write_formula`.
     parameters
@@ -126,7 +128,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         potential = Potential(name or "", terms)
     number_of = partial(_number_of, values=values)
     ends = [clause.evaluate(number_of) for clause in clauses.ends]
-    found = Potential(name or write_formula(potential), potential.form, ends=ends)
+    mass = 1.0 if clauses.masses is None else _mass_of(clauses.masses, number_of)
+    found = Potential(name or write_formula(potential), potential.form, ends=ends, mass=mass)
     placed = found if clauses.well is None else found.at_minimum(*map(number_of, clauses.well))
     return replace(placed, exit_names=clauses.exits) if clauses.exits else placed
 
@@ -145,6 +148,18 @@ def formula_letters(text: str) -> tuple[str, ...]:
     return tuple(letters)
 
 
+def _mass_of(masses: tuple[Part, Part], number_of: Callable[[Part], float]) -> float:
+    """Return the mass of both directions; FormulaError if it is out of range, or the masses differ."""
+    along_x, along_y = map(number_of, masses)
+    position, (low, high) = masses[0].position, MASS_RANGE
+    if along_x != along_y:
+        remedy = "for two masses write V(x/√m₁, y/√m₂), whose axes are √m₁ x and √m₂ y"
+        raise FormulaError(position, f"masses ({along_x:g}, {along_y:g}): both must be equal; {remedy}")
+    if not low <= along_x <= high:
+        raise FormulaError(position, f"masses ({along_x:g}, {along_y:g}): must be from {low:g} to {high:g}")
+    return along_x
+
+
 def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
     """Return the value of a number in a clause; FormulaError if the text is not a number."""
     try:
@@ -152,7 +167,7 @@ def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
     except FormulaError as error:
         raise FormulaError(part.position + error.position, error.problem) from None
     if number is None:
-        raise FormulaError(part.position, "a place or a radius must be a number, without x and y")
+        raise FormulaError(part.position, "a place, a radius or a mass must be a number, without x and y")
     return float(number)
 
 

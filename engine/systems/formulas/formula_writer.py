@@ -39,7 +39,7 @@ def write_formula(potential: Potential, digits: int | None = None) -> str:
     """
     if digits is not None:
         digits = checked_count("digits", digits, 1, _MOST_DIGITS)
-    return _write_form(potential.form, digits) + write_clauses(potential.ends, potential.exit_names)
+    return _write_form(potential.form, digits) + write_clauses(potential.ends, potential.exit_names, potential.mass)
 
 
 @functools.singledispatch

@@ -2,7 +2,8 @@
 
 A clause describes an end, see `engine.systems.outcomes`, by its word, an optional name, its place in brackets and its radius. The
 clause ``well`` with a place moves the axes to the nearest minimum. The clause ``exits`` lists the names of the exits in channel
-order, "exits L2, L1". Places and radii are formulas without x and y, which can contain the letters of the potential.
+order, "exits L2, L1". The clause ``masses`` has the masses of px²/2m₁ + py²/2m₂, which must be equal, "masses (8, 8)". Places,
+radii and masses are formulas without x and y, which can contain the letters of the potential.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from engine.systems.outcomes import End, end_kinds
 SEPARATOR = ";"
 _EXITS = re.compile(r"\s*exits\s+(?P<names>\w[\w ]{0,20}(?:,\s*\w[\w ]{0,20}){0,11})$")
 _WELL = re.compile(r"\s*well\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
+_MASSES = re.compile(r"\s*masses\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 
 
 class Part(NamedTuple):
@@ -45,18 +47,19 @@ class EndClause(NamedTuple):
 
 
 class Clauses(NamedTuple):
-    """The formula of V, the clauses of ends, the place of a well, or None, and the names of exits."""
+    """The formula of V, the clauses of ends, the place of a well and both masses, or None, and the names of exits."""
 
     formula: str
     ends: tuple[EndClause, ...]
     well: tuple[Part, Part] | None
+    masses: tuple[Part, Part] | None
     exits: tuple[str, ...]
 
     @property
     def numbers(self) -> tuple[Part, ...]:
-        """Return all places and radii."""
+        """Return all places, radii and masses."""
         of_ends = (part for end in self.ends for part in end.numbers.values())
-        return (*of_ends, *(self.well or ()))
+        return (*of_ends, *(self.well or ()), *(self.masses or ()))
 
 
 def split_clauses(text: str) -> Clauses:
@@ -64,19 +67,19 @@ def split_clauses(text: str) -> Clauses:
     formula, *rest = text.split(SEPARATOR)
     position = len(formula) + 1
     ends: list[EndClause] = []
-    wells: list[tuple[Part, Part]] = []
+    pairs: dict[re.Pattern[str], tuple[Part, Part]] = {}
     exits: list[str] = []
     for clause in rest:
-        well = _WELL.match(clause)
+        pair = _WELL.match(clause) or _MASSES.match(clause)
         if found := _end_clause(clause, position):
             ends.append(found)
-        elif well and not wells:
-            wells.append((_part(well, "x", position), _part(well, "y", position)))
+        elif pair and pair.re not in pairs:
+            pairs[pair.re] = _part(pair, "x", position), _part(pair, "y", position)
         elif (named := _EXITS.match(clause)) and not exits:
             exits = [name.strip() for name in named["names"].split(",")]
         else:
             allowed = ", ".join(kind.syntax.format(kind.word) for kind in end_kinds())
-            others = "one well (x, y), and once exits NAME, NAME"
+            others = "one well (x, y), one masses (m, m), and once exits NAME, NAME"
             raise FormulaError(position, f"{clause.strip()!r} is not understood; allowed are {allowed}, {others}")
         position += len(clause) + 1
     for kind, count in Counter(end.kind for end in ends).items():
@@ -84,7 +87,7 @@ def split_clauses(text: str) -> Clauses:
             raise FormulaError(
                 len(formula), f"the formula has {count} clauses of {kind.word!r}; at most {kind.most} can be given"
             )
-    return Clauses(formula, tuple(ends), wells[0] if wells else None, tuple(exits))
+    return Clauses(formula, tuple(ends), pairs.get(_WELL), pairs.get(_MASSES), tuple(exits))
 
 
 def _end_clause(clause: str, position: int) -> EndClause | None:
@@ -100,7 +103,8 @@ def _part(match: re.Match[str], key: str, position: int) -> Part:
     return Part(match[key], position + match.start(key))
 
 
-def write_clauses(ends: Iterable[End], exits: Sequence[str]) -> str:
+def write_clauses(ends: Iterable[End], exits: Sequence[str], mass: float) -> str:
     """Write the clauses as text that can be read exactly."""
     names = [f"exits {', '.join(exits)}"] if exits else []
-    return "".join(f"{SEPARATOR} {clause}" for clause in (*(end.text for end in ends), *names))
+    masses = [] if mass == 1.0 else [f"masses ({mass!r}, {mass!r})"]
+    return "".join(f"{SEPARATOR} {clause}" for clause in (*(end.text for end in ends), *names, *masses))

@@ -15,7 +15,7 @@ _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:
-    """Return the potential of attributes; by default there is no rotation, no end of a kind, and no shift."""
+    """Return the potential of attributes; by default there is no rotation, no end of a kind, no shift, and a mass of 1."""
     text, name = str(attributes["terms"]), str(attributes["potential"])
     terms = [_TERM.fullmatch(term) for term in text.split("; ")]
     if all(terms):
@@ -27,5 +27,5 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     # The terms are those of the effective potential.
     x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
     names = json.loads(attributes.get("exit_names", "[]"))
-    rotation = float(attributes.get("rotation", 0.0))
-    return Potential(name, potential.form, rotation, origin=(x, y), ends=ends, exit_names=names)
+    rotation, mass = float(attributes.get("rotation", 0.0)), float(attributes.get("mass", 1.0))
+    return Potential(name, potential.form, rotation, origin=(x, y), ends=ends, exit_names=names, mass=mass)

@@ -23,7 +23,7 @@ const coding = {
   words: [],
   leastCrossings: [0, 1, 2, 3, 11],
   undecided: 0,
-  withoutOrbit: [2, 3],
+  differences: Array.from({length: 14}, (_, code) => Array.from({length: 14}, (_, other) => 20 * code + other)),
   layers: ["passage"],
 }
 const window = {xLow: -1, xHigh: 1, ordinateLow: -2, ordinateHigh: 2}
@@ -48,10 +48,15 @@ test("a collision has the code of its end and its words", () => {
 })
 
 test("pixels are compared with those of the other view at the same place", () => {
-  const other = {fate: [Object.assign(Uint8Array.of(5, 5, 7, 3), {shape: [1, 4]})], x: [-1], y: [-2], dw: [8 / 3], dh: [4]}
+  const other = {fate: [Object.assign(Uint8Array.of(5, 6, 7), {shape: [1, 3]})], x: [-1 / 3], y: [-2], dw: [2], dh: [4]}
   const columns = pixelColumns(coding, view, pixels, like, other)
-  // Undecided here, the same channel, another channel.
-  assert.deepEqual([...new Uint8Array(columns.difference[0].buffer)], [0, 5, 6])
+  // The first pixel lies outside the other view, whose pixels are undecided there.
+  const {differences, undecided} = coding
+  const [one, two, three] = new Uint8Array(columns.fate[0].buffer)
+  assert.deepEqual(
+    [...new Uint8Array(columns.difference[0].buffer)],
+    [differences[one][undecided], differences[two][5], differences[three][6]],
+  )
 })
 
 const server = (/** @type {Record<string, any>} */ changes) => ({

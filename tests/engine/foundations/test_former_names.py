@@ -1,15 +1,13 @@
-"""Former names warn, and stand for the present ones; files of earlier versions are read."""
+"""Former names warn, and stand for the present ones."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import engine
 import escape_explorer
@@ -20,17 +18,15 @@ from engine import (
     Plane,
     SweepSpec,
     compute_map,
-    compute_sweep,
+    compute_separation,
     find_lyapunov_orbits,
     integrate_orbit,
-    open_result,
     results,
 )
 from engine.foundations.former_names import FORMER_NAMES
 from engine.sweeps.measures import QUICK_CURVES
 
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (12, 10), t_max=200.0, use_evidence=False)
-SWEEP = SweepSpec(CASES["III"], Plane.X_PX, (0.3, 0.4, 0.5), (12, 10), t_max=300.0, measures=("maps",))
 
 
 @pytest.mark.parametrize(
@@ -59,6 +55,14 @@ def test_the_former_functions_of_orbits_are_their_methods() -> None:
     with pytest.warns(DeprecationWarning, match="use LyapunovOrbit.find_multipliers"):
         multipliers = engine.find_multipliers(CASES["I"], exit_orbit)  # type: ignore[attr-defined]
     np.testing.assert_array_equal(multipliers, exit_orbit.find_multipliers())
+
+
+def test_the_former_name_of_the_time_of_a_separation_works() -> None:
+    states = (0.1, 0.0, 0.05, 0.6), (0.1 + 1e-9, 0.0, 0.05, 0.6)
+    with pytest.warns(DeprecationWarning, match="^t_end is deprecated: use t_max$") as caught:
+        former = compute_separation(CASES["I"], *states, t_end=5.0)  # type: ignore[call-arg]
+    assert caught[0].filename == __file__
+    np.testing.assert_array_equal(former.distance, compute_separation(CASES["I"], *states, t_max=5.0).distance)
 
 
 def test_the_former_functions_of_orbits_refuse_another_potential() -> None:
@@ -103,39 +107,3 @@ def test_former_attributes_are_those_of_the_present_names() -> None:
         with pytest.warns(DeprecationWarning, match=f"^{old} is deprecated") as caught:
             assert getattr(thing, old) is value
         assert caught[0].filename == __file__
-
-
-# Files.
-
-
-def as_earlier(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset as earlier versions wrote it."""
-    earlier = dataset.rename({"evidence": "certificate"} if "evidence" in dataset else {})
-    earlier.attrs = {"certify" if name == "use_evidence" else name: value for name, value in dataset.attrs.items()}
-    return earlier
-
-
-def test_the_map_of_an_earlier_version_is_read(tmp_path: Path) -> None:
-    wanted = compute_map(SPEC)
-    as_earlier(wanted.to_xarray()).to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
-    found = open_result(tmp_path / "map.nc")
-    assert found.spec == SPEC
-    np.testing.assert_array_equal(found.evidence, wanted.evidence)
-
-
-def test_the_sweep_of_an_earlier_version_is_read_and_measured(tmp_path: Path) -> None:
-    wanted = compute_sweep(SWEEP)
-    as_earlier(wanted.dataset).to_zarr(tmp_path / "sweep.zarr", consolidated=False, zarr_format=3)
-    xr.testing.assert_identical(open_result(tmp_path / "sweep.zarr").dataset.load(), wanted.dataset)
-
-
-def test_measures_take_the_dataset_of_an_earlier_version() -> None:
-    whole = compute_map(SPEC)
-    assert engine.compute_statistics(as_earlier(whole.to_xarray())).shares[0] == engine.compute_statistics(whole).shares[0]
-
-
-def test_the_store_of_an_earlier_version_is_not_continued(tmp_path: Path) -> None:
-    maps = xr.Dataset({"crossings": ("h", [3]), "done": ("h", [True])}, {"h": [0.3]})
-    maps.to_zarr(tmp_path / "store", consolidated=False, zarr_format=3)
-    with pytest.raises(ValueError, match=r"store=.*: is of an earlier version, .*; must be a new folder"):
-        compute_sweep(SWEEP, tmp_path / "store")

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,8 +15,11 @@ from engine import (
     Plane,
     Window,
     classify_orbits,
+    compute_basin_entropy,
+    compute_islands,
     compute_map,
     compute_statistics,
+    compute_wada_test,
     fit_decay_laws,
     sample_starts,
 )
@@ -127,6 +131,13 @@ def test_an_unfinished_map_counts_undecided_orbits(under_way: EscapeMap) -> None
     assert statistics.decided == statistics.starts - statistics.undecided
     assert statistics.escape_probabilities[0] == statistics.direct / statistics.decided
     assert compute_survival(statistics)[1][-1] == pytest.approx(statistics.bounded / statistics.decided)
+
+
+@pytest.mark.parametrize("measure", [compute_basin_entropy, compute_wada_test, compute_islands])
+def test_measures_of_basins_refuse_an_unfinished_map_and_its_file(under_way: EscapeMap, measure: Callable) -> None:
+    for unfinished in (under_way, under_way.to_xarray()):
+        with pytest.raises(ValueError, match=r"^(labels|starts): the map is not complete; must be a complete map"):
+            measure(unfinished)
 
 
 # Histograms of escape times.

@@ -21,6 +21,7 @@ from plots.pictures.image_columns import (
     difference_column,
     draw_over,
     map_columns,
+    pixel_coding,
 )
 from plots.pictures.palette import DIFFERENCES, OUTCOMES, PAPER
 from tests.disc import disc_map
@@ -116,3 +117,9 @@ def test_pixels_of_two_views_are_compared_by_their_fates(escape_map: EscapeMap) 
     expected = [class_of_difference(*pair) for pair in zip(escape_map.fate.ravel(), other.fate.ravel(), strict=True)]
     np.testing.assert_array_equal(codes.ravel(), expected)
     assert set(codes.ravel()) >= {len(OUTCOMES) + k for k in range(len(DIFFERENCES))}
+
+
+def test_other_programs_get_the_same_codes_of_differences(escape_map: EscapeMap) -> None:
+    one, other = map_columns(escape_map), map_columns(compute_map(replace(escape_map.spec, energy=0.2)))
+    table = np.array(pixel_coding(escape_map.spec.outcomes)["differences"])
+    np.testing.assert_array_equal(table[one["fate"][0], other["fate"][0]], difference_column(one, other)["difference"][0])

@@ -9,7 +9,7 @@
  * @property {string[]} words  of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class
  * @property {number} undecided  code of pixels that are not decided
- * @property {number[]} withoutOrbit  codes of pixels without an orbit
+ * @property {number[][]} differences  for each code of a pixel, the codes of its differences from pixels of all codes
  * @property {string[]} layers  columns of the layers, which only the server computes
  *
  * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
@@ -48,7 +48,7 @@ export function pixelColumns(coding, view, pixels, like, compared) {
     crossings: [new Floats(Float32Array.from(pixels.crossings).buffer, shape)],
     escape_time: [new Floats(pixels.time.buffer, shape)],
     ...Object.fromEntries(coding.layers.map(name => [name, [none]])),
-    difference: [compared ? new Bytes(differences(coding, view, fate, compared).buffer, shape) : none],
+    difference: [compared ? new Bytes(differencesFrom(coding, view, fate, compared).buffer, shape) : none],
     ends: [coding.words],
     x: [window.xLow],
     y: [window.ordinateLow],
@@ -60,17 +60,16 @@ export function pixelColumns(coding, view, pixels, like, compared) {
 }
 
 /**
- * Return codes of the pixels that have another outcome in another view, as `difference_column` on the server does.
+ * Return codes of the differences from the pixels at the same places in another view.
  *
  * @param {Coding} coding
  * @param {import("../engine/pixels.js").View} view
  * @param {Uint8Array} fate  codes of its pixels
  * @param {Columns} compared
  */
-function differences({first, undecided, withoutOrbit}, {window, columns, rows}, fate, compared) {
+function differencesFrom({undecided, differences}, {window, columns, rows}, fate, compared) {
   const [image, x, y, dw, dh] = ["fate", "x", "y", "dw", "dh"].map(name => compared[name][0])
   const [rowsThere, columnsThere] = image.shape
-  const lacks = (/** @type {number} */ code) => withoutOrbit.includes(code)
   const places = (/** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ count) =>
     Array.from({length: count}, (_, k) => low + ((high - low) * (k + 0.5)) / count)
   const across = places(window.xLow, window.xHigh, columns).map(place => Math.floor(((place - x) / dw) * columnsThere))
@@ -78,10 +77,7 @@ function differences({first, undecided, withoutOrbit}, {window, columns, rows}, 
   return fate.map((code, pixel) => {
     const [row, column] = [up[Math.floor(pixel / columns)], across[pixel % columns]]
     const isInside = row >= 0 && row < rowsThere && column >= 0 && column < columnsThere
-    const other = isInside ? image[row * columnsThere + column] : undecided
-    if (code === undecided || other === undecided) return undecided
-    if (lacks(code) && lacks(other)) return code
-    return first + (lacks(code) !== lacks(other) ? 2 : Number(code !== other))
+    return differences[code][isInside ? image[row * columnsThere + column] : undecided]
   })
 }
 

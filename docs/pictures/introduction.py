@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from drawing_panels import CASE, ENERGY, SIDE, STYLE, new_panels, window_shares
 from matplotlib.figure import Figure
 
+from docs.pictures.panels import CASE, ENERGY, SIDE, STYLE, new_panels, window_shares
 from engine import (
     CASES,
     Fate,

@@ -1,8 +1,7 @@
-"""Compute the thumbnails of the presets, app/static/gallery/<key>.png. Run: python docs/make_gallery.py [key …]"""
+"""Thumbnails of the presets, app/static/gallery/<key>.png."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from io import BytesIO
@@ -12,8 +11,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from app.state.presets import PRESETS, Preset
 from app.state.system_review import review_catalogue_entry
@@ -37,7 +34,8 @@ from plots.layers.table import LAYERS
 from plots.pictures.palette import LIGHT, PAPER, PATCH_EDGE
 from plots.printed.map_figure import draw_curve, draw_pixels
 
-FOLDER = Path(__file__).parents[1] / "app" / "static" / "gallery"
+STATIC = Path(__file__).parents[2] / "app" / "static"
+PICTURES = {f"gallery/{preset.key}": preset for preset in PRESETS}
 SIDE = 160
 # One point is a pixel.
 _DPI = 72
@@ -46,12 +44,10 @@ _MOST_COLOURS = 64
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.6, 2.2)
 
 
-def main(keys: list[str]) -> None:
-    """Write the thumbnails of these presets, or of all."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    for preset in PRESETS:
-        if not keys or preset.key in keys:
-            _reduce_colours(_draw_thumbnail(preset)).save(FOLDER / f"{preset.key}.png", optimize=True)
+def make(names: Sequence[str]) -> None:
+    """Draw these."""
+    for name in names:
+        _reduce_colours(_draw_thumbnail(PICTURES[name])).save(STATIC / f"{name}.png", optimize=True)
 
 
 def _draw_thumbnail(preset: Preset) -> Image.Image:
@@ -118,7 +114,3 @@ def _reduce_colours(picture: Image.Image) -> Image.Image:
     exact = Image.fromarray(codes.reshape(picture.height, picture.width).astype(np.uint8), "P")
     exact.putpalette(colours.tobytes(), "RGBA")
     return exact
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

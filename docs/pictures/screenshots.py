@@ -1,26 +1,27 @@
-"""Screenshots of the page for `docs/page.md`. Run: python docs/make_screenshots.py"""
+"""Screenshots of the page, docs/screenshots/<name>-<width>-<theme>.webp, and the animation of the README, docs/explorer.webp."""
 
 from __future__ import annotations
 
 import io
 import shutil
-import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from PIL import Image
 from playwright.sync_api import Browser, sync_playwright
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 
-FOLDER = Path(__file__).parent / "screenshots"
+DOCS = Path(__file__).parents[1]
 HEIGHTS = {1600: 900, 1280: 800, 420: 860}
 ORBITS = "?case=III&h=0.35&t_max=10000&orbits=0.1,0.2;-0.3,0.02"
+
+PLAYED = "?case=III&plane=x_y&h=0.28&t_max=1000"
+"""Case III just above its escape energy."""
+FRAMES, FRAME_MS, PLAYED_WIDTH = 30, 250, 900
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,20 @@ class Screenshot:
     link: str = ""
     act: Callable[[ExplorerPage], None] = lambda explorer: None
     whole: bool = False
+
+    def take(self, browser: Browser, address: str) -> None:
+        """Open the page, act, and save what it shows."""
+        viewport = {"width": self.width, "height": HEIGHTS[self.width]}
+        context = browser.new_context(viewport=viewport, color_scheme=self.theme, has_touch=self.width == min(HEIGHTS))
+        explorer = ExplorerPage(context.new_page(), address + self.link)
+        explorer.open()
+        self.act(explorer)
+        # Layers, analyses and thumbnails follow the map.
+        explorer.page.wait_for_timeout(4000)
+        png = explorer.page.screenshot(full_page=self.whole)
+        file = DOCS / "screenshots" / f"{self.name}-{self.width}-{self.theme}.webp"
+        Image.open(io.BytesIO(png)).convert("RGB").save(file, quality=70, method=6)
+        context.close()
 
 
 def hover_when_ready(explorer: ExplorerPage) -> None:
@@ -57,32 +72,32 @@ SCREENSHOTS = (
 )
 
 
-def take(browser: Browser, address: str, shot: Screenshot) -> None:
-    """Take one picture."""
-    viewport = {"width": shot.width, "height": HEIGHTS[shot.width]}
-    context = browser.new_context(viewport=viewport, color_scheme=shot.theme, has_touch=shot.width == min(HEIGHTS))
-    explorer = ExplorerPage(context.new_page())
-    explorer.page.goto(address + shot.link)
-    explorer.wait_until_complete()
-    shot.act(explorer)
-    # Layers, analyses and thumbnails follow the map.
-    explorer.page.wait_for_timeout(4000)
-    png = explorer.page.screenshot(full_page=shot.whole)
-    file = FOLDER / f"{shot.name}-{shot.width}-{shot.theme}.webp"
-    Image.open(io.BytesIO(png)).convert("RGB").save(file, quality=70, method=6)
-    context.close()
+def record(browser: Browser, address: str) -> None:
+    """Record the energy as it is played upward."""
+    explorer = ExplorerPage(browser.new_context(viewport={"width": 1600, "height": 800}).new_page(), address + PLAYED)
+    explorer.open()
+    explorer.press("▶ Play")
+    frames = []
+    for _ in range(FRAMES):
+        explorer.page.wait_for_timeout(FRAME_MS)
+        frame = Image.open(io.BytesIO(explorer.page.screenshot())).convert("RGB")
+        size = PLAYED_WIDTH, round(PLAYED_WIDTH * frame.height / frame.width)
+        frames.append(frame.resize(size, Image.Resampling.LANCZOS))
+    file = DOCS / "explorer.webp"
+    frames[0].save(file, save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0, quality=55, method=6)
 
 
-def main() -> None:
-    """Take all pictures."""
-    FOLDER.mkdir(exist_ok=True)
+PICTURES = {f"screenshots/{one.name}-{one.width}-{one.theme}": one.take for one in SCREENSHOTS} | {"explorer": record}
+
+
+def make(names: Sequence[str]) -> None:
+    """Serve the page and take these."""
+    if not names:
+        return
     with tempfile.TemporaryDirectory() as folder, served_app(Path(folder) / "log") as address, sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=shutil.which("chromium") or shutil.which("chromium-headless-shell"), args=["--no-sandbox"]
         )
-        for shot in SCREENSHOTS:
-            take(browser, address, shot)
-
-
-if __name__ == "__main__":
-    main()
+        for name in names:
+            PICTURES[name](browser, address)
+        browser.close()

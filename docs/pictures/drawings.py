@@ -1,8 +1,7 @@
-"""Draw the pictures of the documents, docs/drawings/<name>.webp. Run: python docs/make_drawings.py [name …]"""
+"""Drawings of the documents, docs/drawings/<name>.webp."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from io import BytesIO
@@ -12,12 +11,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-
-from drawing_panels import CASE, ENERGY, SIDE, STYLE, mark_section, new_panels
-from introduction_drawings import blob, energies, exits, maps, tubes, well
-from rotating_drawings import copenhagen, earth_moon, four_hills, star_cluster
-
+from docs.pictures.introduction import blob, energies, exits, maps, tubes, well
+from docs.pictures.panels import CASE, ENERGY, SIDE, STYLE, mark_section, new_panels
+from docs.pictures.rotating import copenhagen, earth_moon, four_hills, star_cluster
 from engine import (
     CASES,
     POTENTIALS,
@@ -64,19 +60,17 @@ from plots.printed.figure_style import FigureFormat
 from plots.printed.map_figure import draw_limits, draw_picture, draw_pixels, show_window
 from plots.printed.orbit_figure import draw_quantity
 
-FOLDER = Path(__file__).parent / "drawings"
+DOCS = Path(__file__).parents[1]
 _COLOURS = 64
 
 
-def main(names: Sequence[str]) -> None:
-    """Draw these pictures, or all."""
-    FOLDER.mkdir(exist_ok=True)
-    for draw in DRAWINGS:
-        name = draw.__name__.replace("_", "-")
-        if not names or name in names:
-            picture = Image.open(BytesIO(save_figure(draw(), FigureFormat.PNG, {}))).convert("RGB")
-            few = picture.quantize(_COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).convert("RGB")
-            few.save(FOLDER / f"{name}.webp", lossless=True, quality=100, method=6)
+def make(names: Sequence[str]) -> None:
+    """Draw these."""
+    for name in names:
+        draw = PICTURES[name]
+        picture = Image.open(BytesIO(save_figure(draw(), FigureFormat.PNG, {}))).convert("RGB")
+        few = picture.quantize(_COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).convert("RGB")
+        few.save(DOCS / f"{name}.webp", lossless=True, quality=100, method=6)
 
 
 def cases() -> Figure:
@@ -247,5 +241,4 @@ DRAWINGS: tuple[Callable[[], Figure], ...] = (
     escape_laws, slices, statistics, curves, flux, evidence, origins, earth_moon, copenhagen, star_cluster, four_hills,
 )  # fmt: skip
 
-if __name__ == "__main__":
-    main(sys.argv[1:])
+PICTURES = {f"drawings/{draw.__name__.replace('_', '-')}": draw for draw in DRAWINGS}

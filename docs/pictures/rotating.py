@@ -7,9 +7,9 @@ from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
-from drawing_panels import new_panels
 from matplotlib.figure import Figure
 
+from docs.pictures.panels import new_panels
 from engine import Fate, compute_map
 from plots.pictures.palette import PAPER
 from plots.printed.figure_axes import add_figure_legend, legend_handles, name_panel

@@ -1,0 +1,186 @@
+"""What V and the rotation of its frame determine without the ends of orbits: H, the Jacobi constant, and related motions."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from engine.expressions.nodes import Expression, Sum, X, Y, multiply
+from engine.foundations.result import Result
+from engine.foundations.validation import checked_finite, checked_number
+from engine.integrator.source.polynomial_recurrence import Terms
+from engine.systems.forms.form import Form, hessian_matrix
+from engine.systems.forms.polynomial_form import PolynomialForm
+from engine.systems.parameters import WELL_PARAMETERS, symbol_of
+
+_SQUARES = tuple(multiply(axis, axis) for axis in (X, Y))
+_MIXED = multiply(X, Y)
+
+MASS_RANGE = 1e-6, 1e6
+"""Legal masses."""
+
+
+class Motion(Result):
+    """The equations of motion of H = (px² + py²)/2m + V, in a frame that may rotate.
+
+    Attributes
+    ----------
+    name
+        Display name.
+    form
+        The function V.
+    rotation
+        Ω, dimensionless.
+    mass
+        m, dimensionless.
+    """
+
+    name: str
+    form: Form
+    rotation: float
+    mass: float
+
+    def _changed(self, **values: Any) -> Self:
+        """Return another motion, with other values of some attributes."""
+        raise NotImplementedError
+
+    @property
+    def terms(self) -> Terms:
+        """((i, j, c), …) of a polynomial; ValueError for other formulas."""
+        if not isinstance(self.form, PolynomialForm):
+            raise ValueError(f"{self.name} is not a polynomial")
+        return self.form.terms
+
+    def value(self, x: Any, y: Any) -> Any:
+        """Return V at (x, y); arrays broadcast."""
+        return self.form.value(x, y)
+
+    def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """Return (V_x, V_y) at (x, y); arrays broadcast."""
+        return self.form.gradient(x, y)
+
+    def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
+        """Return (V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
+        return self.form.hessian(x, y)
+
+    def hessian_matrix(self, x: float, y: float) -> np.ndarray:
+        """Return (2, 2) the Hessian matrix of V at one point."""
+        return hessian_matrix(self.form, x, y)
+
+    def energy(self, states: Any) -> Any:
+        """Return H of states (…, 4) = x, y, px, py."""
+        x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
+        return 0.5 * (px * px + py * py) / self.mass + self.value(x, y)
+
+    def jacobi_constant(self, energy: Any) -> Any:
+        """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays have the same shape.
+
+        C = −2H about the axis of the frame, which is the barycentre in the three-body problem, where U = Σ m/r + ½ (x² + y²). In
+        the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C, so that their values are
+        larger by this amount. For a mass other than 1, H is divided by it.
+
+        Raises
+        ------
+        ValueError
+            If the frame does not rotate, or an energy is not finite.
+
+        Examples
+        --------
+        >>> from escape_explorer import POTENTIALS
+        >>> hill, earth_moon = POTENTIALS["Hill"], POTENTIALS["Earth-Moon"]
+        >>> round(hill.jacobi_constant(hill.escape_energy), 5), round(earth_moon.jacobi_constant(earth_moon.escape_energy), 5)
+        (4.32675, 3.18834)
+        """
+        return self._squared_speed_of_origin - 2.0 * checked_finite("energy", energy) / self.mass
+
+    def jacobi_energy(self, constant: Any) -> Any:
+        """Return the energy H of Jacobi constants, see `jacobi_constant`."""
+        return 0.5 * self.mass * (self._squared_speed_of_origin - checked_finite("constant", constant))
+
+    @property
+    def _squared_speed_of_origin(self) -> float:
+        """The square of the speed Ω d with which the origin moves around the axis of the frame.
+
+        A uniform field in Φ = … + a x + b y − ½ m Ω² (x² + y²) is the centrifugal force about an axis at (a, b)/mΩ², as in the
+        three-body problem in the coordinates of one body. If there are other quadratic terms, the axis is at the origin.
+        """
+        if not self.rotation:
+            raise ValueError(f"potential={self.name}: its frame must rotate for a Jacobi constant")
+        definition: Any = self.form.definition
+        terms: dict[Expression, float] = dict(definition.terms) if isinstance(definition, Sum) else {}
+        is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * self.mass * self.rotation**2) for square in _SQUARES)
+        if not is_centrifugal or _MIXED in terms:
+            return 0.0
+        return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / (self.mass * self.rotation) ** 2
+
+    def in_rotating_frame(self, rotation: float) -> Self:
+        """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ m Ω² (x² + y²).
+
+        Parameters
+        ----------
+        rotation
+            Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
+
+        Raises
+        ------
+        ValueError
+            If the rate is out of range, or the frame of the potential already rotates.
+        """
+        if self.rotation:
+            raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
+        half = -0.5 * self.mass * checked_number("rotation", rotation) ** 2
+        return self._changed(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
+
+    @cached_property
+    def reversed_in_time(self) -> Self:
+        """Return the potential whose orbits are those of this one backward in time, with reversed velocities and Ω."""
+        return self._changed(rotation=-self.rotation) if self.rotation else self
+
+    def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Self:
+        """Return this potential with other frequencies of its well and another strength of its perturbation.
+
+        V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 consists of the terms of degree 3 and higher.
+        In general V1 is V without the constant, linear and quadratic terms of its expansion about the origin. The term with x² is
+        multiplied by ω1², that with y² by ω2² and that with x y by ω1 ω2, also if the quadratic terms are not ½ (x² + y²), so
+        that the default values give the potential itself. Constant and linear terms are unchanged.
+
+        Parameters
+        ----------
+        omega_1, omega_2
+            Frequencies along x and y, dimensionless, from 0.1 to 10.
+        epsilon
+            Strength of V1, dimensionless, from 0.01 to 100.
+
+        Raises
+        ------
+        ValueError
+            If a parameter is out of range.
+        """
+        chosen = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
+        for name, value in chosen.items():
+            low, high = WELL_PARAMETERS[name].range
+            if not low <= checked_number(name, value) <= high:
+                raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
+        is_changed = not omega_1 == omega_2 == epsilon == 1.0
+        if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
+            raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
+        changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
+        form = self.form.with_parameters(omega_1, omega_2, epsilon)
+        return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)
+
+    def check_at_rest(self, what: str) -> None:
+        """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""
+        if self.rotation:
+            raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")
+
+
+def checked_mass(mass: float) -> float:
+    """Return the mass as a float; ValueError if it is out of range."""
+    low, high = MASS_RANGE
+    number = checked_number("mass", mass)
+    if not low <= number <= high:
+        raise ValueError(f"mass={number!r}: must be from {low:g} to {high:g}")
+    return number
