@@ -9,8 +9,8 @@ import pytest
 
 from engine import CASES
 from engine.foundations.execution import Execution, SerialExecutor
+from engine.maps.analyses.uncertain_pairs import compute_uncertainty_exponent
 from engine.maps.spec import MapSpec
-from engine.maps.uncertain_pairs import compute_uncertainty_exponent
 from engine.measures.power_law_fit import UncertaintyExponent
 from engine.propagation.classification import classify_orbits
 from engine.slices.planes import Plane

@@ -12,9 +12,9 @@ from engine.exits.exit_rows import exit_curves
 from engine.foundations.execution import Execution, SerialExecutor
 from engine.integrator.kernels.dense_output import advance_states
 from engine.integrator.source.recurrence import TOLERANCE
-from engine.maps.reruns import LARGEST_DELAY, SECOND_TOLERANCE, SHIFT, shifted_starts
+from engine.maps.analyses.reruns import LARGEST_DELAY, SECOND_TOLERANCE, SHIFT, shifted_starts
+from engine.maps.analyses.trust import APART, Trust, TrustMap, compute_trust
 from engine.maps.spec import FINEST_PIXEL
-from engine.maps.trust import APART, Trust, TrustMap, compute_trust
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.slices.default_window import default_window
 from engine.systems.compiled import kernels_of

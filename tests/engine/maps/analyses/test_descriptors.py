@@ -29,7 +29,7 @@ from engine import (
 )
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.execution import SerialExecutor
-from engine.maps.descriptors import DEFAULT_DURATION
+from engine.maps.analyses.descriptors import DEFAULT_DURATION
 from engine.propagation.speed_integrals import integrate_speed
 from engine.slices.axes import Coordinate
 
