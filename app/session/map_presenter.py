@@ -12,8 +12,7 @@ from bokeh.document import Document
 from app.job_clients.error_messages import ZOOM_ENDS
 from app.job_clients.map_requests import MapRequests
 from app.runtime.process_state import process_state
-from app.session.context import SessionContext
-from app.session.history import History
+from app.session.context import History, SessionContext
 from app.state.navigation import DIVE_FACTOR, zoom
 from app.state.view import Analysis, Start
 from app.views.maps.map_plots import MapActions, MapsView, prepare_curves

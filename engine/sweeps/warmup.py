@@ -21,9 +21,9 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.integrator.bound_kernels import is_generated
 from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
 from engine.integrator.source.recurrence import code_digest
+from engine.maps.analyses.descriptors import compute_lagrangian_descriptor
+from engine.maps.analyses.regularity import compute_regularity
 from engine.maps.compute import compute_map
-from engine.maps.descriptors import compute_lagrangian_descriptor
-from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.propagation.section_points import find_section_points
