@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.systems.forms.point_searches import DescentError, NotIsolatedError, UndecidedError
+from engine.systems.forms.form import DescentError, NotIsolatedError, UndecidedError
 from engine.systems.potential import Potential
 from engine.systems.review.classified_points import (
     CriticalPoint,

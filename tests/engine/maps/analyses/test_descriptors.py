@@ -149,15 +149,6 @@ def test_long_integrals_are_cancelled_before_they_are_complete() -> None:
     assert np.isnan(found.descriptor).all()
 
 
-@pytest.mark.parametrize(
-    "wrong", [{"power": 0.0}, {"power": 1.5}, {"duration": 0.0}, {"duration": np.inf}, {"direction": "up"}], ids=str
-)
-def test_a_wrong_argument_is_named(wrong: dict) -> None:
-    (name,) = wrong
-    with pytest.raises(ValueError, match=f"^{name}="):
-        compute_lagrangian_descriptor(compute_map(SPECS["II"]), **wrong)
-
-
 def test_starts_without_an_orbit_have_no_descriptor() -> None:
     spec = MapSpec(CASES["II"], Plane.X_Y, 0.24, (20, 20), t_max=20.0)
     frame = compute_map(spec)

@@ -217,14 +217,6 @@ def test_cancelling_leaves_the_rest_not_tested() -> None:
     np.testing.assert_array_equal(partial.trust[decided], trust.trust[decided])
 
 
-def test_incomplete_map_raises() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    unfinished = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (9, 9)), cancel=cancel)
-    with pytest.raises(ValueError, match="escape_map: the map is not complete"):
-        compute_trust(unfinished)
-
-
 def test_shares_refer_to_the_interior_pixels() -> None:
     codes = np.array([[0, 0, 1, 1, 1], [2, 2, 2, 3, 4]], np.int8)
     trust = TrustMap(MapSpec(CASES["I"], Plane.X_PX, 0.2, (5, 2)), codes, complete=False)
