@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import gc
+import importlib
 import os
 import shutil
 import sys
@@ -20,6 +21,11 @@ from engine.integrator.jit.compiled_operations import compiled_operations
 # All processes of a run import the same modules. Without bytecode files each compiles them anew, which takes 9 s.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+
+# Of two processes that import the same libraries at the same time, each compiles them all: the second begins with the last ones.
+if os.environ.get("PYTEST_XDIST_WORKER") == "gw1":
+    for library in ("sympy", "matplotlib.pyplot", "distributed", "xarray", "scipy.stats"):
+        importlib.import_module(library)
 
 # Servers under test refuse no page, however busy the machine.
 os.environ.setdefault("ESCAPE_EXPLORER_CORES_PER_PAGE", "0.001")

@@ -41,7 +41,8 @@ class BrowserEngine(param.Parameterized):
         super().__init__()
         self._on_energy = on_energy
         self._numbers = count()
-        self._component = EngineComponent(address=ADDRESS, width=0, height=0, margin=0, styles={"position": "absolute"})
+        options = {"width": 0, "height": 0, "margin": 0, "styles": {"position": "absolute"}, "css_classes": ["engine"]}
+        self._component = EngineComponent(address=ADDRESS, **options)
         self._component.on_msg(lambda event: self._receive(event.data))
 
     def layout(self) -> EngineComponent:

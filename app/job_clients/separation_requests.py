@@ -1,4 +1,4 @@
-"""Separation of the chosen orbit and the orbit before it, requested once both are computed."""
+"""Separation of the chosen orbit and the one that was chosen before it, requested once both are computed."""
 
 from __future__ import annotations
 
@@ -29,10 +29,13 @@ class SeparationRequests:
     ) -> None:
         self._state, self._show = state, show
         self._compared: Pair | None = None
+        # The place of the orbit that was chosen before; the list may have become shorter since.
+        self._before = 0
+        state.param.watch(lambda event: setattr(self, "_before", event.old), "chosen")
         self._request = LatestRequest(jobs, lambda separation: show(self._compared, separation), notify, locked)
 
     def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Compare the chosen orbit with its neighbour."""
+        """Compare the chosen orbit with the one before."""
         self._compared = self._pair(orbits)
         job = self._job(*(orbits[place].orbit for place in self._compared)) if self._compared is not None else None
         if job is not None:
@@ -46,11 +49,13 @@ class SeparationRequests:
         self._request.cancel()
 
     def _pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
-        """Return the indices of the chosen orbit and of the one before it in ascending order; None unless both are computed."""
+        """Return the places of both orbits in ascending order; None unless both are computed."""
         chosen = self._state.chosen
-        pair = (chosen - 1, chosen) if chosen > 0 else (0, 1)
-        computed = pair[1] < len(orbits) and all(orbits[place].orbit is not None for place in pair)
-        return pair if computed else None
+        others = [place for place in (self._before, chosen - 1, chosen + 1) if place != chosen and 0 <= place < len(orbits)]
+        if not others or chosen >= len(orbits):
+            return None
+        pair = min(chosen, others[0]), max(chosen, others[0])
+        return pair if all(orbits[place].orbit is not None for place in pair) else None
 
     def _job(self, first: Orbit | None, second: Orbit | None) -> Job[Separation] | None:
         assert first is not None

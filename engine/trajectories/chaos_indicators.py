@@ -20,7 +20,7 @@ import numpy as np
 
 from engine.evidence.birkhoff_averages import REGULAR_DIGITS, TORUS_DIGITS, WINDOWS
 from engine.foundations.validation import checks_types
-from engine.foundations.wording import format_time
+from engine.foundations.wording import format_number, format_time
 from engine.propagation.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, describe_fate, is_chaotic, outcome_of
 from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.trajectory import Orbit
@@ -187,14 +187,14 @@ def _growth_limit(t_end: float, time_unit: float) -> float:
 def _judge_sali(orbit: Orbit, digits: _Digits) -> _Judged:
     value, t_end = float(orbit.sali[-1]), float(orbit.t[-1])
     if is_chaotic(value):
-        verdict, reason = Verdict.CHAOTIC, f"{CHAOS_THRESHOLD:g} or below: the two deviation vectors are aligned"
+        verdict, reason = Verdict.CHAOTIC, f"{format_number(CHAOS_THRESHOLD)} or below: the two deviation vectors are aligned"
     elif t_end < MIN_REGULAR_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
     elif value > REGULAR_SALI:
-        verdict, reason = _no_sign(t_end, f"above {REGULAR_SALI:g}: the deviation vectors stay apart, as on a torus")
+        verdict, reason = _no_sign(t_end, f"above {format_number(REGULAR_SALI)}: the deviation vectors stay apart, as on a torus")
     else:
-        verdict, reason = Verdict.UNDECIDED, f"above {CHAOS_THRESHOLD:g}, but less than on most tori"
-    return verdict, f"SALI is {value:.2g}, {reason}."
+        verdict, reason = Verdict.UNDECIDED, f"above {format_number(CHAOS_THRESHOLD)}, but less than on most tori"
+    return verdict, f"SALI is {format_number(value, 2)}, {reason}."
 
 
 def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judged:

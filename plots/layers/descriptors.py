@@ -8,7 +8,7 @@ import numpy as np
 
 from engine import EscapeMap, Fate, MapSpec, TimeDirection, compute_lagrangian_descriptor
 from engine.jobs.job import Job
-from engine.maps.descriptors import DEFAULT_DURATION, checked_choices
+from engine.maps.analyses.descriptors import DEFAULT_DURATION, checked_choices
 from engine.results import DescriptorMap
 from engine.sweeps.map_jobs import map_job
 from plots.layers.layer import Layer, Pixels, Setting, Settings
@@ -117,7 +117,7 @@ DESCRIPTORS = Layer(
         title="Lagrangian descriptor",
         short_title="Descriptor",
         help=(
-            "The integral of a power of the speed, |v|^p, along each orbit over a time τ. It changes rapidly where neighbours "
+            "The integral of a power of the speed, |v|ᵖ, along each orbit over a time τ. It changes rapidly where neighbours "
             "separate: forward in time on the stable manifolds of unstable periodic orbits, backward on the unstable ones, in "
             "both directions on both. The integral ends at the exit, so it is small where orbits leave at once."
         ),

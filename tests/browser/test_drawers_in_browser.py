@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 from playwright.sync_api import Locator, expect
 
 from app.state.presets import PRESETS, Preset
+from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 HEADINGS = {"Gallery": "Gallery", "Share": "Share and download", "Help": "Help"}
@@ -94,3 +97,20 @@ def test_escape_closes_a_drawer_from_a_box_in_it(explorer: ExplorerPage) -> None
     expect(box).to_be_focused()
     explorer.page.keyboard.press("Escape")
     expect(box).to_have_count(0)
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1024, 768), (768, 1024), (420, 850)])
+def test_the_energy_and_the_maps_stay_in_view_beside_a_drawer(
+    open_explorer: Callable[..., ExplorerPage], width: int, height: int
+) -> None:
+    explorer = open_explorer(width, height, QUICK, touch=width == 420)
+    explorer.press("Other …")
+    expect(explorer.page.locator(".formula-box textarea")).to_be_visible()
+    drawer = explorer.page.locator(".drawer").bounding_box()
+    slider = explorer.page.get_by_role("slider", name="Energy h", exact=True).bounding_box()
+    assert drawer is not None
+    assert slider is not None
+    assert slider["y"] + slider["height"] <= drawer["y"] or slider["x"] + slider["width"] <= drawer["x"]
+    centre = explorer.point("basins", 0.0, 0.0)
+    in_drawer = "([x, y]) => Boolean(document.elementFromPoint(x, y).closest('.drawer'))"
+    assert centre[1] < drawer["y"] or not explorer.page.evaluate(in_drawer, centre)

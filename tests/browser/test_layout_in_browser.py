@@ -203,6 +203,37 @@ def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, wid
     assert x_high - x_low == pytest.approx(high - low)
 
 
+def test_nothing_is_wider_than_a_phone_at_twice_the_size_of_letters(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(420, 850, QUICK, touch=True)
+    explorer.page.evaluate("document.documentElement.style.fontSize = '200%'")
+    expect(explorer.button("▶ Play")).to_be_in_viewport(ratio=1)
+    assert explorer.page.evaluate("document.documentElement.scrollWidth") == 420
+    assert explorer.page.evaluate(_COVERED) == [[]]
+
+
+def test_the_text_of_a_pixel_stands_beside_the_maps(wide: ExplorerPage) -> None:
+    wide.hover("basins", 0.1, 0.05)
+    tooltip = wide.page.locator(".bk-Tooltip").first
+    expect(tooltip.get_by_text("escapes through exit 1")).to_be_visible()
+    place = tooltip.bounding_box()
+    assert place is not None
+    assert place["x"] >= max(box[2] for box in boxes(wide))
+    wide.page.mouse.move(5, 5)
+
+
+def test_a_picture_has_a_frame_of_focus_for_keys_only(wide: ExplorerPage) -> None:
+    width = """() => {
+        let focused = document.activeElement
+        while (focused.shadowRoot?.activeElement) focused = focused.shadowRoot.activeElement
+        return getComputedStyle(focused).outlineWidth
+    }"""
+    wide.click("basins", 0.1, 0.05)
+    assert wide.page.evaluate(width) == "0px"
+    wide.page.keyboard.press("ArrowRight")
+    assert wide.page.evaluate(width) == "1px"
+    wide.return_home()
+
+
 def test_a_tap_on_a_phone_shows_where_and_when_the_orbit_ends_and_its_path(phone: ExplorerPage) -> None:
     phone.page.touchscreen.tap(*phone.point("basins", 0.1, 0.05))
     expect(phone.page.locator(".notice", has_text="Escaped through exit 1 at t").locator("polyline")).to_be_attached()

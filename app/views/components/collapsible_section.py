@@ -103,7 +103,7 @@ class Drawers(Stack):
         super().__init__({name: self._with_head(title, build) for name, (_, title, build) in drawers.items()}, "drawer")
         options = {label: name for name, (label, _, _) in drawers.items() if label}
         self.buttons = pn.widgets.CheckButtonGroup(
-            options=options, color="light", margin=0, css_classes=["solid", "drawer-buttons"]
+            options=options, color="light", margin=0, css_classes=self._classes(is_open=False)
         )
         self.buttons.param.watch(self._press, "value")
 
@@ -113,7 +113,7 @@ class Drawers(Stack):
         # All changes are sent in one message: a button pressed in between would be added to the button that is still marked.
         with pn.io.hold():
             super().show(name)
-            self.buttons.value = self._marked()
+            self.buttons.param.update(value=self._marked(), css_classes=self._classes(is_open=name is not None))
             if name != before:
                 self._on_show(name is not None)
 
@@ -125,6 +125,11 @@ class Drawers(Stack):
     def _marked(self) -> list[str]:
         """The buttons to mark: the button of the open drawer, if it has one."""
         return [name for name in self.buttons.options.values() if name == self.shown]
+
+    @staticmethod
+    def _classes(*, is_open: bool) -> list[str]:
+        """The classes of the buttons; in narrow windows the maps become smaller while a drawer is open."""
+        return ["solid", "drawer-buttons", *(["drawer-open"] if is_open else [])]
 
     def _with_head(self, title: str, build: Build) -> Build:
         def build_all() -> list[pn.viewable.Viewable]:

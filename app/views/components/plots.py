@@ -60,6 +60,7 @@ def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
     plot = square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
     for axis in (*plot.below, *plot.left):
         axis.major_label_text_font_size = "14px"
+        axis.ticker.desired_num_ticks = 5
     return plot
 
 

@@ -1,4 +1,4 @@
-"""The distance of two orbits: the chosen one and the one before it."""
+"""The distance of two orbits: the chosen one and the one that was chosen before it."""
 
 from __future__ import annotations
 

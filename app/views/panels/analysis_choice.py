@@ -90,7 +90,7 @@ class ComparisonSwitch:
         self._state, self._on = state, ["Compare with this view"]
         self.switch = Switches(label="Comparison", options=self._on, margin=(0, 10, 4, 10))
         self.view = TextPane("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
-        self.swap = button("Swap the views", swap, kind="light", margin=(2, 10))
+        self.swap = button("Swap the views", swap, kind="light", margin=0)
         state.follow(self._show, "compared")
         self.switch.param.watch(lambda event: self._take(bool(event.new), compare), "value")
 

@@ -78,6 +78,14 @@ function focused_deep() {
   return focused instanceof HTMLElement ? focused : null
 }
 
+/** Bokeh draws a frame around a picture in focus, also after a click; as elsewhere, only keys need one. @param {Event} event */
+function frame_focus(event) {
+  const [focused] = event.composedPath()
+  if (focused instanceof HTMLElement && focused.matches(".bk-events")) {
+    focused.style.outlineWidth = focused.matches(":focus-visible") ? "" : "0"
+  }
+}
+
 /** Focus the first control of the drawer, which may not be on the page yet. @param {number} tries */
 function focus_drawer(tries) {
   const drawer = find_deep(document, ".drawer")?.shadowRoot
@@ -104,6 +112,7 @@ export function render({model, el}) {
   }
   el.setAttribute("aria-hidden", "true")
   document.addEventListener("keydown", listen)
+  for (const name of ["focusin", "keydown"]) document.addEventListener(name, frame_focus)
   const tell_theme = () => model.send_msg({dark: document.documentElement.dataset.theme === "dark"})
   document.addEventListener("themechange", tell_theme)
   // Entries of the history have numbers: a new number is a new entry, the same one replaces the address.
@@ -149,6 +158,7 @@ export function render({model, el}) {
     window.removeEventListener("popstate", tell_entry)
     window.removeEventListener("resize", tell_if_narrow)
     document.removeEventListener("keydown", listen)
+    for (const name of ["focusin", "keydown"]) document.removeEventListener(name, frame_focus)
     document.removeEventListener("themechange", tell_theme)
   })
   if (document.documentElement.dataset.theme === "dark") tell_theme()

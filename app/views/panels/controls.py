@@ -90,11 +90,11 @@ class Controls:
         # Without this, Panel chooses the first option in place of None when it makes a widget.
         self.plane.value = self._plane()
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4))
-        self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10))
+        self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10), css_classes=["ticks"])
         self.energy = EnergySlider(
             self._take_energy, state.energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
         )
-        self.play = button(PLAY, actions.play, width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
+        self.play = button(PLAY, actions.play, min_width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
         self.exact_energy = NumberBox(
             self._take_energy,
             state.energy,
@@ -104,7 +104,7 @@ class Controls:
             css_classes=["half"],
             margin=(0, 0, 0, 10),
         )
-        self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width")
+        self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
         self.layers = LayerSwitches(state)
         self.comparison = ComparisonSwitch(state, actions.compare, actions.swap)
         layers = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)

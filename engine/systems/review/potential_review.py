@@ -162,7 +162,7 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     if np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.units.energy:
         order = np.argsort(energies, kind="stable")
         listed = ", ".join(f"{k + 1} above {energies[k]:.6g}" for k in order)
-        remarks.append(f"The channels open at different energies: {listed}.")
+        remarks.append(f"The exits open at different energies: {listed}.")
     other_saddles = sum(point.kind is PointKind.SADDLE and not point.channel for point in points)
     if other_saddles:
         remarks.append(f"Saddles that do not lead out of the well at the origin and are therefore not exits: {other_saddles}.")

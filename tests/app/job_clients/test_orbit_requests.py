@@ -167,6 +167,19 @@ def test_the_last_two_orbits_are_compared(session: Session) -> None:
     assert found.distance[0] == pytest.approx(np.hypot(1e-4, 0.0), rel=0.1)
 
 
+def test_the_chosen_orbit_is_compared_with_the_one_that_was_chosen_before(session: Session) -> None:
+    state, _, recorder, jobs = session
+    separation = SeparationRequests(state, jobs, recorder.show_separation, recorder.notify, unlocked)
+    for x in (0.1, 0.1001, 0.1002):
+        state.add_start((x, 0.05))
+    recorder.wait_for(lambda: recorder.all_computed(3))
+    state.chosen = 0
+    state.chosen = 2
+    separation.follow(recorder.orbits)
+    recorder.wait_for(lambda: bool(recorder.separations) and recorder.separations[-1][1] is not None)
+    assert recorder.separations[-1][0] == (0, 2)
+
+
 def test_all_bounded_orbits_get_their_digits_as_evidence(session: Session) -> None:
     state, requests, recorder, jobs = session
     state.param.update(energy=0.14, t_max=1e4)

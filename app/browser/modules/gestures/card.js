@@ -21,7 +21,7 @@ const CLICK_PIXELS = 12
 const ALONE = 0.55
 /** Height of the text, in pixels. */
 const [PADDING, TEXT_HEIGHT] = [6, 22]
-const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-surface,#fff);
+const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-page,#fff);
   border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
 
 /** Describe the outcome of an orbit. @type {(path: Pick<import("../engine/path.js").Path, "channel" | "time" | "crossings">, unit: number, labels: string[]) => string} */
@@ -203,7 +203,7 @@ export class Card {
     cover(this.#canvas, box)
     context.clearRect(0, 0, box.width, box.height)
     const style = getComputedStyle(this.#canvas)
-    const [ink, paper] = ["--ui-ink", "--ui-surface"].map(name => style.getPropertyValue(name))
+    const [ink, paper] = ["--ui-ink", "--ui-page"].map(name => style.getPropertyValue(name))
     const draw = (
       /** @type {{xs: ArrayLike<number>, ys: ArrayLike<number>}} */ line,
       /** @type {string} */ colour,

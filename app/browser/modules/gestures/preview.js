@@ -66,7 +66,7 @@ export class Preview {
     this.#ranges = () => [ranges.x_range, ranges.y_range]
     this.#outlines = new Outlines(name => findSource("basins", name))
     this.#well = new Outlines(name => findSource("well", name))
-    this.#status = new LocalWhenPresent(findStatus, ["text"])
+    this.#status = new LocalWhenPresent(findStatus, ["text", "css_classes"])
   }
 
   #find
@@ -211,7 +211,10 @@ export class Preview {
       this.#x.show({start: view.window.xLow, end: view.window.xHigh})
       this.#y.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
     }
-    this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
+    // Of a map that has been stopped, the server's words stay.
+    if (!this.#status.server.css_classes?.includes("stopped")) {
+      this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
+    }
     if (moving && this.#held) {
       this.#overlay.show({
         energy: view.energy,

@@ -25,7 +25,7 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
   const placeY = (/** @type {number} */ share) =>
     TOP + ((height - TOP - BOTTOM) * Math.log(Math.max(share, LEAST))) / Math.log(LEAST)
   context.fillStyle = context.strokeStyle = ink
-  context.font = "11px system-ui, sans-serif"
+  context.font = "12px system-ui, sans-serif"
   context.globalAlpha = 0.7
   for (const share of [1, 0.1, 0.01, LEAST]) {
     context.fillText(share === 1 ? "1" : String(share), 2, placeY(share) + 4)

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from app.views.maps.progress import CONTINUE, STOP, ProgressView
+from app.views.maps.progress import CONTINUE, STOP, STOPPED, ProgressView
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
 from plots.layers.table import LAYERS
 from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER
@@ -59,9 +59,11 @@ def test_the_button_stops_and_continues() -> None:
     view.button.clicks += 1
     view.stop()
     assert (view.button.label, view.button.styles["visibility"]) == (CONTINUE, "visible")
+    assert STOPPED in view.text.css_classes
     view.button.clicks += 1
     assert calls == ["cancel", "resume"]
     view.start()
+    assert STOPPED not in view.text.css_classes
     view.fail()
     assert (re.sub(r"<[^>]*>", "", view.text.object), view.button.styles["visibility"], view.bar.styles["opacity"]) == (
         "",

@@ -75,7 +75,7 @@ class DescriptorMap(PixelAnalysis):
         if not known.size:
             return f"No start has a Lagrangian descriptor{so_far}."
         ways = {TimeDirection.BOTH: "−τ to τ", TimeDirection.FORWARD: "0 to τ", TimeDirection.BACKWARD: "−τ to 0"}
-        integral = f"The Lagrangian descriptor ∫ |v|^p dt, p = {self.power:g}, from {ways[self.direction]}, τ = {self.duration:g}"
+        integral = f"The Lagrangian descriptor ∫ |v|ᵖ dt, p = {self.power:g}, from {ways[self.direction]}, τ = {self.duration:g}"
         return f"{integral}, at most up to an exit, lies between {known.min():.4g} and {known.max():.4g}{so_far}."
 
 
