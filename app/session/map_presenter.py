@@ -20,7 +20,6 @@ from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.progress import ProgressView
 from engine import EscapeMap, Fate, Window
 from engine.propagation.fates import describe_fate
-from engine.sweeps.warmup import seconds_until_ready_for_maps
 from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 
@@ -43,7 +42,6 @@ class MapPresenter:
         state, locked = context.state, context.locked
         self._state, self._results, self._notice = state, context.results, context.notice
         self._document, self._history = document, history
-        self._countdown: Any = None
         self._requested_at: float | None = None
         # The start that the last click added; None if it was in the list before.
         self._just_added: Start | None = None
@@ -163,20 +161,9 @@ class MapPresenter:
             self.view.grid.mark_stale(True)
         self._requested_at = time.monotonic()
         self.progress.start()
-        self._count_down(compiling)
-        self._notice.clear()
-
-    def _count_down(self, compiling: bool) -> None:
-        """Show every second how long the compilation will take, while it runs."""
-        if self._countdown is not None:
-            self._document.remove_periodic_callback(self._countdown)
-            self._countdown = None
         if compiling:
-            self._countdown = self._document.add_periodic_callback(self._show_compiling, 1000)
-            self._show_compiling()
-
-    def _show_compiling(self) -> None:
-        self.progress.show_compiling(seconds_until_ready_for_maps(self._state.potential))
+            self.progress.show_compiling()
+        self._notice.clear()
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame of a map."""
@@ -192,12 +179,10 @@ class MapPresenter:
 
     def map_stopped(self) -> None:
         """The map is cancelled."""
-        self._count_down(False)
         self.progress.stop()
 
     def map_failed(self, sentence: str) -> None:
         """Show why there is no map; the last pictures stay and are greyed out."""
-        self._count_down(False)
         self.progress.fail()
         self.view.grid.mark_stale(True)
         self._notice.warn(sentence)
