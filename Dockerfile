@@ -34,7 +34,7 @@ WORKDIR /srv/escape-explorer
 USER 10001
 # Compile the kernels, as the server does when it starts. Machine code is specific to a processor type; on another one the
 # kernels are compiled again into the volume, which is initialized with a copy of this folder.
-RUN python -c "from app.server.warmup import warm_up; warm_up()"
+RUN python -c "from app.server.lifecycle.warmup import warm_up; warm_up()"
 VOLUME /var/cache/escape-explorer
 EXPOSE 5006
 HEALTHCHECK --start-period=3m \

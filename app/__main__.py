@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from app.runtime.settings import read_settings
-from app.server.start_checks import INVALID_SETTING
+from app.server.lifecycle.start_checks import INVALID_SETTING
 
 SESSION_SECONDS = 60
 """Lifetime of a session without a connection; a broken connection can be resumed within it."""

@@ -27,12 +27,12 @@ from app.runtime.memory_allocation import reduce_fragmentation
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
 from app.server.admission import admit
+from app.server.lifecycle.log_format import set_up_logs
+from app.server.lifecycle.shutdown import finish_shutdown, stop_on_signals
+from app.server.lifecycle.start_checks import SEVERAL_PROCESSES, asks_for_several_processes, refuse_to_start
+from app.server.lifecycle.warmup import start_warmup
 from app.server.limited_http_server import LimitedHTTPServer
-from app.server.log_format import set_up_logs
 from app.server.routes import install_handlers
-from app.server.shutdown import finish_shutdown, stop_on_signals
-from app.server.start_checks import SEVERAL_PROCESSES, asks_for_several_processes, refuse_to_start
-from app.server.warmup import start_warmup
 from app.state.system_review import review_catalogue_entry
 from engine import CASES
 from engine.integrator.jit.disk_cache import compile_in

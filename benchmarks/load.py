@@ -27,6 +27,7 @@ from pathlib import Path
 
 import psutil
 
+from app.runtime.capacity import WINDOW_SECONDS
 from app.runtime.settings import variable_name
 from benchmarks.simulated_sessions import Record, SimulatedSession
 from engine.foundations.cache_files import CACHE_VARIABLE
@@ -136,9 +137,10 @@ class Server:
 
 @contextmanager
 def busy_cores(count: int) -> Iterator[None]:
-    """Run this many other programs, each of which occupies a core."""
+    """Run this many other programs, each of which occupies a core, for as long as servers need to measure them."""
     programs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
     try:
+        time.sleep(WINDOW_SECONDS if programs else 0.0)
         yield
     finally:
         for program in programs:

@@ -2,10 +2,10 @@
 
 import typing
 
-from engine.maps.descriptors import DescriptorMap as DescriptorMap
+from engine.maps.analyses.descriptors import DescriptorMap as DescriptorMap
+from engine.maps.analyses.regularity import RegularityMap as RegularityMap
+from engine.maps.analyses.trust import TrustMap as TrustMap
 from engine.maps.origin_fates import OriginFateMap as OriginFateMap
-from engine.maps.regularity import RegularityMap as RegularityMap
-from engine.maps.trust import TrustMap as TrustMap
 from engine.measures.basin_entropy import BasinEntropy as BasinEntropy
 from engine.measures.chaotic_share import ChaoticShare as ChaoticShare
 from engine.measures.decay_laws import DecayLaws as DecayLaws

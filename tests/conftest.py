@@ -6,20 +6,28 @@
 from __future__ import annotations
 
 import gc
+import importlib
 import os
 import shutil
 import sys
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from hypothesis import settings
 from playwright.sync_api import Browser, Playwright, expect, sync_playwright
+from xdist.scheduler import LoadScopeScheduling
 
 from engine.integrator.jit.compiled_operations import compiled_operations
 
 # All processes of a run import the same modules. Without bytecode files each compiles them anew, which takes 9 s.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+
+# Of two processes that import the same libraries at the same time, each compiles them all: the second begins with the last ones.
+if os.environ.get("PYTEST_XDIST_WORKER") == "gw1":
+    for library in ("sympy", "matplotlib.pyplot", "distributed", "xarray", "scipy.stats"):
+        importlib.import_module(library)
 
 # Servers under test refuse no page, however busy the machine.
 os.environ.setdefault("ESCAPE_EXPLORER_CORES_PER_PAGE", "0.001")
@@ -31,6 +39,18 @@ BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-c
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=15, database=None)
 settings.register_profile("random", derandomize=False, deadline=None, max_examples=60, database=None, print_blob=True)
 settings.load_profile("fixed")
+
+
+class OneBrowser(LoadScopeScheduling):
+    """The tests of a file run in one process, and so do all that open the page in Chromium: they share a server."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        return "tests/browser" if nodeid.startswith("tests/browser/") else nodeid.partition("::")[0]
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> OneBrowser:
+    """Schedule by `OneBrowser`."""
+    return OneBrowser(config, log)
 
 
 def pytest_collection_finish() -> None:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from statistics import fmean
 from typing import Any, NamedTuple
 
 import psutil
@@ -17,7 +18,7 @@ import psutil
 from app.runtime.fair_share import FairShare
 from engine.foundations.execution import count_cores
 
-FULL = 0.8
+FULL = 0.85
 """Largest share of the processors, and of the event loop, for all pages together. Above it, new pages are refused."""
 
 CROWDED = 0.5
@@ -29,6 +30,9 @@ OF_ONE_VISITOR = 0.5
 MOST_CORES, LEAST_CORES = 1.0, 0.2
 """Processors that a process uses: at most one, because its threads share the interpreter lock, and at least the
 part that the system gives it when other programs keep all processors busy."""
+
+LEAST_SPARE = 0.1
+"""With fewer spare processors, other programs may use less than they want, because this one leaves no more."""
 
 WINDOW_SECONDS = 20
 """The use of the processors is averaged over this time."""
@@ -56,6 +60,14 @@ class ProcessorTimes(NamedTuple):
     """Time of this process, and of the processes that compute for it."""
     loop: float
     """Time of its event loop."""
+
+
+class _Use(NamedTuple):
+    """What was used between two measurements: its duration, and the processors of other programs and of the event loop."""
+
+    seconds: float
+    others: float
+    loop: float
 
 
 class Capacity:
@@ -92,20 +104,20 @@ class Capacity:
     ) -> None:
         self._cores_per_page, self._processes, self._measure, self._clock = cores_per_page, processes, measure, clock
         self._all_cores = count_cores() if cores is None else cores
-        self._times = deque([measure()], WINDOW_SECONDS + 1)
+        self._times, self._uses = measure(), deque[_Use](maxlen=WINDOW_SECONDS)
         self.cores, self.loop = self._share_of(0.0), 0.0
 
     def update(self) -> bool:
         """Measure if the last measurement was at least a second ago; return whether this was the case."""
-        if self._clock() < self._times[-1].now + 1.0:
+        if self._clock() < self._times.now + 1.0:
             return False
-        times = self._measure()
-        self._times.append(times)
-        first = self._times[0]
-        seconds = times.now - first.now
-        others = times.all_programs - first.all_programs - self._processes * (times.own - first.own)
-        self.cores = self._share_of(max(others, 0.0) / seconds)
-        self.loop = (times.loop - first.loop) / seconds
+        before, self._times = self._times, self._measure()
+        now, programs, own, loop = (new - old for new, old in zip(self._times, before, strict=True))
+        others = (programs - self._processes * own) / now
+        if self._all_cores - programs / now < LEAST_SPARE:
+            others = max(others, self._mean_others())
+        self._uses.append(_Use(now, others, loop / now))
+        self.cores, self.loop = self._share_of(max(self._mean_others(), 0.0)), self._mean(use.loop for use in self._uses)
         return True
 
     def is_crowded(self, pages: Mapping[str, float]) -> bool:
@@ -121,6 +133,12 @@ class Capacity:
     def taken(self, pages: Mapping[str, float]) -> float:
         """Share of the processors that this number of pages may use, or the busy share of the event loop if that is larger."""
         return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop)
+
+    def _mean_others(self) -> float:
+        return self._mean(use.others for use in self._uses)
+
+    def _mean(self, values: Iterable[float]) -> float:
+        return fmean(values, [use.seconds for use in self._uses]) if self._uses else 0.0
 
     def _share_of(self, others: float) -> float:
         return min(max((self._all_cores - others) / self._processes, LEAST_CORES), MOST_CORES)

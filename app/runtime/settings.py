@@ -113,7 +113,7 @@ class Settings:
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
     processes: int = _setting(1, _integer(1, 1024))
-    cores_per_page: float = _setting(0.025, _number(0.001, 1.0))
+    cores_per_page: float = _setting(0.03, _number(0.001, 1.0))
     frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)
     bokeh_patches: bool = _setting(True, _YES_OR_NO)
 

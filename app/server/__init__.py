@@ -1,1 +1,1 @@
-"""Parts of a public server: routes, endpoints, admission, tokens of sessions, logs, security headers, warm-up and shutdown."""
+"""Parts of a public server: routes, endpoints, admission, tokens of sessions, messages and security headers."""

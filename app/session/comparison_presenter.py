@@ -11,7 +11,7 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.system_review import review_job
 from app.state.view import View
-from app.views.components.numbers import percent
+from app.views.components.texts import percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
 from engine.foundations.wording import format_whole

@@ -23,22 +23,20 @@ from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
 from app.session.preview_presenter import PreviewPresenter
 from app.session.watch_presenter import WatchPresenter
-from app.state.glossary import glossary_list
 from app.state.navigation import window_moves
 from app.state.presets import Preset
 from app.state.view import Analysis
 from app.views.analysis.statistics import StatisticsView
-from app.views.components.collapsible_section import Drawers, Fold, Stack
+from app.views.components.collapsible_section import Drawers, Stack
 from app.views.components.notice import Notice
-from app.views.components.texts import TextPane
 from app.views.panels.accessible_table import AccessibleTable
 from app.views.panels.analysis_choice import AnalysisTabs
-from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents, key_legend
+from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.embedding import embed_code, page_address
-from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
+from app.views.panels.help import help_panes
 from app.views.panels.slice_panel import SlicePanel
 from engine import System
 from engine.jobs.client import JobClient
@@ -99,7 +97,7 @@ class Explorer:
                 "slice": ("", "Slice", lambda: SlicePanel(state).build()),
                 "gallery": ("Gallery", "Gallery", self.gallery.build),
                 "share": ("Share", "Share and download", self.downloads.build),
-                "help": ("Help", "Help", self._build_help),
+                "help": ("Help", "Help", lambda: [*help_panes(state), *self.accessible_table.fold.parts()]),
             },
             self.browser.focus_drawer,
         )
@@ -163,14 +161,6 @@ class Explorer:
         self._by_touch = True
         for part in (self.maps, self.controls, self.orbits):
             part.begin_touch()
-
-    def _build_help(self) -> list[pn.viewable.Viewable]:
-        return [
-            TextPane(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
-            equations_pane(self.state),
-            *Fold("Terms", lambda: [TextPane(glossary_list(), sizing_mode="stretch_width", margin=(0, 10))]).parts(),
-            *self.accessible_table.fold.parts(),
-        ]
 
     def _enlarge(self, name: str) -> None:
         """Show a picture large, or all pictures side by side if it is large already."""

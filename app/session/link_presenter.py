@@ -10,7 +10,7 @@ from urllib.parse import parse_qsl
 import panel as pn
 from bokeh.document import Document
 
-from app.session.history import History
+from app.session.context import History
 from app.session.potential_presenter import PotentialPresenter
 from app.state.permalink import (
     EMBED,

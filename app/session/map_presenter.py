@@ -12,8 +12,7 @@ from bokeh.document import Document
 from app.job_clients.error_messages import ZOOM_ENDS
 from app.job_clients.map_requests import MapRequests
 from app.runtime.process_state import process_state
-from app.session.context import SessionContext
-from app.session.history import History
+from app.session.context import History, SessionContext
 from app.state.navigation import DIVE_FACTOR, zoom
 from app.state.view import Analysis, Start
 from app.views.maps.map_plots import MapActions, MapsView, prepare_curves
@@ -21,7 +20,6 @@ from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.progress import ProgressView
 from engine import EscapeMap, Fate, Window
 from engine.propagation.fates import describe_fate
-from engine.sweeps.warmup import seconds_until_ready_for_maps
 from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 
@@ -44,7 +42,6 @@ class MapPresenter:
         state, locked = context.state, context.locked
         self._state, self._results, self._notice = state, context.results, context.notice
         self._document, self._history = document, history
-        self._countdown: Any = None
         self._requested_at: float | None = None
         # The start that the last click added; None if it was in the list before.
         self._just_added: Start | None = None
@@ -164,20 +161,9 @@ class MapPresenter:
             self.view.grid.mark_stale(True)
         self._requested_at = time.monotonic()
         self.progress.start()
-        self._count_down(compiling)
-        self._notice.clear()
-
-    def _count_down(self, compiling: bool) -> None:
-        """Show every second how long the compilation will take, while it runs."""
-        if self._countdown is not None:
-            self._document.remove_periodic_callback(self._countdown)
-            self._countdown = None
         if compiling:
-            self._countdown = self._document.add_periodic_callback(self._show_compiling, 1000)
-            self._show_compiling()
-
-    def _show_compiling(self) -> None:
-        self.progress.show_compiling(seconds_until_ready_for_maps(self._state.potential))
+            self.progress.show_compiling()
+        self._notice.clear()
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame of a map."""
@@ -193,12 +179,10 @@ class MapPresenter:
 
     def map_stopped(self) -> None:
         """The map is cancelled."""
-        self._count_down(False)
         self.progress.stop()
 
     def map_failed(self, sentence: str) -> None:
         """Show why there is no map; the last pictures stay and are greyed out."""
-        self._count_down(False)
         self.progress.fail()
         self.view.grid.mark_stale(True)
         self._notice.warn(sentence)

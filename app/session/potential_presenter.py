@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.job_clients.latest_request import LatestRequest
-from app.session.context import SessionContext
-from app.session.history import History
+from app.session.context import History, SessionContext
 from app.state.system_review import is_known, review_catalogue_entry, review_job
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System

@@ -78,16 +78,9 @@ def is_generated(definition: Definition, setting: Setting) -> bool:
 
 
 class GeneratedKernel:
-    """A generated function, compiled at its first use for the types in `SIGNATURES` only.
+    """A generated function, compiled at its first use for the types in `SIGNATURES` only."""
 
-    Attributes
-    ----------
-    operations
-        Number of operations of its program; the time to compile it is proportional to this number.
-    """
-
-    def __init__(self, dispatcher: Any, operations: int) -> None:
-        self.operations = operations
+    def __init__(self, dispatcher: Any) -> None:
         self._dispatcher = dispatcher
         self._signature = SIGNATURES[dispatcher.__name__]
         self._address: int | None = None
@@ -181,7 +174,4 @@ def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]
     vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
     setattr(module, DEFINE, partial(_define_module, code))
     exec(compile(source, f"<{name}>", "exec"), vars(module))
-    return name, {
-        function.name: GeneratedKernel(getattr(module, function.name), len(function.program.operations))
-        for function in code.functions
-    }
+    return name, {function.name: GeneratedKernel(getattr(module, function.name)) for function in code.functions}

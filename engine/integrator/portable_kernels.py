@@ -22,9 +22,9 @@ from engine.integrator.jit.disk_cache import program_digest
 from engine.integrator.jit.kernel_module import SETTINGS, lower_kernels
 from engine.integrator.jit.webassembly import PAIR
 from engine.integrator.kernels import (
+    dense_output,
     ensemble,
     exit_curves,
-    generated_calls,
     interior,
     pixels,
     propagate,
@@ -56,8 +56,8 @@ KERNELS: dict[Any, Signature] = {
     interior.find_outside: _void(_address, _f1, _number, *_points),
     exit_curves.interpolate_exit: _void(_f1, _f2, _number, _count, _f1, _count, _f3, _f2),
     exit_curves.exit_points: _void(_f1, _f1, _f2),
-    generated_calls.compute_series: _void(_address, _f1, _f2, _f3),
-    generated_calls.sample_steps: _void(_address, _f1, _f2, _count, _number, _f2),
+    dense_output.compute_series: _void(_address, _f1, _f2, _f3),
+    dense_output.sample_steps: _void(_address, _f1, _f2, _count, _number, _f2),
     slice_starts.find_starts: _void(*_potential, *_motion, _number, _f2, _f2, _f1),
     slice_starts.find_required_energies: _void(*_potential, *_motion, _f1, _f2),
     slice_starts.interpolate_window: _flag(_f1, _f2, _number, _f1),

@@ -15,11 +15,10 @@ from typing import Any
 from engine.foundations.execution import Execution, count_workers, create_thread_pool
 from engine.integrator.jit.compiled_operations import charged_to
 from engine.jobs.cache import ABSENT, ResultCache
-from engine.jobs.clock import Clock
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_priority import MapPriority
 from engine.jobs.orbit_semaphore import OrbitSemaphore
-from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
+from engine.jobs.scheduler import Clock, FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from engine.jobs.clock import Clock
-from engine.jobs.scheduler import Priority
+from engine.jobs.scheduler import Clock, Priority
 
 REST_SECONDS = 1.0
 """Time after the request of a map within which it is often replaced, because its user is still searching."""

@@ -10,14 +10,23 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextvars import copy_context
 from enum import IntEnum
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 from weakref import WeakSet
 
 from engine.foundations.execution import count_workers, default_executor
-from engine.jobs.clock import Clock
 
 # While background calls are paused, a long call of duration d is followed by a pause of 9 d: a duty cycle of 10 %.
 _PAUSE_PER_LONG_CALL = 9.0
+
+
+class Clock(Protocol):
+    """The functions of the module `time` that jobs use; tests replace them by a clock that is set by hand."""
+
+    def monotonic(self) -> float:
+        """Return seconds since a fixed moment."""
+
+    def thread_time(self) -> float:
+        """Return the processor time of the calling thread, in seconds."""
 
 
 class Priority(IntEnum):

@@ -13,13 +13,13 @@ import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
+from engine.maps.analyses.reruns import SAME_STARTS
+from engine.maps.analyses.trust import TrustTest, find_unlike_neighbours
 from engine.maps.parameter_map import LineStack
-from engine.maps.reruns import SAME_STARTS
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap, collect_map, empty_arrays
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage, run_stages, run_to_frame
-from engine.maps.trust import TrustTest, find_unlike_neighbours
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks and cannot be resumed."""

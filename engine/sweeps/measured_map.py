@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
+from engine.maps.analyses.regularity import compute_regularity
 from engine.maps.pixels import MirrorPixels
-from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics

@@ -10,8 +10,8 @@ from types import MappingProxyType
 import numpy as np
 
 from engine.foundations.wording import describe_codes
+from engine.maps.analyses.uncertain_pairs import WORK, compute_uncertainty_exponent
 from engine.maps.result import EscapeMap
-from engine.maps.uncertain_pairs import WORK, compute_uncertainty_exponent
 from engine.measures.basin_entropy import compute_basin_entropy
 from engine.measures.chaotic_share import ChaoticShare, compute_chaotic_share
 from engine.measures.decay_law_fits import fit_decay_laws

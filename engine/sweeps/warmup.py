@@ -8,7 +8,6 @@ waits while kernels of maps are compiled.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from types import ModuleType
 
@@ -21,9 +20,9 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.integrator.bound_kernels import is_generated
 from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
 from engine.integrator.source.recurrence import code_digest
+from engine.maps.analyses.descriptors import compute_lagrangian_descriptor
+from engine.maps.analyses.regularity import compute_regularity
 from engine.maps.compute import compute_map
-from engine.maps.descriptors import compute_lagrangian_descriptor
-from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.propagation.section_points import find_section_points
@@ -39,73 +38,38 @@ _T_MAX = 10.0
 # The calling thread compiles, because the threads of pools have low priority.
 _EXECUTION = DEFAULT_EXECUTION.in_this_thread()
 
-# Kernels of the first frame of a map and of its Lyapunov orbits, with the seconds of their compilation on one core of an AMD EPYC
-# (Zen 4): those of each potential per operation, and those of all potentials together. "propagate" includes the kernel that finds
-# starts outside.
-_SECONDS_PER_OPERATION = {"step": 3.0e-4, "jets": 2.5e-4, "potential_value": 2.5e-3}
-_SECONDS = {"shoot": 0.8, "propagate": 3.2}
-# Estimate for an unknown number of operations, which is the time for a potential of eight terms.
-_SECONDS_OF_NEW_POWERS = 4.0
-_MAP_KERNELS = (*_SECONDS_PER_OPERATION, *_SECONDS)
+_MAP_KERNELS = ("step", "jets", "potential_value", "shoot", "propagate")
+"""Kernels of the first frame of a map and of its Lyapunov orbits."""
 
 
 class _Compilations:
-    """The running compilations of kernels for maps.
-
-    Attributes
-    ----------
-    slowness
-        Measured time of the last compilation divided by the expected time; at least 1, because kernels from the cache take no
-        time.
-    """
+    """The running compilations of kernels for maps."""
 
     def __init__(self) -> None:
-        self.slowness = 1.0
-        self._ends: dict[Potential, float] = {}
+        self._running = 0
         self._changed = threading.Condition()
 
-    def run(self, potential: Potential, calls: tuple[Callable[[], object], ...]) -> None:
+    def run(self, *calls: Callable[[], object]) -> None:
         """Make the calls that compile the kernels for maps; compilation in the background waits meanwhile."""
-        # The estimates need the number of operations.
-        kernels_of(potential.in_well_units)
+        self._count(1)
         try:
             for call in calls:
-                expected, begin = _expected_seconds(potential), time.monotonic()
-                with self._changed:
-                    self._ends[potential] = begin + self.slowness * expected
                 call()
-                compiled = expected - _expected_seconds(potential)
-                if compiled > 0.0:
-                    self.slowness = max(1.0, (time.monotonic() - begin) / compiled)
         finally:
-            with self._changed:
-                self._ends.pop(potential, None)
-                self._changed.notify_all()
+            self._count(-1)
 
-    def seconds_left(self, potential: Potential) -> float:
-        """Estimate the time left from the remaining kernels and from the time since the compilation began."""
-        left, end = self.slowness * _expected_seconds(potential), self._ends.get(potential)
-        return left if end is None else min(left, max(end - time.monotonic(), 0.0))
+    def _count(self, change: int) -> None:
+        with self._changed:
+            self._running += change
+            self._changed.notify_all()
 
     def wait(self) -> None:
         """Wait until no compilation for maps is running."""
         with self._changed:
-            self._changed.wait_for(lambda: not self._ends)
+            self._changed.wait_for(lambda: not self._running)
 
 
 _for_maps = _Compilations()
-
-
-def _expected_seconds(potential: Potential) -> float:
-    """Return the time to compile those kernels of maps that are not compiled yet."""
-    kernels = _known_kernels(potential)
-    if kernels is None:
-        return _SECONDS_OF_NEW_POWERS
-    left = {name: getattr(kernels, name) for name in _MAP_KERNELS if not getattr(kernels, name).signatures}
-    return sum(
-        _SECONDS[name] if name in _SECONDS else _SECONDS_PER_OPERATION[name] * float(kernel.function.operations)
-        for name, kernel in left.items()
-    )
 
 
 def _known_kernels(potential: Potential) -> ModuleType | None:
@@ -125,23 +89,6 @@ def is_ready_for_maps(potential: Potential) -> bool:
     return kernels is not None and all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
 
-def seconds_until_ready_for_maps(potential: Potential) -> float:
-    """Estimate the time until the kernels of maps are compiled.
-
-    Parameters
-    ----------
-    potential
-        Any `Potential` with an exit.
-
-    Returns
-    -------
-    Seconds, estimated from the operations of the remaining kernels, once their number is known, and from the speed of earlier
-    compilations in this process; 0 if they are compiled, or take longer than expected. Kernels in the cache take only a fraction
-    of a second.
-    """
-    return _for_maps.seconds_left(potential)
-
-
 def prepare_for_maps(potential: Potential) -> None:
     """Compile the kernels for the first frame of a map, or load them from the cache.
 
@@ -153,7 +100,7 @@ def prepare_for_maps(potential: Potential) -> None:
     if is_ready_for_maps(potential):
         return
     energy = _open_energy(potential)
-    _for_maps.run(potential, (lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy)))
+    _for_maps.run(lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy))
 
 
 def prepare_for_evidence(potential: Potential) -> None:

@@ -14,9 +14,8 @@ from matplotlib.figure import Figure
 from engine import Fate, Measure, Outcome
 from engine.measures.decay_laws import LawFit
 from engine.results import DecayLaws, EscapeStatistics, Sweep
+from plots.pictures.charts import BINS, CURVE_PANELS, MOST_CROSSINGS, SHARES, is_measured
 from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
-from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
-from plots.pictures.sweep_panels import CURVE_PANELS, SHARES, is_measured
 from plots.printed.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isqrt
 
-from engine.expressions.short_fractions import short_fraction
+from engine.expressions.text import short_fraction
 
 # Numbers this close to a short fraction or to its square root are shown as such.
 _ROUNDING = 1e-10

@@ -10,6 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from engine import EscapeMap, Fate, compute_map
+from reproduction.notation import write_rows
 from reproduction.rotating.map_measures import (
     boundary_exponent,
     bounded_share_beside,
@@ -18,7 +19,6 @@ from reproduction.rotating.map_measures import (
     share_next_to_islands,
 )
 from reproduction.rotating.paper_maps import PAPER_MAPS
-from reproduction.tables.markdown import write_rows
 
 Columns = Mapping[str, tuple[Callable[[EscapeMap], float], str]]
 """Measures and formats of numbers, by heading."""

@@ -11,8 +11,8 @@ from engine.foundations.wording import format_number
 from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
 from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from reproduction.map_cache import MapCache
+from reproduction.notation import write_rows
 from reproduction.paper_ranges import three_energies
-from reproduction.tables.markdown import write_rows
 
 _FITS = """\
 {count} evenly spaced energies each, from the lowest energy of the paper's maps to the end of its curves; starts inside, on

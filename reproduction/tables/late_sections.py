@@ -5,8 +5,8 @@ from __future__ import annotations
 from engine import CASES
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
+from reproduction.notation import write_rows
 from reproduction.paper_ranges import STICKY_CASE, nine_energies
-from reproduction.tables.markdown import write_rows
 
 # Number of the latest escapes in the list.
 _LISTED = 20

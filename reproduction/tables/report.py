@@ -12,13 +12,13 @@ import numpy as np
 from engine import CASES
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
+from reproduction.notation import write_rows
 from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison, compare_all
 from reproduction.numbers.map_structure import BOUNDARY_PIXELS
 from reproduction.numbers.stated_numbers import Counting, StatedNumber
 from reproduction.numbers.unknown_windows import STEP
 from reproduction.tables.fit_sections import write_fits, write_laws
 from reproduction.tables.late_sections import write_late_escapes, write_super_sticky
-from reproduction.tables.markdown import write_rows
 
 _HEADS = ("quantity", "h", "paper", "computed, inside", "difference", "best window", "computed in it", "reason")
 _COLUMNS = (

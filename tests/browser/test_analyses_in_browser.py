@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from plots.pictures.sweep_panels import CURVE_PANELS
+from plots.pictures.charts import CURVE_PANELS
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]

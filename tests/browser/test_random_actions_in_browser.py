@@ -16,8 +16,7 @@ from playwright.sync_api import expect
 from app.state.presets import PRESETS
 from app.state.view import Analysis
 from app.state.view_state import ViewState
-from app.views.components.numbers import percent
-from app.views.components.texts import typeset
+from app.views.components.texts import percent, typeset
 from app.views.panels.analysis_choice import ANALYSIS_LABELS
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
 from engine.jobs.job import Job

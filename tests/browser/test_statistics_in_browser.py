@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import expect
 
-from app.views.components.numbers import percent
+from app.views.components.texts import percent
 from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
 from tests.browser.explorer_page import ExplorerPage
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import threading
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from engine import (
     Plane,
     SweepSpec,
     System,
+    classify_orbits,
     compute_lagrangian_descriptor,
     compute_map,
     compute_statistics,
@@ -30,6 +32,7 @@ from engine import (
     open_result,
     parse_formula,
     sample_orbits,
+    sample_starts,
     start_states,
 )
 from engine.slices.slice_text import read_slice
@@ -44,9 +47,12 @@ def names() -> dict[str, Any]:
     case, state = CASES["III"], (0.1, 0.0, 0.05, 0.6)
     spec = MapSpec(case, Plane.X_PX, 0.45, (20, 20), t_max=50.0)
     whole = compute_map(spec)
+    statistics = compute_statistics(whole)
     return {name: getattr(engine, name) for name in engine.__all__} | {
         "III": case, "S": state, "C": Coordinate, "spec": spec, "m": whole, "orbit": integrate_orbit(case, state, 20.0),
-        "stats": compute_statistics(whole), "sw": SweepSpec(case, Plane.X_PX, (0.3, 0.4), (10, 10), t_max=20.0),
+        "unfinished": replace(whole, complete=False), "many": classify_orbits(case, 0.45, sample_starts(case, 0.45, 5), 1.0),
+        "stats": statistics, "timeless": replace(statistics, t_max=float("inf")),
+        "sw": SweepSpec(case, Plane.X_PX, (0.3, 0.4), (10, 10), t_max=20.0),
         "other": compute_sweep(SweepSpec(case, Plane.X_PX, (0.4,), (12, 12), t_max=30.0)),
         "well": parse_formula("x² + y²"), "Centre": Centre, "np": np, "threading": threading, "axes": Figure().subplots(),
         "EPSILON": ParameterAxis("epsilon", 0.5, 2.0, System("I")), "read_slice": read_slice,
@@ -103,6 +109,44 @@ WRONG_CALLS = (
     ("compute_basin_entropy(spec)", "labels of shape () and type object: must be integers, (rows, columns)"),
     ("compute_basin_entropy(np.zeros((1, 1), int))", "labels of shape (1, 1): must have at least two rows and two columns"),
     ("compute_basin_entropy(m, box=1)", "box=1: must be an integer from 2 to 20"),
+    ("compute_regularity(unfinished)", "escape_map: the map is not complete, its progress is "),
+    ("compute_trust(unfinished)", "escape_map: the map is not complete, its progress is "),
+    ("compute_basin_entropy(np.zeros(9, int))", "labels of shape (9,) and type int64: must be integers, (rows, columns)"),
+    ("compute_basin_entropy(np.zeros((9, 9)))", "labels of shape (9, 9) and type float64: must be integers, (rows, columns)"),
+    (
+        "compute_basin_entropy(np.zeros((9, 9), int), np.ones((9, 9), int))",
+        "valid of shape (9, 9) and type int64: must be bool, sha",
+    ),
+    ("compute_basin_entropy(np.zeros((9, 6), int), box=7)", "box=7: must be an integer from 2 to 6"),
+    ("compute_wada_test(np.zeros((9, 9)))", "labels of shape (9, 9) and type float64: must be integers, (rows, columns)"),
+    (
+        "compute_wada_test(np.ones((9, 9), int), np.ones(9))",
+        "valid of shape (9,) and type float64: must be bool, shaped like the",
+    ),
+    ("compute_chaotic_share(III)", "character=…: must be a RegularityMap, or an array of codes of Regularity"),
+    ("compute_islands(many)", "starts: must be a map"),
+    ("compute_statistics(many, (-1.0, 1.0, -1.0, 1.0))", "window=…: must be None for orbits that are no map"),
+    ("compute_statistics(orbit.to_xarray())", "frame=…: must be an EscapeMap, or a dataset of one"),
+    ("compute_lagrangian_descriptor(m, power=0.0)", "power=0.0: must be above 0 and at most 1"),
+    ("compute_lagrangian_descriptor(m, power=1.5)", "power=1.5: must be above 0 and at most 1"),
+    ("compute_lagrangian_descriptor(m, duration=0.0)", "duration=0.0: must be above 0 and at most 1e+08"),
+    ('compute_lagrangian_descriptor(m, duration=float("inf"))', "duration=inf: must be above 0 and at most 1e+08"),
+    ('compute_lagrangian_descriptor(m, direction="up")', "direction='up': must be one of forward, backward, both"),
+    ("compute_uncertainty_exponent(spec, pairs=9)", "pairs=9: must be an integer from 10 to 100000"),
+    ("compute_uncertainty_exponent(spec, separations=4)", "separations=4: must be an integer from 5 to 100"),
+    ("compute_uncertainty_exponent(spec, seed=-1)", "seed=-1: must be an integer from 0"),
+    (
+        "compute_uncertainty_exponent(MapSpec(III, Plane.X_PX, 0.45, (10, 10), (0.1, 0.1 + 1e-11, 0.1, 0.1 + 1e-11)))",
+        "window=…: pixels of 1e-12 units of the well are too small for double precision; must be 1e-11 or more",
+    ),
+    ("find_stable_manifolds(III, 0.45, images=0)", "images=0: must be an integer from 1 to 6"),
+    ("find_stable_manifolds(III, 0.45, images=7)", "images=7: must be an integer from 1 to 6"),
+    ("fit_decay_laws(stats, 0.0)", "t_max=0.0: must be above 0 and at most 1e+08"),
+    ("fit_decay_laws(timeless)", "t_max=inf: must be above 0 and at most"),
+    ("fit_decay_laws(stats, window=(0.0, 5.0))", "window=(0.0, 5.0): must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max=50"),
+    ("fit_decay_laws(stats, window=(5.0, 5.0))", "window=(5.0, 5.0): must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max=50"),
+    ("fit_decay_laws(stats, window=(1.0, 2e4))", "window=(1.0, 20000.0): must be (t_low, t_high) with 0 < t_low < t_high ≤"),
+    ('fit_decay_laws(stats, window=(float("nan"), 5.0))', "window=(nan, 5.0): must be (t_low, t_high) with 0 < t_low < t_high ≤"),
     ("fit_decay_laws(stats.escape_times)", "statistics=…: must be an EscapeMap, or a dataset of one"),
     ('fit_decay_laws(stats, "long")', "t_max='long': must be above 0 and at most 1e+08"),
     ('integrate_orbit("III", S)', "potential='III': must be a Potential"),
@@ -188,11 +232,32 @@ WRONG_CALLS = (
         'SweepSpec(III, Plane.X_PX, (0.3,), along="epsilon", energy=0.2)',
         "along='epsilon': must be a ParameterAxis or None",
     ),
+    ('SweepSpec(III, Plane.X_PX, (0.3, float("nan")))', "values: 2 different ones; must be 1 to 10000 finite numbers"),
+    ("SweepSpec(III, Plane.X_PX, range(10_001))", "values: 10001 different ones; must be 1 to 10000 finite numbers"),
+    ("SweepSpec(III, Plane.X_PX, (0.3,), t_max=0.0)", "t_max=0.0: must be above 0 and at most 1e+08"),
+    ("SweepSpec(III, Plane.X_PX, (0.3,), (0, 5))", "resolution=(0, 5): must be (columns, rows), each from 1 to 4096"),
+    ("SweepSpec(III, Plane.X_PX, (0.3,), window=(1.0, 0.0, 0.0, 1.0))", "window x range 1.0 … 0.0: the lower edge must be below"),
+    (
+        'SweepSpec(III, Plane.X_PX, (0.3,), measures=("shares", "colour"))',
+        "measures=('shares', 'colour'): must be one or more of",
+    ),
+    ('SweepSpec(III, Plane.X_PX, (0.3,), measures="islands", refine=2)', "refine=2: must be 0 without the measure 'shares'"),
+    ("SweepSpec(III, Plane.X_PX, (0.3,), energy=0.2)", "energy=0.2: must be given along a parameter, and None along the energy"),
+    ('SweepSpec(CASES["I"], Plane.X_PX, (0.8,), along=EPSILON)', "energy=None: must be given along a parameter, and None along"),
+    ("SweepSpec(III, Plane.X_PX, (0.8,), along=EPSILON, energy=0.2)", "plane=(x, ε): its parameter belongs to another system"),
+    (
+        'SweepSpec(CASES["I"], Slice(C.X, EPSILON), (0.8,), along=EPSILON, energy=0.2)',
+        "plane: is on (x, ε); must be on a slice of",
+    ),
+    (
+        'SweepSpec(CASES["I"], Plane.X_PX, (0.8,), along=EPSILON, energy=0.2)',
+        "window=None: must be given for maps along a parameter",
+    ),
     ("compute_sweep(spec)", "spec=…: must be a SweepSpec"),
     ("compute_sweep(sw, 3)", "store=3: must be text or a path or None"),
     ('compute_sweep(sw, tmp / "no" / "such" / "folder")', "store=…/no/such/folder: the folder …/no/such does not exist; make"),
     ("compute_sweep(sw, earlier=sw)", "earlier=…: must be a Sweep or None"),
-    ("compute_sweep(sw, earlier=other)", "earlier: holds another sweep, with "),
+    ("compute_sweep(sw, earlier=other)", "earlier: holds another sweep, with resolution=(12, 12); must have resolution="),
     ("compute_sweep(sw, on_frame=3)", "on_frame=3: must be a function or None"),
     ("compute_sweep(sw, measure=3)", "measure=3: must be a function or None"),
     ("compute_sweep(sw, execution=3)", "execution=3: must be an Execution"),
@@ -269,6 +334,14 @@ WRONG_CALLS = (
     ('sample_starts(CASES["I"], 0.2, 10, plane=Slice(C.X, EPSILON))', "plane: is on (x, ε); must be on a slice of one"),
     ("sample_starts(III, 0.45, 10, plane=Plane.X_Y, window=(5.0, 6.0, 5.0, 6.0))", "window=…: nothing of it is inside at"),
     ('sample_starts(III, float("nan"), 10)', "energy=nan: must be a finite number, at most 1e+09 in magnitude"),
+    ('III.save(tmp / "result.csv")', "path=…: must end in .nc"),
+    ('III.save(tmp / "result")', "path=…: must end in .nc"),
+    ("III.jacobi_constant(0.2)", "potential=III: its frame must rotate for a Jacobi constant"),
+    ('parse_formula("½(x² + y²) − x²y; exits L1,")', "formula, character 18: 'exits L1,' is not understood; allowed are centre"),
+    ('parse_formula("x²; well (0 0)")', "formula, character 4: 'well (0 0)' is not understood; allowed are centre"),
+    ('parse_formula("x² + y²; well (x, 0)")', "formula, character 16: a place, a radius or a mass must be a number, without"),
+    ('parse_formula("x + y²; well (0, 0)")', "potential=x + y²: V must have a minimum to which its axes can be moved"),
+    ('System("typed", "½r² − a x y²", {"a": float("nan")}).potential', "a=nan: must be a finite number, at most 1e+09 in"),
     ('read_slice("x", "", System("I"))', "axes='x': must be one of x_y, x_px, x_h, y_py, tangential, or two axes such as x,py"),
     ('read_slice("x,z", "", System("I"))', "axes='z': must be one of x, y, px, py, theta, beta, h, omega_1, omega_2,"),
     ('read_slice("x,epsilon=a:2", "", System("I"))', "axes='epsilon=a:2': 'a' must be a number"),

@@ -8,7 +8,7 @@ import time
 import warnings
 from functools import partial
 from typing import Any
-from urllib.parse import parse_qsl, urlencode
+from urllib.parse import parse_qsl
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -87,12 +87,6 @@ def test_a_formula_of_any_kind_is_read_at_once(seed: int) -> None:
     view = linked_view(values)
     assert max(map(len, [link_sentence(view), link_title(view), *problems])) <= LONGEST_MESSAGE
     assert time.thread_time() - begin < LONGEST_READING
-
-
-@given(st.sampled_from([name for name in NAMES if name]), texts)
-def test_link_survives_url_encoding(name: str, value: str) -> None:
-    encoded = urlencode({name: value}, errors="replace")
-    check(dict(parse_qsl(encoded, keep_blank_values=True)))
 
 
 @given(st.sampled_from([name for name in LINKED if name != "system"]), attribute_values)

@@ -24,8 +24,6 @@ CONNECTIONS_PER_PAGE = 3
 BETWEEN_SYNCHRONIZATIONS = 25
 VISITORS = 4
 PARTS = 3
-SMALL_CACHE = ("ESCAPE_EXPLORER_CACHE_BYTES", str(32 * 2**20))
-"""A setting of the server: its cache of results is full after the first visitors."""
 
 
 class Visitor:

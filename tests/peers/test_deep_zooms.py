@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from engine.maps.trust import find_unlike_neighbours
+from engine.maps.analyses.trust import find_unlike_neighbours
 from engine.slices.default_window import default_window
 
 POTENTIAL, ENERGY, SIDE, T_MAX = CASES["II"], 0.25, 16, 300.0

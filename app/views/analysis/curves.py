@@ -25,8 +25,8 @@ from engine import Measure, Outcome, System
 from engine.foundations.wording import format_number, format_whole
 from engine.results import Sweep
 from engine.systems.parameters import symbol_of
+from plots.pictures.charts import CURVE_PANELS, SHARES, find_numbers
 from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, THRESHOLD, Entry
-from plots.pictures.sweep_panels import CURVE_PANELS, SHARES, find_numbers
 
 START, STOP = "Compute the curves", "Stop"
 SWEPT_VALUES, REFINED_VALUES = 25, 8

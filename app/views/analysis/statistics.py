@@ -20,15 +20,14 @@ from app.state.help_texts import title_with_help
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.legends import patch
-from app.views.components.numbers import percent, percent_range
 from app.views.components.plots import chart_hover
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, percent, percent_range
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, Fate, compute_statistics
 from engine.foundations.wording import format_number, format_whole
 from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
-from plots.pictures.statistics_charts import BINS, MOST_CROSSINGS
+from plots.pictures.charts import BINS, MOST_CROSSINGS
 
 CROSSINGS, PROBABILITY = "n", "p"
 """Columns of the second chart."""

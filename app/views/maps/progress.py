@@ -12,8 +12,7 @@ import numpy as np
 import panel as pn
 
 from app.views.components.legends import patch
-from app.views.components.numbers import percent
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, percent
 from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number, format_whole
@@ -63,10 +62,9 @@ class ProgressView:
         """The potential of the link is reviewed before a map is requested."""
         self._set(running=False, label=STOP, sentence="Reviewing the potential …")
 
-    def show_compiling(self, seconds: float) -> None:
-        """The kernels of the map are compiled first, which takes about this long."""
-        left = f"about {math.ceil(seconds)} s left" if seconds > 0.0 else "a moment more"
-        self._write(f"Preparing this kind of potential, once: {left}")
+    def show_compiling(self) -> None:
+        """The kernels of the map are compiled first."""
+        self._write("Preparing this kind of potential, once, which takes some seconds …")
 
     def show(self, frame: EscapeMap) -> None:
         """Show the shares of a frame, and how far it is or what is known of a complete map."""

@@ -8,8 +8,7 @@ from math import isfinite
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.numbers import percent
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, percent
 from engine import Fate, compute_statistics
 from engine.foundations.wording import format_number, format_time, format_whole
 from engine.propagation.fates import UNRESOLVED

@@ -17,7 +17,7 @@ from typing import Any
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly
 
 from engine.expressions.polynomials import ExactTerms
-from engine.systems.forms.point_searches import UndecidedError
+from engine.systems.forms.form import UndecidedError
 
 RING = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
 """The context of polynomials in x and y with rational coefficients."""

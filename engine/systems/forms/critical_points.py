@@ -16,7 +16,7 @@ from flint import arb, ctx, fmpq, fmpq_mpoly
 
 from engine.expressions.polynomials import Terms
 from engine.systems.forms.common_roots import RING, CommonRoot, exact_polynomial, find_common_roots
-from engine.systems.forms.point_searches import NotIsolatedError
+from engine.systems.forms.form import NotIsolatedError
 
 # Denominators of the fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000

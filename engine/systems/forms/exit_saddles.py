@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.systems.forms.form import Velocity
-from engine.systems.forms.point_searches import NO_POINTS, DescentError
+from engine.systems.forms.form import NO_POINTS, DescentError, Velocity
 
 Downhill = Callable[[float, float], Velocity]
 Hessian = Callable[..., tuple[np.ndarray, ...]]

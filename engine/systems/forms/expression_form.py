@@ -18,9 +18,8 @@ from engine.expressions.polynomials import Terms
 from engine.expressions.singularities import singular_bases
 from engine.expressions.text import write_expression
 from engine.foundations.arrays import read_only
-from engine.systems.forms.form import Form, Velocity
+from engine.systems.forms.form import NO_POINTS, Form, NotIsolatedError, UndecidedError, Velocity
 from engine.systems.forms.interval_newton import Derivatives
-from engine.systems.forms.point_searches import NO_POINTS, NotIsolatedError, UndecidedError
 from engine.systems.forms.polynomial_form import PolynomialForm, checked_form
 from engine.systems.forms.stationary_points import find_stationary_points
 from engine.systems.well_units import nearest_power_of_two

@@ -1,4 +1,4 @@
-"""The interface of the two kinds of formulas, `PolynomialForm` and `ExpressionForm`."""
+"""The interface of the two kinds of formulas, `PolynomialForm` and `ExpressionForm`, and the errors of their searches."""
 
 from __future__ import annotations
 
@@ -8,7 +8,27 @@ from typing import Any, Protocol
 import numpy as np
 
 from engine.expressions.polynomials import Terms
+from engine.foundations.arrays import read_only
 from engine.integrator.source.recurrence import Definition
+
+NO_POINTS = read_only(np.empty((0, 2)))
+"""(0, 2) an empty list of points."""
+
+
+class NotIsolatedError(ValueError):
+    """The critical points form a curve, so that they cannot be listed."""
+
+    def __init__(self, message: str = "the force vanishes along a curve instead of at isolated points") -> None:
+        super().__init__(message)
+
+
+class UndecidedError(ValueError):
+    """The points were not found within the limit on the work."""
+
+
+class DescentError(ValueError):
+    """The end of a line of steepest descent was not found."""
+
 
 Velocity = Callable[[float, np.ndarray], np.ndarray]
 """The velocity (2,) of a line of steepest descent as a function of time and position (2,)."""

@@ -23,8 +23,7 @@ from engine.expressions.polynomials import (
 )
 from engine.foundations.validation import LARGEST_COEFFICIENT, checked_count, checked_number, short_repr
 from engine.systems.forms.critical_points import find_critical_points
-from engine.systems.forms.form import Velocity
-from engine.systems.forms.point_searches import NO_POINTS
+from engine.systems.forms.form import NO_POINTS, Velocity
 
 MOST_TERMS = 60
 """Largest number of terms of a potential after expansion."""

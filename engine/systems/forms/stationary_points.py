@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from engine.expressions.intervals import enclose
+from engine.systems.forms.form import NO_POINTS, NotIsolatedError, UndecidedError
 from engine.systems.forms.interval_newton import Derivatives, box, excludes_zero, newton_step, refined, solve
-from engine.systems.forms.point_searches import NO_POINTS, NotIsolatedError, UndecidedError
 
 MOST_POINTS = 60
 """Largest number of critical points in the region."""

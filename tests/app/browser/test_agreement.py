@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -52,14 +52,13 @@ SIDE, COARSE, HORIZON = 30, 10, 30.0
 LEAST_SHARE = 0.995
 
 
-def random_specs(number: int) -> Iterator[MapSpec]:
+def random_specs(system: System, chance: np.random.Generator, all_zooms: Sequence[int]) -> Iterator[MapSpec]:
     """Views of a system, one for each zoom, on boundaries between basins: plane, energy and place are random."""
-    chance, system = np.random.default_rng(number), SYSTEMS[number]
-    energies, potential = review_system(system).energies, system.potential
-    for zooms in ZOOMS:
+    potential, energies = system.potential, review_system(system).energies
+    low, high = max(potential.escape_energy, energies.low), energies.high
+    ends = low + 0.05 * (high - low), low + 0.9 * (high - low)
+    for zooms in all_zooms:
         plane = SLICES[chance.integers(len(SLICES))]
-        highest = potential.escape_energy + 0.9 * (energies.high - potential.escape_energy)
-        ends = potential.escape_energy, highest
         energy = ends if plane.energy_axis is not None else chance.uniform(*ends)
         window = default_window(potential, plane, energy)
         spec = MapSpec(potential, plane, energy, (SIDE, SIDE), window, HORIZON * potential.units.time, use_evidence=False)
@@ -85,6 +84,13 @@ def as_view(spec: MapSpec) -> dict[str, Any]:
     return {"slice": spec.plane.to_dict(spec.potential.units), "energy": spec.common_energy or 0.0, "window": window, **shape}
 
 
+def run_views(system: System, specs: Sequence[MapSpec], folder: Path) -> Any:
+    """What the browser's engine finds in views of a system."""
+    portable = make_portable_system(system.potential, review_system(system).energies.high)
+    views = [as_view(spec) for spec in specs]
+    return run_node("run_view.js", {"system": portable.to_dict(), "module": portable.module, "views": views}, folder)
+
+
 def expected_fate(escape_map: EscapeMap) -> np.ndarray:
     """Orbits inside at the horizon are undecided."""
     return np.where(escape_map.fate == Fate.BOUNDED, Fate.NOT_COMPUTED, escape_map.fate)
@@ -93,12 +99,9 @@ def expected_fate(escape_map: EscapeMap) -> np.ndarray:
 @needs_node
 @pytest.mark.parametrize("number", range(len(SYSTEMS)), ids=[system.title for system in SYSTEMS])
 def test_pixels_are_those_of_the_map(number: int, tmp_path: Path) -> None:
-    specs = list(random_specs(number))
-    potential = specs[0].potential
-    portable = make_portable_system(potential, review_system(SYSTEMS[number]).energies.high)
-    data = {"system": portable.to_dict(), "module": portable.module, "views": [as_view(spec) for spec in specs]}
+    specs = list(random_specs(SYSTEMS[number], np.random.default_rng(number), ZOOMS))
     same = []
-    for spec, found in zip(specs, run_node("run_view.js", data, tmp_path), strict=True):
+    for spec, found in zip(specs, run_views(SYSTEMS[number], specs, tmp_path), strict=True):
         escape_map = compute_map(spec)
         expected, fate = expected_fate(escape_map).ravel(), np.array(found["fate"])
         robust = np.isin(compute_trust(escape_map).trust, (Trust.LIKE_NEIGHBOURS, Trust.CONFIRMED)).ravel()

@@ -9,6 +9,7 @@ import pytest
 from app.runtime.capacity import (
     ACTING_SECONDS,
     CONNECTION_SECONDS,
+    FULL,
     IDLE_WEIGHT,
     LEAST_CORES,
     Capacity,
@@ -55,15 +56,27 @@ def admitted(capacity: Capacity) -> int:
     return len(pages)
 
 
-def test_pages_are_admitted_before_anyone_acts_up_to_four_fifths_of_a_processor() -> None:
-    assert admitted(Machine().capacity()) == 40
+def test_pages_are_admitted_before_anyone_acts_up_to_a_share_of_a_processor() -> None:
+    assert admitted(Machine().capacity()) == int(FULL / CORES_PER_PAGE)
 
 
 def test_half_of_them_are_admitted_by_each_of_two_processes_beside_a_busy_program() -> None:
     machine = Machine(others=1.0)
     capacity = machine.capacity(processes=2)
     machine.run(capacity, 20)
-    assert admitted(capacity) == 20
+    assert admitted(capacity) == int(0.5 * FULL / CORES_PER_PAGE)
+
+
+def test_a_busy_program_that_gets_less_because_of_the_pages_leaves_no_room_for_more() -> None:
+    machine = Machine(others=1.0, own=0.3)
+    capacity = machine.capacity(processes=2)
+    machine.run(capacity, 20, siblings=0.3)
+    machine.others, machine.own = 0.4, 0.8
+    machine.run(capacity, 40, siblings=0.8)
+    assert capacity.cores == pytest.approx(0.5)
+    machine.own = 0.3
+    machine.run(capacity, 20, siblings=0.3)
+    assert capacity.cores == pytest.approx(0.8)
 
 
 def test_what_this_process_and_its_siblings_use_is_not_that_of_other_programs() -> None:
@@ -109,8 +122,9 @@ def test_work_is_put_off_before_pages_are_refused() -> None:
 def test_one_visitor_cannot_fill_the_server_for_others_but_alone_has_all_of_it() -> None:
     capacity = Machine().capacity()
     assert capacity.has_room({"crowd": 50.0}, "other")
-    assert capacity.has_room({"crowd": 39.0}, "crowd")
-    assert not capacity.has_room({"crowd": 40.0}, "crowd")
+    most = int(FULL / CORES_PER_PAGE)
+    assert capacity.has_room({"crowd": most - 1.0}, "crowd")
+    assert not capacity.has_room({"crowd": float(most)}, "crowd")
 
 
 def test_a_page_counts_less_when_its_visitor_rests_and_nothing_when_it_is_left() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from app.runtime.loop_watch import SLOW_SECONDS, TICK_SECONDS, WAITING, LoadMonitor, LoopWatch, find_cause
 from app.runtime.metrics import ServerMetrics
-from app.session.history import History
+from app.session.context import History
 from tests.app.clock import Clock
 
 
@@ -95,4 +95,4 @@ def test_the_thread_names_the_function_that_delays_the_tick() -> None:
     watch.tick()
     stopping.set()
     watcher.join()
-    assert "session/history: History.move_to" in counted(metrics)
+    assert "session/context: History.move_to" in counted(metrics)

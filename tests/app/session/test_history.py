@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.session.history import History
+from app.session.context import History
 
 
 def test_each_action_is_an_entry_and_all_changes_of_a_gesture_are_one() -> None:

@@ -8,7 +8,7 @@ from html import escape
 
 import pytest
 
-from app.session.history import History
+from app.session.context import History
 from app.session.potential_presenter import PotentialPresenter
 from app.state.view_state import ViewState
 from engine import CASES, System

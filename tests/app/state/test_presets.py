@@ -42,6 +42,14 @@ LARGEST_THUMBNAIL = 15_000
 
 each_preset = pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.key)
 
+# The kernels of the barred galaxy take more than ten seconds to compile.
+COMPILED_LONG = ("bar",)
+
+
+def marked(key: str, value: Any) -> Any:
+    """A parameter of a test that integrates orbits."""
+    return pytest.param(value, id=key, marks=pytest.mark.slow if key in COMPILED_LONG else ())
+
 
 def view_of(key: str) -> View:
     return next(preset.view for preset in PRESETS if preset.key == key)
@@ -111,7 +119,7 @@ def test_every_thumbnail_has_a_preset() -> None:
     assert {file.stem for file in THUMBNAILS.iterdir()} == {preset.key for preset in PRESETS}
 
 
-@each_preset
+@pytest.mark.parametrize("preset", [marked(preset.key, preset) for preset in PRESETS])
 def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
     view, spec = preset.view, spec_of(preset.view)
     # Many orbits are watched without any of them being chosen.
@@ -144,8 +152,7 @@ FATES = {
 }
 
 
-# The kernels of the barred galaxy take more than ten seconds to compile.
-@pytest.mark.parametrize("key", [pytest.param(key, marks=pytest.mark.slow if key == "bar" else ()) for key in FATES])
+@pytest.mark.parametrize("key", [marked(key, key) for key in FATES])
 def test_fates_agree_with_the_caption(key: str) -> None:
     assert fates(view_of(key)) == FATES[key]
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import threading
-from concurrent.futures import CancelledError
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, classify_orbits, compute_map, compute_origin_fates, start_states
-from engine.foundations.execution import Execution
 from engine.maps.origin_fates import join_origin_fates
 from engine.results import OriginFateMap
 
@@ -80,10 +77,3 @@ def test_joining_maps_of_different_requests_raises() -> None:
     forward, other = compute_map(spec), compute_map(replace(spec, energy=0.31, backward=True))
     with pytest.raises(ValueError, match="backward: is a map of"):
         join_origin_fates(forward, other)
-
-
-def test_cancelling_raises() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    with pytest.raises(CancelledError):
-        compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.26), execution=Execution(cancel=cancel))

@@ -182,9 +182,6 @@ def test_cancelled_orbits_stay_undecided(starts: np.ndarray) -> None:
     assert Fate.NOT_COMPUTED in fate
 
 
-# Invalid arguments.
-
-
 # Export.
 
 

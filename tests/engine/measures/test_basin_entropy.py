@@ -4,7 +4,6 @@ import math
 from collections import Counter
 from collections.abc import Callable
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pytest
@@ -137,21 +136,6 @@ def test_rotation_reflection_and_relabelling_do_not_matter(transform: Callable[[
     one, other = compute_basin_entropy(labels), compute_basin_entropy(transform(labels))
     for name in ("s_b", "s_bb", "s_b_error", "s_bb_error"):
         assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("parameter", "labels", "valid", "box"),
-    [
-        ("labels", np.zeros(9, int), None, 2),
-        ("labels", np.zeros((9, 9)), None, 2),
-        ("valid", np.zeros((9, 9), int), np.ones((9, 9), int), 2),
-        ("box", np.zeros((9, 9), int), None, 1),
-        ("box", np.zeros((9, 6), int), None, 7),
-    ],
-)
-def test_invalid_parameters_are_named(parameter: str, labels: Any, valid: Any, box: Any) -> None:
-    with pytest.raises(ValueError, match=f"^{parameter}"):
-        compute_basin_entropy(labels, valid, box=box)
 
 
 # Descriptions and a map.

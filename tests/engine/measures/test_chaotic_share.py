@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
-from engine import POTENTIALS, Regularity, compute_chaotic_share
+from engine import Regularity, compute_chaotic_share
 from engine.measures.starts import wilson_interval
 
 
@@ -20,8 +19,3 @@ def test_without_bounded_orbits_there_is_no_share() -> None:
     found = compute_chaotic_share(np.array([[Regularity.NOT_APPLICABLE]]))
     assert np.isnan([found.share, found.low, found.high]).all()
     assert found.describe() == "No orbit is bounded."
-
-
-def test_a_map_without_codes_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"character=.*: must be a RegularityMap, or an array of codes of Regularity"):
-        compute_chaotic_share(POTENTIALS["I"])

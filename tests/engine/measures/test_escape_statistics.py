@@ -166,9 +166,3 @@ def test_orbits_that_are_no_map_are_counted() -> None:
     assert (counted.starts, counted.t_max) == (500, 50.0)
     np.testing.assert_array_equal(counted.escape_times, outcomes.escape_time[outcomes.fate > 0])
     assert fit_decay_laws(outcomes).t_high == 50.0
-
-
-def test_orbits_that_are_no_map_have_no_window() -> None:
-    outcomes = classify_orbits(CASES["I"], 0.1, sample_starts(CASES["I"], 0.1, 5), 1.0)
-    with pytest.raises(ValueError, match="must be None for orbits that are no map"):
-        compute_statistics(outcomes, (-1.0, 1.0, -1.0, 1.0))

@@ -52,8 +52,3 @@ def test_areas_are_in_units_of_the_axes_for_maps_and_their_datasets() -> None:
     of_map, of_dataset = compute_islands(frame), compute_islands(frame.to_xarray())
     assert of_map.area == pytest.approx(np.pi * 0.04, rel=0.02)
     assert of_dataset.area == pytest.approx(of_map.area, rel=1e-9)
-
-
-def test_orbits_that_are_no_map_have_no_islands() -> None:
-    with pytest.raises(ValueError, match="starts: must be a map"):
-        compute_islands(Starts(np.zeros(3, int), np.zeros(3), np.zeros(3, int)))

@@ -142,14 +142,6 @@ def test_the_test_needs_three_basins() -> None:
     assert "needs three basins" in result.describe()
 
 
-@pytest.mark.parametrize(
-    ("parameter", "labels", "valid"), [("labels", np.zeros((9, 9)), None), ("valid", stripes(3), np.ones(9))]
-)
-def test_invalid_parameters_are_named(parameter: str, labels: np.ndarray, valid: np.ndarray | None) -> None:
-    with pytest.raises(ValueError, match=f"^{parameter}"):
-        compute_wada_test(labels, valid)
-
-
 # Maps.
 
 

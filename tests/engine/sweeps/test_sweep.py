@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
-from concurrent.futures import CancelledError
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,16 +13,11 @@ from hypothesis import strategies as st
 
 from engine import (
     CASES,
-    Coordinate,
-    Execution,
     Fate,
     MapSpec,
-    ParameterAxis,
     Plane,
     Potential,
-    Slice,
     SweepSpec,
-    System,
     compute_basin_entropy,
     compute_map,
     compute_statistics,
@@ -213,12 +205,6 @@ def test_interrupted_sweeps_continue_where_they_stopped(done: int, edge: float) 
     assert len(measured) == whole.values.size - done
 
 
-def test_a_sweep_of_another_request_is_not_continued() -> None:
-    earlier = compute_sweep(replace(STEP, t_max=50.0), measure=step_at(0.3))
-    with pytest.raises(ValueError, match=r"earlier: holds another sweep, with t_max=50.0; must have t_max=100000.0"):
-        compute_sweep(STEP, earlier=earlier)
-
-
 def test_frames_come_after_each_value_from_coarse_to_fine() -> None:
     seen: list[list[float]] = []
     spec = replace(STEP, values=np.linspace(0.2, 0.4, 9), refine=0)
@@ -231,48 +217,3 @@ def test_frames_come_after_each_value_from_coarse_to_fine() -> None:
 def test_a_cached_map_is_measured_as_it_is() -> None:
     frame = compute_map(SPEC.point(0.2).map_spec)
     xr.testing.assert_identical(compute_point(SPEC.point(0.2), frame=frame), compute_point(SPEC.point(0.2)))
-
-
-def test_cancel_raises() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    with pytest.raises(CancelledError):
-        compute_sweep(SweepSpec(CASES["III"], Plane.X_PX, (0.26, 0.27)), execution=Execution(cancel=cancel))
-
-
-# Requests.
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"values": ()}, "values: 0 different"),
-        ({"values": (0.3, np.nan)}, "values: 2 different"),
-        ({"values": np.linspace(0.3, 0.4, 10_001)}, "values: 10001 different"),
-        ({"values": 0.3}, "values=0.3"),
-        ({"plane": Plane.X_H}, r"plane=\(x, h\)"),
-        ({"t_max": 0.0}, "t_max=0"),
-        ({"resolution": (0, 5)}, "resolution"),
-        ({"window": (1.0, 0.0, 0.0, 1.0)}, "window"),
-        ({"measures": ("shares", "colour")}, "measures=.*: must be one or more of shares, "),
-        ({"measures": ("islands",), "refine": 2}, "refine=2: must be 0 without the measure 'shares'"),
-        ({"energy": 0.2}, "None along the energy"),
-        ({"along": ParameterAxis("epsilon", 0.5, 2.0, System("I"))}, "energy=None: must be given along a parameter"),
-    ],
-)
-def test_invalid_parameters_are_named(change: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        replace(SPEC, **change)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"potential": CASES["III"]}, "belongs to another system"),
-        ({"plane": Slice(Coordinate.X, THIRD_EXIT)}, "must be on a slice of one potential"),
-        ({"window": None}, "window=None: must be given for maps along a parameter"),
-    ],
-)
-def test_invalid_parameters_along_a_parameter_are_named(change: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        replace(ALONG, **change)

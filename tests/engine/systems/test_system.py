@@ -76,12 +76,6 @@ def test_a_changed_potential_is_not_of_the_system() -> None:
     assert [each.system for each in changed] == [None, None, None]
 
 
-@pytest.mark.parametrize("parameters", [{"b": 2.0}, {"a": float("nan")}, {"a": 1e10}])
-def test_an_illegal_value_of_a_letter_is_named(parameters: dict[str, float]) -> None:
-    with pytest.raises(ValueError, match=r"b.* is not a letter of the formula; its letters are a|a=.*: must be"):
-        _ = System(TYPED, "½r² − a x y²", parameters).potential
-
-
 def test_where_axes_are_moved_the_formula_says_from_where_they_count() -> None:
     shown = System(TYPED, "(x − 1)² + y² − (x − 1)² y²; well (1, 0)").formula_shown
     assert shown.endswith(", where x and y count from (1, 0)")

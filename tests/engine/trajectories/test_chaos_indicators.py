@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from concurrent.futures import CancelledError
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +9,6 @@ import pytest
 
 from engine import CASES, Orbit, Plane, Potential, classify_orbits, integrate_orbit, start_states
 from engine.evidence.birkhoff_averages import TORUS_DIGITS, WINDOWS
-from engine.foundations.execution import Execution
 from engine.foundations.wording import format_time
 from engine.trajectories import chaos_indicators
 from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
@@ -57,13 +54,6 @@ def test_digits_of_a_torus_rise_to_those_of_evidence() -> None:
 @pytest.mark.parametrize(("t_max", "count"), [(1999.0, 0), (2000.0, 1), (8000.0, 2)])
 def test_two_windows_must_fit_into_t_max(t_max: float, count: int) -> None:
     assert compute_birkhoff_digits(CASES["II"], SEA, t_max).windows.tolist() == list(WINDOWS[:count])
-
-
-def test_cancelled_digits_raise() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    with pytest.raises(CancelledError):
-        compute_birkhoff_digits(CASES["II"], SEA, 1e5, execution=Execution(cancel=cancel))
 
 
 # Conclusions.

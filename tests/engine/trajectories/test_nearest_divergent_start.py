@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import threading
-from concurrent.futures import CancelledError
 from functools import cache
 from typing import Any
 
@@ -71,10 +69,3 @@ def test_mirror_images_have_equal_distances() -> None:
 
 def test_the_executor_does_not_affect_the_result() -> None:
     assert find_existing(*STARTS[0], execution=Execution(SerialExecutor())) == find_existing(*STARTS[0])
-
-
-def test_a_cancelled_search_raises() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    with pytest.raises(CancelledError):
-        find(*STARTS[0], execution=Execution(cancel=cancel))

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import threading
-from concurrent.futures import CancelledError
-
 import numpy as np
 import pytest
 
 from engine import (
     CASES,
-    Execution,
     Fate,
     classify_orbits,
     integrate_orbit,
@@ -65,10 +61,3 @@ def test_a_start_outside_has_no_path() -> None:
     assert orbits.fate[0] == Fate.OUTSIDE
     assert np.isfinite(orbits.x).tolist() == [[True, False], [True, True]]
     assert orbits.y[0, 0] == 3.0
-
-
-def test_a_cancelled_call_ends() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    with pytest.raises(CancelledError):
-        sample_orbits(CASES["I"], starts_of("I"), TIMES, execution=Execution(cancel=cancel))

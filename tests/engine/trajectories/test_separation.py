@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-from concurrent.futures import CancelledError
-
 import numpy as np
-import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, Plane, compute_separation, start_states
-from engine.foundations.execution import Execution
 from engine.trajectories.separation import LONGEST_SEPARATION
 
 
@@ -33,10 +28,3 @@ def test_the_distance_agrees_with_scipy() -> None:
 def test_long_orbits_are_compared_for_the_longest_separation_time() -> None:
     state = state_at("I", 0.1, 0.1, 0.1)
     assert compute_separation(CASES["I"], state, 1.0000001 * state, 1e6).t[-1] == LONGEST_SEPARATION
-
-
-def test_a_cancelled_comparison_raises() -> None:
-    cancel, state = threading.Event(), state_at("I", 0.1, 0.1, 0.1)
-    cancel.set()
-    with pytest.raises(CancelledError):
-        compute_separation(CASES["I"], state, state, 1e3, execution=Execution(cancel=cancel))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Fate, MapSpec, Plane, Potential, compute_lagrangian_descriptor, compute_map
-from engine.maps.descriptors import DEFAULT_DURATION
+from engine.maps.analyses.descriptors import DEFAULT_DURATION
 from plots.layers.descriptors import DESCRIPTORS
 from plots.layers.picture import ShownMap
 from plots.layers.table import map_legend

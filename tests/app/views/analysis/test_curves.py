@@ -11,7 +11,7 @@ from app.views.components.plots import FigurePane
 from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.results import Sweep
 from engine.sweeps.measures import CURVES
-from plots.pictures.sweep_panels import CURVE_PANELS
+from plots.pictures.charts import CURVE_PANELS
 
 
 def curves(*energies: float) -> Sweep:

@@ -10,7 +10,7 @@ from app.job_clients.shown_results import ShownResults
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.analysis.statistics import StatisticsView
-from app.views.components.numbers import percent
+from app.views.components.texts import percent
 from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
 from tests.disc import disc_map
 

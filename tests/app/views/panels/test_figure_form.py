@@ -12,8 +12,7 @@ from app.browser.components.file_saver import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
-from app.views.panels.figure_choices import ALL_MAPS, FIGURES, figure_choices
-from app.views.panels.figure_form import FigureForm
+from app.views.panels.figure_form import ALL_MAPS, FIGURES, FigureForm, figure_choices
 from engine import (
     CASES,
     EscapeMap,

@@ -9,7 +9,7 @@ import sympy
 from engine import Potential, parse_formula, review_potential
 from engine.expressions.polynomials import Terms
 from engine.systems.forms.critical_points import find_critical_points
-from engine.systems.forms.point_searches import NotIsolatedError
+from engine.systems.forms.form import NotIsolatedError
 from engine.systems.known_potentials import channel_family
 from tests.peers.random_systems import random_well
 

@@ -8,7 +8,7 @@ import pytest
 from engine import CASES, parse_formula, review_potential
 from engine.expressions.nodes import from_terms
 from engine.systems.forms.expression_form import ExpressionForm
-from engine.systems.forms.point_searches import NotIsolatedError, UndecidedError
+from engine.systems.forms.form import NotIsolatedError, UndecidedError
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.forms.stationary_points import MOST_POINTS
 from engine.systems.potential import Potential

@@ -9,12 +9,11 @@ import pytest
 
 from engine import CASES
 from engine.foundations.execution import Execution, SerialExecutor
+from engine.maps.analyses.uncertain_pairs import compute_uncertainty_exponent
 from engine.maps.spec import MapSpec
-from engine.maps.uncertain_pairs import compute_uncertainty_exponent
 from engine.measures.power_law_fit import UncertaintyExponent
 from engine.propagation.classification import classify_orbits
 from engine.slices.planes import Plane
-from engine.slices.window import Window
 from engine.systems.potential import Potential
 
 # x and y are uncoupled and y alone decides about an escape (upward if its energy exceeds 1/4), so all boundaries are smooth.
@@ -116,22 +115,3 @@ def test_progress_increases_to_1() -> None:
     assert shares[-1] == 1.0
     assert shares == sorted(shares)
     assert len(shares) > 2
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"pairs": 9}, "pairs=9: must be an integer from 10 to 100000"),
-        ({"separations": 4}, "separations=4: must be an integer from 5 to 100"),
-        ({"seed": -1}, "seed=-1: must be an integer from 0"),
-    ],
-)
-def test_parameters_out_of_range_raise(options: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        compute_uncertainty_exponent(HENON_HEILES, **options)
-
-
-def test_too_small_pixels_raise() -> None:
-    spec = MapSpec(CASES["II"], Plane.X_PX, 0.25, resolution=(10, 10), window=Window(0.1, 0.1 + 1e-11, 0.1, 0.1 + 1e-11))
-    with pytest.raises(ValueError, match=r"window=.*too small for double precision; must be 1e-11 or more"):
-        compute_uncertainty_exponent(spec)

@@ -12,9 +12,9 @@ from engine.exits.exit_rows import exit_curves
 from engine.foundations.execution import Execution, SerialExecutor
 from engine.integrator.kernels.dense_output import advance_states
 from engine.integrator.source.recurrence import TOLERANCE
-from engine.maps.reruns import LARGEST_DELAY, SECOND_TOLERANCE, SHIFT, shifted_starts
+from engine.maps.analyses.reruns import LARGEST_DELAY, SECOND_TOLERANCE, SHIFT, shifted_starts
+from engine.maps.analyses.trust import APART, Trust, TrustMap, compute_trust
 from engine.maps.spec import FINEST_PIXEL
-from engine.maps.trust import APART, Trust, TrustMap, compute_trust
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.slices.default_window import default_window
 from engine.systems.compiled import kernels_of
@@ -215,14 +215,6 @@ def test_cancelling_leaves_the_rest_not_tested() -> None:
     assert Trust.NOT_TESTED in partial.trust
     decided = partial.trust != Trust.NOT_TESTED
     np.testing.assert_array_equal(partial.trust[decided], trust.trust[decided])
-
-
-def test_incomplete_map_raises() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    unfinished = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (9, 9)), cancel=cancel)
-    with pytest.raises(ValueError, match="escape_map: the map is not complete"):
-        compute_trust(unfinished)
 
 
 def test_shares_refer_to_the_interior_pixels() -> None:

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from engine.expressions.short_fractions import short_fraction
+from engine.expressions.text import short_fraction
 
 
 @pytest.mark.parametrize("text", ["0", "1/2", "3/4", "121/8", "1/3", "1/120", "10/81"])

@@ -16,9 +16,9 @@ from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
 from engine.integrator.kernels.dense_output import advance_states
+from engine.maps.analyses.reruns import SHIFT, SHIFTED_STARTS, Perturbation, Rerun
 from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
-from engine.maps.reruns import SHIFT, SHIFTED_STARTS, Perturbation, Rerun
 from engine.maps.result import EscapeMap, MapLike, as_map
 from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
 from engine.maps.stages import OnChange, Stage

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from app.server.start_checks import SEVERAL_PROCESSES, asks_for_several_processes
+from app.server.lifecycle.start_checks import SEVERAL_PROCESSES, asks_for_several_processes
 from tests.waiting import SECONDS
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 COMMAND = [sys.executable, "-m", "panel", "serve", "app", "--port", "0"]
 
 

@@ -14,7 +14,7 @@ import pytest
 
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import Settings
-from app.server.shutdown import finish_shutdown, stop_on_signals
+from app.server.lifecycle.shutdown import finish_shutdown, stop_on_signals
 from tests import forked
 from tests.waiting import SECONDS
 

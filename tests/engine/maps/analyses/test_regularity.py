@@ -106,10 +106,3 @@ def test_cancelling_leaves_the_rest_not_judged() -> None:
     result = compute_regularity(whole, execution=Execution(cancel=cancel))
     assert not result.complete
     assert Regularity.NOT_JUDGED in result.character
-
-
-def test_incomplete_map_raises() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    with pytest.raises(ValueError, match="escape_map: the map is not complete"):
-        compute_regularity(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (9, 9)), cancel=cancel))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.runtime.process_state import ProcessState
-from app.server.warmup import STEPS, start_warmup
+from app.server.lifecycle.warmup import STEPS, start_warmup
 from app.state.view_state import ViewState
 from tests.waiting import SECONDS
 

@@ -10,7 +10,7 @@ import pytest
 from tornado.websocket import WebSocketClosedError
 
 from app.runtime.settings import LogFormat
-from app.server.log_format import (
+from app.server.lifecycle.log_format import (
     LONGEST_MESSAGE,
     JsonLineFormatter,
     TextFormatter,

@@ -1,4 +1,4 @@
-"""Panels of the curves of a sweep: one for the shares, and one for each other measure that is a curve."""
+"""Charts of statistics and curves: their limits, and the panels of a sweep, one for the shares and one for each other measure."""
 
 from __future__ import annotations
 
@@ -6,6 +6,12 @@ import numpy as np
 
 from engine import MEASURES, Measure
 from engine.results import Sweep
+
+BINS = 40
+"""Number of bins of the histogram of escape times."""
+
+MOST_CROSSINGS = 15
+"""Largest number of crossings for which the escape probability is shown."""
 
 SHARES = MEASURES["shares"]
 """The measure of the first panel, with a curve for each outcome."""

@@ -29,7 +29,7 @@ from engine import (
 )
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.execution import SerialExecutor
-from engine.maps.descriptors import DEFAULT_DURATION
+from engine.maps.analyses.descriptors import DEFAULT_DURATION
 from engine.propagation.speed_integrals import integrate_speed
 from engine.slices.axes import Coordinate
 
@@ -147,15 +147,6 @@ def test_long_integrals_are_cancelled_before_they_are_complete() -> None:
     found = compute_lagrangian_descriptor(frame, duration=1e8, execution=Execution(CancelsAtSecondCall(), cancel))
     assert not found.complete
     assert np.isnan(found.descriptor).all()
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"power": 0.0}, {"power": 1.5}, {"duration": 0.0}, {"duration": np.inf}, {"direction": "up"}], ids=str
-)
-def test_a_wrong_argument_is_named(wrong: dict) -> None:
-    (name,) = wrong
-    with pytest.raises(ValueError, match=f"^{name}="):
-        compute_lagrangian_descriptor(compute_map(SPECS["II"]), **wrong)
 
 
 def test_starts_without_an_orbit_have_no_descriptor() -> None:
