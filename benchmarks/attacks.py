@@ -9,7 +9,8 @@ import itertools
 import pkgutil
 import random
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncGenerator, Callable
+from contextlib import aclosing
 from urllib.parse import quote, urlencode
 
 from bokeh.core.types import ID
@@ -24,18 +25,18 @@ _SLOW_PAGES = 10
 # Number of actions of each attack if all follow one another.
 _TURN_SECONDS = 15.0
 
-Attack = Callable[[SimulatedSession, random.Random], AsyncIterator[None]]
+Attack = Callable[[SimulatedSession, random.Random], AsyncGenerator[None]]
 """The actions of an attacker; each step is one action and the pause after it."""
 
 
-async def do_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def do_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """For comparison."""
     while True:
         await asyncio.sleep(1.0)
         yield
 
 
-async def compute_worst_map(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def compute_worst_map(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """The map that takes longest, with all layers, at slightly different energies."""
     for number in itertools.count():
         visitor.follow_link(_WORST_MAP.replace("h=0.3", f"h={0.3 + 1e-6 * number!r}"))
@@ -43,7 +44,7 @@ async def compute_worst_map(visitor: SimulatedSession, choice: random.Random) ->
         yield
 
 
-async def sweep_energies(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def sweep_energies(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Curves against energy, with the largest map in view."""
     for case in itertools.cycle(["III", "II", "I"]):
         visitor.follow_link(f"?case={case}&resolution=900&t_max=1000000&analysis=energies")
@@ -53,7 +54,7 @@ async def sweep_energies(visitor: SimulatedSession, choice: random.Random) -> As
         yield
 
 
-async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """A potential of new powers each second, so that its integrator must be compiled."""
     while True:
         powers = [(i, degree - i) for degree in range(3, 9) for i in range(degree + 1)]
@@ -63,7 +64,7 @@ async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> A
         yield
 
 
-async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Pages with formulas of every kind, one after another."""
     while True:
         await visitor.open_formula(formula_link(choice))
@@ -71,21 +72,21 @@ async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> Asy
         yield
 
 
-async def follow_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def follow_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Links with formulas of every kind, followed in one page."""
     while True:
         await visitor.follow_formula(formula_link(choice))
         yield
 
 
-async def type_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def type_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Formulas of every kind in the box of one page."""
     while True:
         await visitor.type_formula(random_link(choice)["V"])
         yield
 
 
-async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Twenty clicks a second on long orbits, removed when there are five."""
     for number in itertools.count():
         if number % 5 == 0:
@@ -95,7 +96,7 @@ async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncIterat
         yield
 
 
-async def flip_choices(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def flip_choices(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Resolution and colours, changed as fast as messages are accepted."""
     for resolution, palette in itertools.cycle(itertools.product((112, 224, 450, 900), ("paper", "safe"))):
         visitor.follow_link(f"?case=III&h=0.3&resolution={resolution}&palette={palette}")
@@ -103,7 +104,7 @@ async def flip_choices(visitor: SimulatedSession, choice: random.Random) -> Asyn
         yield
 
 
-async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Pages with a radial potential of new coefficients, one after another."""
     while True:
         powers = "".join(f"{sign}{choice.uniform(0.5, 1.5):.6f}*r^{2 * n}" for n, sign in zip(range(2, 7), "-+-+-", strict=True))
@@ -112,7 +113,7 @@ async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Ra
         yield
 
 
-async def name_modules(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def name_modules(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Resources of components in all modules of large packages, none of which the page needs."""
     names = _module_names()
     choice.shuffle(names)
@@ -122,7 +123,7 @@ async def name_modules(visitor: SimulatedSession, choice: random.Random) -> Asyn
         yield
 
 
-async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """WebSockets with a token of 53 kB, which is close to the limit of a header and decompresses to 30 MB."""
     token = await asyncio.to_thread(_large_token)
     while True:
@@ -131,7 +132,7 @@ async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> A
         yield
 
 
-async def drop_sessions(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def drop_sessions(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Pages whose connections are closed at once."""
     while True:
         await visitor.drop()
@@ -139,7 +140,7 @@ async def drop_sessions(visitor: SimulatedSession, choice: random.Random) -> Asy
         yield
 
 
-async def read_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def read_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """Pages that ask for maps and do not read them."""
     pages = [visitor.another() for _ in range(_SLOW_PAGES)]
     for page in pages:
@@ -147,21 +148,26 @@ async def read_nothing(visitor: SimulatedSession, choice: random.Random) -> Asyn
     opened = [page for page in pages if page.is_open]
     for page in opened:
         await page.stop_reading()
-    while True:
+    try:
+        while True:
+            for page in opened:
+                page.follow_link(f"?case=III&resolution=450&h={choice.uniform(0.4, 0.9):.6f}")
+            await asyncio.sleep(2.0)
+            yield
+    finally:
         for page in opened:
-            page.follow_link(f"?case=III&resolution=450&h={choice.uniform(0.4, 0.9):.6f}")
-        await asyncio.sleep(2.0)
-        yield
+            await page.close()
 
 
-async def do_everything(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+async def do_everything(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
     """All attacks in turn, without a pause."""
     for name in itertools.cycle(name for name, attack in ATTACKS.items() if attack not in (do_nothing, do_everything)):
         end = time.perf_counter() + _TURN_SECONDS
-        async for _ in ATTACKS[name](visitor, choice):
-            yield
-            if time.perf_counter() > end:
-                break
+        async with aclosing(ATTACKS[name](visitor, choice)) as actions:
+            async for _ in actions:
+                yield
+                if time.perf_counter() > end:
+                    break
 
 
 def formula_link(choice: random.Random) -> str:

@@ -21,7 +21,7 @@ import sys
 import tempfile
 import time
 from collections.abc import AsyncIterator, Awaitable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
+from contextlib import ExitStack, aclosing, asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -164,8 +164,11 @@ async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) 
 
     async def run_attack(place: Place, number: int) -> None:
         nonlocal actions
-        async with visiting(place, seed + 100 + number, attackers) as visitor:
-            async for _ in ATTACKS[name](visitor, random.Random(seed + number)):
+        async with (
+            visiting(place, seed + 100 + number, attackers) as visitor,
+            aclosing(ATTACKS[name](visitor, random.Random(seed + number))) as steps,
+        ):
+            async for _ in steps:
                 actions += 1
                 # A refused visitor comes back, as a person would.
                 if not visitor.is_open:

@@ -32,7 +32,7 @@ MEMORY = 2**30
 
 # Interval at which the process checks whether the server still exists, in seconds.
 _WATCH_SECONDS = 2.0
-# On a busy machine a call takes at most this many times its processor time, in addition to the start of its process.
+# On a busy machine a call takes at most this many times its processor time, once its process has begun within this time.
 _PATIENCE, _START_SECONDS = 4, 60.0
 # Interval at which a call checks whether anyone still waits for it, and the time until it ends if nobody does, in seconds.
 _POLL_SECONDS, _ABANDONED_SECONDS = 0.1, 1.0
@@ -100,9 +100,10 @@ class LimitedProcess:
             executor.shutdown(wait=False, kill_workers=True)
 
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
-        future = self._submit(partial(_call_limited, self._seconds, function))
         try:
-            result, computed = self._wait(future, cancel)
+            self._wait(self._submit(os.getpid), cancel, _START_SECONDS)
+            call = self._submit(partial(_call_limited, self._seconds, function))
+            result, computed = self._wait(call, cancel, _PATIENCE * self._seconds)
         except (BrokenExecutor, FutureTimeoutError, MemoryError):
             self.close()
         except CancelledError:
@@ -117,14 +118,14 @@ class LimitedProcess:
             f"this formula needs more than {self._seconds} s or {self._memory // 2**20} MB to be understood; choose a simpler one"
         )
 
-    def _wait[Result](self, future: Future[Result], cancel: threading.Event) -> Result:
+    def _wait[Result](self, future: Future[Result], cancel: threading.Event, most_seconds: float) -> Result:
         """Return the result unless the call takes too long or is cancelled."""
         begun = time.monotonic()
         while not wait([future], _POLL_SECONDS).done:
             seconds = time.monotonic() - begun
             if cancel.is_set() and seconds > _ABANDONED_SECONDS:
                 raise CancelledError
-            if seconds > _START_SECONDS + _PATIENCE * self._seconds:
+            if seconds > most_seconds:
                 raise FutureTimeoutError
         return future.result()
 

@@ -111,10 +111,12 @@ class Motion(Result):
             raise ValueError(f"potential={self.name}: its frame must rotate for a Jacobi constant")
         definition: Any = self.form.definition
         terms: dict[Expression, float] = dict(definition.terms) if isinstance(definition, Sum) else {}
+        divisor = (self.mass * self.rotation) ** 2
         is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * self.mass * self.rotation**2) for square in _SQUARES)
-        if not is_centrifugal or _MIXED in terms:
+        # The square of a very small number is 0.
+        if not is_centrifugal or _MIXED in terms or not divisor:
             return 0.0
-        return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / (self.mass * self.rotation) ** 2
+        return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / divisor
 
     def in_rotating_frame(self, rotation: float) -> Self:
         """Return the potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ m Ω² (x² + y²).

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import threading
 from collections.abc import Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
@@ -49,7 +50,7 @@ def recurse() -> None:
     recurse()
 
 
-@pytest.mark.parametrize("function", [compute_forever, fill_memory, recurse])
+@pytest.mark.parametrize("function", [compute_forever, fill_memory, recurse, signal.pause])
 def test_a_call_beyond_a_limit_is_refused_and_the_next_one_is_answered(limited: LimitedProcess, function: object) -> None:
     before = limited.stopped
     with pytest.raises(LimitError, match="needs more than 1 s or 512 MB"):

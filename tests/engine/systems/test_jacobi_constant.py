@@ -101,3 +101,8 @@ def test_bounded_orbits_of_rotating_systems_are_followed_for_a_short_time_by_def
     assert MapSpec(POTENTIALS["I"], "x_px", 0.2).t_max == 1e5
     start = [[0.05, 0.0, 0.0, float(np.sqrt(2 * (-1.09 - EARTH_MOON.value(0.05, 0.0))))]]
     assert classify_orbits(EARTH_MOON, -1.09, start).t_max == 1000.0
+
+
+def test_a_frame_that_hardly_rotates_turns_about_the_origin() -> None:
+    bowl = parse_formula("x − 1/√(r² + 1)").in_rotating_frame(1e-170)
+    assert bowl.jacobi_constant(0.25) == -0.5
