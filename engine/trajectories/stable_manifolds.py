@@ -21,6 +21,7 @@ from engine.foundations.arrays import ReadOnlyArrays, read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.result import Result
 from engine.foundations.validation import checked_count, checked_number, checks_types
+from engine.foundations.wording import format_whole
 from engine.slices.default_window import default_window
 from engine.slices.planes import SECTION
 from engine.slices.window import GivenWindow, checked_window
@@ -112,7 +113,7 @@ class StableManifolds(Result):
         """Return the numbers of arcs and points in one sentence."""
         images = sorted({arc.image for arc in self.arcs})
         shown = f"images {', '.join(map(str, images))}" if len(images) > 1 else f"image {images[0]}" if images else "no image"
-        points = sum(arc.x.size for arc in self.arcs)
+        points = format_whole(sum(arc.x.size for arc in self.arcs))
         truncated = ", some of them truncated spirals" if self.truncated else ""
         return f"Stable manifolds of the Lyapunov orbits, {shown}: {len(self.arcs)} arcs of {points} points{truncated}."
 
