@@ -66,7 +66,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     inner_names: ClassVar[frozenset[str]] = frozenset(
         {
             *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "made_by", "numbers"),
-            *("row_dimension", "shown_numbers"),
+            *("kinds", "row_dimension", "shown_numbers"),
             *FORMER_FIELDS,
         }
     )
@@ -77,6 +77,9 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
     """Attributes that contain codes, with the enumeration that defines them."""
+
+    kinds: ClassVar[dict[str, type[Result]]] = {}
+    """The classes of results by name; files contain the name."""
 
     row_dimension: ClassVar[str] = ""
     """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
@@ -121,6 +124,10 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     def _repr_html_(self) -> str:
         return load_pictures().to_html(self)
 
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        Result.kinds[cls.__name__] = cls
+
     def __dir__(self) -> list[str]:
         return [name for name in super().__dir__() if name not in self.inner_names]
 
@@ -154,6 +161,11 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         table = pd.DataFrame(dict(columns) if columns else {name: [value] for name, value in numbers.items()})
         table.attrs = numbers
         return table
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes held by the arrays."""
+        return sum(int(getattr(value, "nbytes", 0)) for value in vars(self).values())
 
     def provenance(self) -> dict[str, Any]:
         """Return how the result was made, in plain values, as far as it is known: the version, the potential, the request."""
