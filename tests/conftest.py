@@ -11,10 +11,12 @@ import os
 import shutil
 import sys
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from hypothesis import settings
 from playwright.sync_api import Browser, Playwright, expect, sync_playwright
+from xdist.scheduler import LoadScopeScheduling
 
 from engine.integrator.jit.compiled_operations import compiled_operations
 
@@ -37,6 +39,18 @@ BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-c
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=15, database=None)
 settings.register_profile("random", derandomize=False, deadline=None, max_examples=60, database=None, print_blob=True)
 settings.load_profile("fixed")
+
+
+class OneBrowser(LoadScopeScheduling):
+    """The tests of a file run in one process, and so do all that open the page in Chromium: they share a server."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        return "tests/browser" if nodeid.startswith("tests/browser/") else nodeid.partition("::")[0]
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> OneBrowser:
+    """Schedule by `OneBrowser`."""
+    return OneBrowser(config, log)
 
 
 def pytest_collection_finish() -> None:

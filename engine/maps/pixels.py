@@ -33,12 +33,6 @@ class PixelAnalysis(MapResult):
     complete: bool = field(default=True, kw_only=True)
     pixel_arrays: ClassVar[PixelArrays] = {}
     """The arrays with a value for each pixel, in the form that `empty_arrays` takes."""
-    kinds: ClassVar[dict[str, type[PixelAnalysis]]] = {}
-    """All classes of analyses by name; files contain the name."""
-
-    def __init_subclass__(cls) -> None:
-        super().__init_subclass__()
-        PixelAnalysis.kinds[cls.__name__] = cls
 
     def to_xarray(self) -> xr.Dataset:
         """Return the values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""

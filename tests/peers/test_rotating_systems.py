@@ -107,7 +107,7 @@ def grazing_states(potential: Potential, energy: float, depth: float) -> list[tu
 GRAZED = [
     ("Earth-Moon", -1.095),
     ("Logarithmic bar", -0.485),
-    ("Two Yukawa centres", 0.5),
+    ("Copenhagen", -1.3),
 ]
 
 

@@ -13,6 +13,7 @@ export function render({model, el}) {
     const place = el.children.length
     Object.assign(radio, {type: "radio", name: "orbit"})
     radio.addEventListener("change", () => model.send_msg({chosen: place}))
+    row.style.setProperty("--orbit", `var(--orbit-${place + 1})`)
     row.append(radio, document.createElement("span"))
     el.append(row)
   }

@@ -11,17 +11,19 @@ from bokeh.document import Document
 # Lines do not break between a number and its equals sign or power of ten; groups of digits and the per cent sign are close to it.
 _AROUND_SIGN = re.compile(r"(?<=\w) (?=(?:=|≈) [−-]?\d)|(?<=[=≤×]) (?=[−-]?\d)|(?<=\d) (?=×)")
 _SUBSCRIPT = re.compile(r"\b(?:([A-Za-z])_|(p)(?=[xy]\b)|(ω)(?=[12]\b))([a-z]{1,3}|\d)\b")
+_POWER = re.compile(r"\b([et])\^(\d+(?:\.\d+)?)")
 _DIGITS = str.maketrans("12", "₁₂")
 _IN_NUMBER = re.compile(r"(?<=\d) (?=%|\d{3}\b)")
 
 
 def typeset(html: str) -> str:
-    """Return HTML whose lines do not break inside a number, with the subscripts of symbols, such as px, ω1 and S_b."""
+    """Return HTML whose lines do not break inside a number, with subscripts and powers, such as px, ω1, S_b and e^6.5."""
     # Every second part is a tag.
     parts = re.split(r"(<[^>]*>)", html)
     for space, places in (("\N{NO-BREAK SPACE}", _AROUND_SIGN), ("\N{NARROW NO-BREAK SPACE}", _IN_NUMBER)):
         parts[::2] = [places.sub(space, part) for part in parts[::2]]
-    parts[::2] = [_SUBSCRIPT.sub(r"\1\2\3<sub>\4</sub>", part) for part in parts[::2]]
+    for replaced, places in ((r"\1\2\3<sub>\4</sub>", _SUBSCRIPT), (r"\1<sup>\2</sup>", _POWER)):
+        parts[::2] = [places.sub(replaced, part) for part in parts[::2]]
     return "".join(parts)
 
 

@@ -43,7 +43,7 @@ def test_interpolated_lines_are_the_lines() -> None:
     potential, highest = hill(), -1.5
     length, unit = potential.units.length, potential.units.energy
     tables = tabulate_exits(potential.in_well_units, highest / unit)
-    for energy in np.random.default_rng(3).uniform(potential.escape_energy, highest, 8).tolist():
+    for energy in np.random.default_rng(3).uniform(potential.escape_energy, highest, 4).tolist():
         for orbit in find_lyapunov_orbits(potential, energy):
             points = length * tables[orbit.channel - 1].points_at(energy / unit, np.linspace(-1.0, 1.0, len(orbit.exit_path)))
             np.testing.assert_allclose(points.T, orbit.exit_path, rtol=0, atol=LARGEST_ERROR * length)

@@ -41,8 +41,7 @@ def test_sums_that_differ_by_a_power_of_two_are_a_common_factor() -> None:
 
 
 def test_the_graph_does_not_depend_on_hashes() -> None:
-    one, *others = (_graph_of_a_process(seed) for seed in range(3))
-    assert all(other == one for other in others)
+    assert _graph_of_a_process(seed=1) == _graph_of_a_process(seed=2)
 
 
 def _graph_of_a_process(seed: int) -> str:

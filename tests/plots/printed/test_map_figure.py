@@ -225,7 +225,7 @@ def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() ->
     legend = axes.get_legend()
     assert legend is not None
     labels = [text.get_text() for text in legend.get_texts()]
-    assert [label for label in labels if "manifold" in label] == [f"stable manifold of Lyapunov orbit {k}" for k in (1, 2, 3)]
+    assert [label for label in labels if "manifold" in label] == [f"stable manifold {k}" for k in (1, 2, 3)]
     assert not any(label.startswith("_") for label in labels)
 
 

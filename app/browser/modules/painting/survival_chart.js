@@ -32,7 +32,7 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
     context.fillRect(LEFT, placeY(share), width - LEFT - 4, 0.5)
   }
   const law = rate > 0 ? "; dashed: flux over volume" : ""
-  context.fillText(`Share inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4)
+  context.fillText(`Inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4, width - LEFT)
   const times = escapeTime.filter(each => each <= time).sort()
   const line = (/** @type {(t: number) => number} */ shareAt, /** @type {number} */ end) => {
     context.beginPath()

@@ -36,6 +36,7 @@ def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: 
         ("error ≤ 1.9 × 10⁻¹²", "error ≤~1.9~×~10⁻¹²"),
         ("97.5 % of 1 034 275 starts", "97.5_% of 1_034_275 starts"),
         ("x = y, exit 1 at 20 times", "x = y, exit 1 at 20 times"),
+        ("e^6.51, like t^1.01, x^2", "e<sup>6.51</sup>, like t<sup>1.01</sup>, x^2"),
         ("<path d='M1 200'>1 200</path>", "<path d='M1 200'>1_200</path>"),
     ],
 )
