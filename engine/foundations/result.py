@@ -65,8 +65,8 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     inner_names: ClassVar[frozenset[str]] = frozenset(
         {
-            *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "made_by", "numbers"),
-            *("kinds", "row_dimension", "shown_numbers"),
+            *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "kinds", "made_by"),
+            *("numbers", "read_parts", "row_dimension", "shown_numbers"),
             *FORMER_FIELDS,
         }
     )
@@ -77,9 +77,6 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
     """Attributes that contain codes, with the enumeration that defines them."""
-
-    kinds: ClassVar[dict[str, type[Result]]] = {}
-    """The classes of results by name; files contain the name."""
 
     row_dimension: ClassVar[str] = ""
     """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
@@ -124,12 +121,18 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     def _repr_html_(self) -> str:
         return load_pictures().to_html(self)
 
-    def __init_subclass__(cls) -> None:
-        super().__init_subclass__()
-        Result.kinds[cls.__name__] = cls
-
     def __dir__(self) -> list[str]:
         return [name for name in super().__dir__() if name not in self.inner_names]
+
+    @classmethod
+    def kinds(cls) -> dict[str, type[Any]]:
+        """Return all classes of results by name; files contain the name."""
+        return {name: kind for each in cls.__subclasses__() for name, kind in {each.__name__: each, **each.kinds()}.items()}
+
+    @classmethod
+    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return the fields that files store as several variables, by name; most results have none."""
+        return {}
 
     def __repr__(self) -> str:
         describe = getattr(self, "describe", None)

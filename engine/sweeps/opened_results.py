@@ -20,7 +20,6 @@ from engine.systems.formulas.stored_potential import read_potential
 from engine.systems.outcomes import read_outcomes
 from engine.systems.potential import Potential
 from engine.trajectories.sampled_orbits import SampledOrbits
-from engine.trajectories.stable_manifolds import StableManifolds
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,23 +116,25 @@ def _open(path: str | os.PathLike[str]) -> Any:
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     if dataset.attrs.get("result") == _FORMER_CURVES:
         return dataset
-    held = str(dataset.attrs.get("result", "no result"))
-    kind: Any = Result.kinds.get(held)
+    kind = Result.kinds().get(str(dataset.attrs.get("result")))
     if kind is None:
-        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold a result such as an EscapeMap. xarray opens it")
+        held = dataset.attrs.get("result", "no result")
+        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold a result of this library. xarray opens it")
     dataset = with_present_names(dataset)
     return _READERS[kind](dataset) if kind in _READERS else _read_fields(kind, dataset)
 
 
 def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
     """Return a result from its fields; fields that the file does not contain have their default values, or are None."""
-    hints, values = get_type_hints(kind), {}
+    hints, values = get_type_hints(kind), kind.read_parts(dataset)
     if kind is SampledOrbits:
         dataset = _with_times_of_each(dataset)
     elif issubclass(kind, PixelAnalysis):
         dataset = _with_names_of_axes(dataset)
     for each in fields(kind):
         name = kind.held_as.get(each.name, each.name)
+        if each.name in values:
+            continue
         if each.name in _HELD_OTHERWISE:
             values[each.name] = _HELD_OTHERWISE[each.name](dataset)
         elif name in dataset.variables:
@@ -171,7 +172,6 @@ _HELD_OTHERWISE: Mapping[str, Callable[[xr.Dataset], Any]] = {
     "spec": read_spec,
     "potential": lambda dataset: read_potential(dataset.attrs) if "terms" in dataset.attrs else None,
     "outcomes": lambda dataset: read_outcomes(dataset.attrs.get("outcomes", "[]")),
-    "arcs": lambda dataset: StableManifolds.arcs_of({str(name): each.values for name, each in dataset.variables.items()}),
     "made_by": lambda dataset: {},
 }
 # Facts about the request and the result that files contain only once.

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Execution, MapSpec, Plane, Result, compute_map, open_result
+from engine import CASES, EscapeMap, Execution, MapSpec, Plane, compute_map, open_result
 from engine.foundations.arrays import read_only
 from engine.jobs.job import Job, run_job
 from engine.maps.pixels import PixelAnalysis
@@ -35,8 +35,7 @@ def late(monkeypatch: pytest.MonkeyPatch) -> Any:
     entry = run_example("Example: add a layer", GIVEN)["LATE"]
     for module in (map_analyses, map_images, table):
         monkeypatch.setattr(module, "LAYERS", {**table.LAYERS, entry.name: entry})
-    yield entry
-    Result.kinds.pop(entry.result.__name__)
+    return entry
 
 
 def test_the_layer_of_the_example_is_drawn_explained_and_stored(late: Any, tmp_path: Path) -> None:
