@@ -156,17 +156,6 @@ def test_map_comes_back(name: str, how: str, tmp_path: Path) -> None:
     assert found.spec.potential.name == wanted.spec.potential.name
 
 
-def test_map_of_a_random_potential_comes_back(tmp_path: Path) -> None:
-    terms = (
-        (2, 0, 0.5),
-        (0, 2, 0.5),
-        *((i, 3 - i, float(c)) for i, c in enumerate(np.random.default_rng(0).uniform(-0.5, 0.5, 4))),
-    )
-    potential = Potential("random", terms)
-    wanted = compute_map(MapSpec(potential, Plane.X_PX, 1.1 * potential.escape_energy, (6, 5), t_max=50.0))
-    assert_equal(open_result(to_netcdf(wanted, tmp_path)), wanted)
-
-
 @functools.cache
 def computed(name: str) -> Result:
     result = RESULTS[name]()
