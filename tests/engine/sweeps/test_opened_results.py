@@ -272,7 +272,7 @@ def test_analyses_refuse_a_map_of_a_sweep_along_a_parameter_whose_fates_have_oth
         compute_trust(one)
 
 
-def test_several_maps_are_no_map(store: Path) -> None:
+def test_a_dataset_of_several_maps_is_refused(store: Path) -> None:
     with pytest.raises(ValueError, match=r"labels: a dataset of several maps; must be one of them, such as dataset.sel"):
         compute_basin_entropy(open_result(store).dataset)
 
