@@ -165,6 +165,11 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         table.attrs = numbers
         return table
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes held by the arrays."""
+        return sum(int(getattr(value, "nbytes", 0)) for value in vars(self).values())
+
     def provenance(self) -> dict[str, Any]:
         """Return how the result was made, in plain values, as far as it is known: the version, the potential, the request."""
         return {"version": metadata.version("escape-explorer")}

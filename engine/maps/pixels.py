@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -48,12 +48,6 @@ class PixelAnalysis(MapResult):
         attributes = {"result": type(self).__name__, **self.spec.provenance(), **numbers}
         coordinates = {name: (name, centres, {"units": "1"}) for name, centres in ((ordinate_name, ordinate), (abscissa_name, x))}
         return xr.Dataset(variables, coordinates, attributes)
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        values = (getattr(self, field.name) for field in fields(self))
-        return sum(value.nbytes for value in values if isinstance(value, np.ndarray))
 
 
 def code_share(codes: np.ndarray, *counted: int) -> float:
