@@ -14,7 +14,10 @@ import param
 from panel.custom import JSComponent
 
 from app.state.view import PICTURES
-from plots.layers.table import TITLES
+from app.views.maps.well import TITLE
+from plots.layers import table
+
+_TITLES = {"well": TITLE} | {name: picture.title for name, picture in table.PICTURES.items()}
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
 """The picture that a key enlarges or reduces."""
@@ -41,7 +44,7 @@ KEYS: Mapping[str, str] = MappingProxyType(
         "Enter": "orbit in the middle of the maps",
         "Escape": "show all pictures, or stop the computation",
         "?": "these keys",
-        **{key: f"enlarge: {TITLES.get(name, name)}" for key, name in PICTURE_KEYS.items()},
+        **{key: f"enlarge: {_TITLES[name]}" for key, name in PICTURE_KEYS.items()},
     }
 )
 """The action of each key, by its name."""
