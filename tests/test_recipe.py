@@ -44,5 +44,5 @@ def test_packages_of_the_build_are_the_same() -> None:
     ],
     ids=["version", "python", "name", "summary", "licence", "licence file", "command"],
 )
-def test_facts_are_the_same(found: Any, wanted: Any) -> None:
+def test_the_facts_of_all_recipes_are_the_same(found: Any, wanted: Any) -> None:
     assert found == wanted

@@ -1,6 +1,6 @@
 """Compute a map of the exit, the escape time and the crossings of each start, and write it to STEM.nc and STEM.png.
 
-The NetCDF file contains all results and the request; curves of layers are written to tables such as STEM-manifolds.csv.
+The NetCDF file contains all results and the request; curves of layers are written to tables named STEM-LAYER.csv.
 
 Examples:
 

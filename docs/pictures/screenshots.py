@@ -10,13 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, expect, sync_playwright
 
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 
 DOCS = Path(__file__).parents[1]
 HEIGHTS = {1600: 900, 1280: 800, 420: 860}
+TIMEOUT_MS = 120_000.0
 ORBITS = "?case=III&h=0.35&t_max=10000&orbits=0.1,0.2;-0.3,0.02"
 
 PLAYED = "?case=III&plane=x_y&h=0.28&t_max=1000"
@@ -39,11 +40,13 @@ class Screenshot:
         """Open the page, act, and save what it shows."""
         viewport = {"width": self.width, "height": HEIGHTS[self.width]}
         context = browser.new_context(viewport=viewport, color_scheme=self.theme, has_touch=self.width == min(HEIGHTS))
+        context.set_default_timeout(TIMEOUT_MS)
         explorer = ExplorerPage(context.new_page(), address + self.link)
         explorer.open()
         self.act(explorer)
         # Layers, analyses and thumbnails follow the map.
         explorer.page.wait_for_timeout(4000)
+        expect(explorer.page.get_by_text("computing").filter(visible=True)).to_have_count(0, timeout=TIMEOUT_MS)
         png = explorer.page.screenshot(full_page=self.whole)
         file = DOCS / "screenshots" / f"{self.name}-{self.width}-{self.theme}.webp"
         Image.open(io.BytesIO(png)).convert("RGB").save(file, quality=70, method=6)

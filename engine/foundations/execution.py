@@ -86,8 +86,8 @@ class Execution:
     """Options of a computation: its executor, its cancellation, and the receiver of its progress.
 
     Complete results do not depend on them, to the last bit. A cancelled computation raises `concurrent.futures.CancelledError`,
-    except where the result marks what is missing: `compute_map`, `compute_trust` and `compute_regularity` return a map whose
-    ``complete`` is False, and `classify_orbits` returns codes of orbits that were not computed.
+    except where the result marks what is missing: `compute_map` and the analyses of maps return a map whose ``complete`` is
+    False, and `classify_orbits` returns codes of orbits that were not computed.
 
     Parameters
     ----------

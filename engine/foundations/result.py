@@ -65,8 +65,8 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     inner_names: ClassVar[frozenset[str]] = frozenset(
         {
-            *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "made_by", "numbers"),
-            *("row_dimension", "shown_numbers"),
+            *("chart", "codes", "columns", "fate_labels", "held_as", "in_well_units", "inner_names", "kinds", "made_by"),
+            *("numbers", "read_parts", "row_dimension", "shown_numbers"),
             *FORMER_FIELDS,
         }
     )
@@ -124,6 +124,16 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     def __dir__(self) -> list[str]:
         return [name for name in super().__dir__() if name not in self.inner_names]
 
+    @classmethod
+    def kinds(cls) -> dict[str, type[Any]]:
+        """Return all classes of results by name; files contain the name."""
+        return {name: kind for each in cls.__subclasses__() for name, kind in {each.__name__: each, **each.kinds()}.items()}
+
+    @classmethod
+    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return the fields that files store as several variables, by name; most results have none."""
+        return {}
+
     def __repr__(self) -> str:
         describe = getattr(self, "describe", None)
         arrays = {name: value for name, value in self._attributes().items() if isinstance(value, np.ndarray)}
@@ -154,6 +164,11 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         table = pd.DataFrame(dict(columns) if columns else {name: [value] for name, value in numbers.items()})
         table.attrs = numbers
         return table
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes held by the arrays."""
+        return sum(int(getattr(value, "nbytes", 0)) for value in vars(self).values())
 
     def provenance(self) -> dict[str, Any]:
         """Return how the result was made, in plain values, as far as it is known: the version, the potential, the request."""

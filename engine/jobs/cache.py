@@ -21,7 +21,7 @@ class ResultCache:
     ----------
     limit
         Largest total size in bytes, 0 or more; larger results are not stored. The size of a result is its attribute ``nbytes``; a
-        result without it counts as small.
+        result without arrays counts as small.
     """
 
     def __init__(self, limit: int) -> None:
@@ -58,4 +58,4 @@ class ResultCache:
 
 def _size(result: Any) -> int:
     """Return the size of a result in bytes, with that of its key."""
-    return int(getattr(result, "nbytes", _SMALL_RESULT))
+    return getattr(result, "nbytes", 0) or _SMALL_RESULT

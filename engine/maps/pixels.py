@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -33,12 +33,6 @@ class PixelAnalysis(MapResult):
     complete: bool = field(default=True, kw_only=True)
     pixel_arrays: ClassVar[PixelArrays] = {}
     """The arrays with a value for each pixel, in the form that `empty_arrays` takes."""
-    kinds: ClassVar[dict[str, type[PixelAnalysis]]] = {}
-    """All classes of analyses by name; files contain the name."""
-
-    def __init_subclass__(cls) -> None:
-        super().__init_subclass__()
-        PixelAnalysis.kinds[cls.__name__] = cls
 
     def to_xarray(self) -> xr.Dataset:
         """Return the values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
@@ -54,12 +48,6 @@ class PixelAnalysis(MapResult):
         attributes = {"result": type(self).__name__, **self.spec.provenance(), **numbers}
         coordinates = {name: (name, centres, {"units": "1"}) for name, centres in ((ordinate_name, ordinate), (abscissa_name, x))}
         return xr.Dataset(variables, coordinates, attributes)
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        values = (getattr(self, field.name) for field in fields(self))
-        return sum(value.nbytes for value in values if isinstance(value, np.ndarray))
 
 
 def code_share(codes: np.ndarray, *counted: int) -> float:

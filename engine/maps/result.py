@@ -170,12 +170,6 @@ class EscapeMap(MapResult):
         """Whether double precision does not support at least 1 % of the pixels."""
         return self.rounded_share is not None and self.rounded_share >= NOTED_SHARE
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays, including the integration state."""
-        arrays: list[np.ndarray] = [getattr(self, name) for name in PIXEL_ARRAYS]
-        return sum(array.nbytes for array in arrays) + (self.batch.nbytes if self.batch else 0)
-
     def check_complete(self, name: str) -> None:
         """Raise ValueError, with `name` as the parameter, unless the map is complete."""
         if not self.complete:

@@ -117,11 +117,6 @@ class DecayLaws(RecordedResult):
     ratio_low: float = float("nan")
     ratio_high: float = float("nan")
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        return self.times.nbytes + self.survival.nbytes
-
     def describe(self) -> str:
         """Describe the law with its interval, or the reason why there is none, in one or two sentences."""
         if self.exponential is None or self.power_law is None:

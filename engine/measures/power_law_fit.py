@@ -105,12 +105,6 @@ class UncertaintyExponent(RecordedResult):
         """Return the scalar attributes, and the dimension of the boundary."""
         return {**super().numbers(), "dimension": self.dimension}
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        arrays = (self.separations, self.pairs, self.uncertain, self.used, self.one_inside, self.both_inside)
-        return sum(array.nbytes for array in arrays)
-
     def describe(self) -> str:
         """Describe the result, or the reason why there is none, in one sentence."""
         if np.isnan(self.exponent):

@@ -9,7 +9,6 @@ import numpy as np
 
 from engine.exits.interior import find_outside_in_well_units
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
-from engine.foundations.validation import checks_types
 from engine.slices.axes import (
     ANGLES,
     MOMENTA,
@@ -22,7 +21,6 @@ from engine.slices.axes import (
     highest_energy,
     scaled_energy,
 )
-from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
 from engine.slices.window import Window
 from engine.systems.potential import Potential
@@ -56,37 +54,49 @@ _EMPTY = "must be at least about 1e-5 above the minimum of the well; fixed value
 Range = tuple[float, float]
 
 
-@checks_types(potential=Potential)
+@functools.lru_cache(maxsize=1024)
 def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window:
     """Find a window that shows the whole interior: all starts that are neither forbidden nor outside.
+
+    On a slice of one energy it is a square in units of the well, unless the interior is much longer than wide.
 
     Parameters
     ----------
     potential
         The potential.
     plane
-        The slice, such as a `Plane`.
+        The slice.
     energy
         h, dimensionless; on a slice with an axis h the pair (lowest, highest).
-
-    Returns
-    -------
-    The window. On a slice of one energy it is a square in units of the well, unless the interior is much longer than wide.
 
     Raises
     ------
     ValueError
-        If an energy is out of range, or there is no interior at this energy.
-
-    Examples
-    --------
-    >>> from escape_explorer import CASES, MapSpec, Plane
-    >>> window = MapSpec(CASES["III"], Plane.X_PX, 0.45).find_window()
-    >>> round(window.x_low, 4), round(window.x_high, 4)
-    (-1.0056, 1.0056)
+        If there is no interior at this energy.
     """
-    chosen = checked_slice(plane)
-    return _default_window(potential, chosen, chosen.checked_energy(energy))
+    found, problem = [], None
+    for each in _potentials(potential, plane):
+        try:
+            found += _axis_ranges(each, plane, energy)
+        except ValueError as error:
+            # Along a parameter, other values may have exits.
+            problem = error
+    if problem is not None and not found:
+        raise problem
+    if not found:
+        raise ValueError(f"energy={highest_energy(energy)}: the interior is empty on {plane.title}; {_EMPTY}")
+    x_low, ordinate_low = np.min(found, axis=0)[:, 0].tolist()
+    x_high, ordinate_high = np.max(found, axis=0)[:, 1].tolist()
+    if any(map(_is_whole, plane.axes)) or isinstance(energy, tuple):
+        return Window(
+            *_edges(plane.abscissa, energy, x_low, x_high), *_edges(plane.ordinate, energy, ordinate_low, ordinate_high)
+        )
+    x_unit, unit = (_exact_unit(axis, potential) for axis in plane.axes)
+    sides = (x_high - x_low) / x_unit, (ordinate_high - ordinate_low) / unit
+    if max(sides) > _LARGEST_ASPECT * min(sides):
+        return Window(*_widened((x_low, x_high)), *_widened((ordinate_low, ordinate_high)))
+    window = _square_window(x_low / x_unit, x_high / x_unit, ordinate_low / unit, ordinate_high / unit)
+    return window.scaled(x_unit, unit)
 
 
 def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: tuple[int, int]) -> Window:
@@ -125,33 +135,6 @@ def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, place:
     states = states[np.isfinite(states).all(axis=1)]
     symmetries = ((potential.well.mirror_in_x, [0, 2]), (potential.well.mirror_in_y, [1, 3]))
     return bool(states.size) and any(symmetric and not states[:, pair].any() for symmetric, pair in symmetries)
-
-
-@functools.lru_cache(maxsize=1024)
-def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Window:
-    found, problem = [], None
-    for each in _potentials(potential, plane):
-        try:
-            found += _axis_ranges(each, plane, energy)
-        except ValueError as error:
-            # Along a parameter, other values may have exits.
-            problem = error
-    if problem is not None and not found:
-        raise problem
-    if not found:
-        raise ValueError(f"energy={highest_energy(energy)}: the interior is empty on {plane.title}; {_EMPTY}")
-    x_low, ordinate_low = np.min(found, axis=0)[:, 0].tolist()
-    x_high, ordinate_high = np.max(found, axis=0)[:, 1].tolist()
-    if any(map(_is_whole, plane.axes)) or isinstance(energy, tuple):
-        return Window(
-            *_edges(plane.abscissa, energy, x_low, x_high), *_edges(plane.ordinate, energy, ordinate_low, ordinate_high)
-        )
-    x_unit, unit = (_exact_unit(axis, potential) for axis in plane.axes)
-    sides = (x_high - x_low) / x_unit, (ordinate_high - ordinate_low) / unit
-    if max(sides) > _LARGEST_ASPECT * min(sides):
-        return Window(*_widened((x_low, x_high)), *_widened((ordinate_low, ordinate_high)))
-    window = _square_window(x_low / x_unit, x_high / x_unit, ordinate_low / unit, ordinate_high / unit)
-    return window.scaled(x_unit, unit)
 
 
 def _exact_unit(axis: Axis, potential: Potential) -> float:

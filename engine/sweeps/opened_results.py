@@ -8,7 +8,6 @@ from dataclasses import MISSING, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_type_hints, overload
 
-from engine.exits.lyapunov_orbits import LyapunovOrbit
 from engine.foundations.extras import require_package
 from engine.foundations.result import RecordedResult, Result
 from engine.foundations.stored_fields import plain_attributes, read_field, with_present_names
@@ -16,40 +15,15 @@ from engine.foundations.validation import checks_types
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap, read_map
 from engine.maps.spec import read_spec
-from engine.measures.basin_entropy import BasinEntropy
-from engine.measures.chaotic_share import ChaoticShare
-from engine.measures.decay_laws import DecayLaws
-from engine.measures.escape_statistics import EscapeStatistics
-from engine.measures.exit_matching import ExitMatching
-from engine.measures.islands import Islands
-from engine.measures.power_law_fit import UncertaintyExponent
-from engine.measures.wada import WadaTest
-from engine.propagation.classification import Outcomes
 from engine.sweeps.sweep import Sweep
 from engine.systems.formulas.stored_potential import read_potential
 from engine.systems.outcomes import read_outcomes
 from engine.systems.potential import Potential
-from engine.systems.review.potential_review import PotentialReview
-from engine.trajectories.birkhoff_digits import BirkhoffDigits
-from engine.trajectories.flux import EscapeFlux
-from engine.trajectories.nearest_divergent_start import DivergentStart
-from engine.trajectories.orbit_verdicts import OrbitVerdict
 from engine.trajectories.sampled_orbits import SampledOrbits
-from engine.trajectories.separation import Separation
-from engine.trajectories.stable_manifolds import StableManifolds
-from engine.trajectories.trajectory import Orbit
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_KINDS: dict[str, Any] = {
-    kind.__name__: kind
-    for kind in (
-        EscapeMap, StableManifolds, Orbit, SampledOrbits, Outcomes, OrbitVerdict,
-        LyapunovOrbit, EscapeFlux, Separation, BirkhoffDigits, DivergentStart, BasinEntropy, WadaTest, UncertaintyExponent,
-        EscapeStatistics, DecayLaws, Islands, ChaoticShare, ExitMatching, Sweep, Potential, PotentialReview,
-    )
-}  # fmt: skip
 # Readers of results whose files do not contain the fields of a dataclass.
 _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     EscapeMap: read_map,
@@ -142,24 +116,25 @@ def _open(path: str | os.PathLike[str]) -> Any:
 def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
     if dataset.attrs.get("result") == _FORMER_CURVES:
         return dataset
-    kinds = _KINDS | PixelAnalysis.kinds
-    kind = kinds.get(str(dataset.attrs.get("result")))
+    kind = Result.kinds().get(str(dataset.attrs.get("result")))
     if kind is None:
         held = dataset.attrs.get("result", "no result")
-        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(kinds)}. xarray opens it")
+        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold a result of this library. xarray opens it")
     dataset = with_present_names(dataset)
     return _READERS[kind](dataset) if kind in _READERS else _read_fields(kind, dataset)
 
 
 def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
     """Return a result from its fields; fields that the file does not contain have their default values, or are None."""
-    hints, values = get_type_hints(kind), {}
+    hints, values = get_type_hints(kind), kind.read_parts(dataset)
     if kind is SampledOrbits:
         dataset = _with_times_of_each(dataset)
     elif issubclass(kind, PixelAnalysis):
         dataset = _with_names_of_axes(dataset)
     for each in fields(kind):
         name = kind.held_as.get(each.name, each.name)
+        if each.name in values:
+            continue
         if each.name in _HELD_OTHERWISE:
             values[each.name] = _HELD_OTHERWISE[each.name](dataset)
         elif name in dataset.variables:
@@ -197,7 +172,6 @@ _HELD_OTHERWISE: Mapping[str, Callable[[xr.Dataset], Any]] = {
     "spec": read_spec,
     "potential": lambda dataset: read_potential(dataset.attrs) if "terms" in dataset.attrs else None,
     "outcomes": lambda dataset: read_outcomes(dataset.attrs.get("outcomes", "[]")),
-    "arcs": lambda dataset: StableManifolds.arcs_of({str(name): each.values for name, each in dataset.variables.items()}),
     "made_by": lambda dataset: {},
 }
 # Facts about the request and the result that files contain only once.

@@ -109,14 +109,15 @@ def _predict_seconds(spec: MapSpec, execution: Execution) -> float:
     """Return the processor time of one map in seconds, extrapolated linearly from two coarse maps."""
     pixels = np.prod(spec.resolution)
     small, large = (side * side for side in _COARSE_SIDES)
-    first, second = (_measure_seconds(replace(spec, resolution=(side, side)), execution) for side in _COARSE_SIDES)
+    first, second = (measure_seconds(replace(spec, resolution=(side, side)), execution) for side in _COARSE_SIDES)
     slope = (second - first) / (large - small)
     # A slope of 0 or less is measurement noise.
     rate = min(slope, second / large) if slope > 0.0 else second / large
     return second + rate * max(float(pixels) - large, 0.0)
 
 
-def _measure_seconds(spec: MapSpec, execution: Execution) -> float:
+def measure_seconds(spec: MapSpec, execution: Execution) -> float:
+    """Return the processor time of a map."""
     begun = time.thread_time()
     # The map is computed in this thread, because its processor time is measured.
     if not compute_map(spec, execution=execution.in_this_thread()).complete:

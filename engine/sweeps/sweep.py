@@ -64,11 +64,6 @@ class Sweep(Result):
         """Whether all values have been measured."""
         return self.values.size == int(self.dataset.attrs["count"])
 
-    @property
-    def nbytes(self) -> int:
-        """Size in bytes."""
-        return int(self.dataset.nbytes)
-
     def __getitem__(self, name: str) -> np.ndarray:
         """Return a measure as an array, by the name of its variable."""
         return np.asarray(self.dataset[name].values)

@@ -42,7 +42,7 @@ _MAP_KERNELS = ("step", "jets", "potential_value", "shoot", "propagate")
 """Kernels of the first frame of a map and of its Lyapunov orbits."""
 
 
-class _Compilations:
+class Compilations:
     """The running compilations of kernels for maps."""
 
     def __init__(self) -> None:
@@ -69,7 +69,7 @@ class _Compilations:
             self._changed.wait_for(lambda: not self._running)
 
 
-_for_maps = _Compilations()
+_for_maps = Compilations()
 
 
 def _known_kernels(potential: Potential) -> ModuleType | None:

@@ -39,11 +39,6 @@ class BirkhoffDigits(RecordedResult):
     time_unit: float = field(default=1.0, metadata=TIME)
     chart: ClassVar = Chart("windows", "digits", "window", "digits", logarithmic="x")
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        return self.windows.nbytes + self.digits.nbytes
-
 
 @checks_types(potential=Potential, execution=Execution)
 def compute_birkhoff_digits(

@@ -41,11 +41,6 @@ class Separation(RecordedResult):
     distance: np.ndarray = field(metadata=LENGTH)
     chart: ClassVar = Chart("t", "distance", "t", "distance", logarithmic="y")
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        return self.t.nbytes + self.distance.nbytes
-
 
 @with_former_parameters(t_end="t_max")
 @checks_types(potential=Potential, execution=Execution)

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -30,6 +30,9 @@ from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH, MOMENTUM
 from engine.trajectories.smooth_curves import PointSpacing, refine_passages, split_curve
 from engine.trajectories.unstable_manifold import UnstableManifold
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MOST_IMAGES = 6
 """Largest number of images; later ones are too fine and too many to plot."""
@@ -94,15 +97,17 @@ class StableManifolds(Result):
         codes = np.repeat(np.array(labels, int).reshape(-1, 3), sizes, axis=0).T
         return dict(zip(("arc", "channel", "image", "x", "px"), (*codes, *points), strict=True))
 
-    @staticmethod
-    def arcs_of(columns: Mapping[str, np.ndarray]) -> tuple[ManifoldArc, ...]:
-        """Return the arcs stored in the result of `columns`."""
-        starts = np.flatnonzero(np.diff(columns["arc"], prepend=0))
-        parts = [np.split(columns[name], starts[1:]) for name in ("channel", "image", "x", "px")] if starts.size else [[]] * 4
-        return tuple(
+    @classmethod
+    def read_parts(cls, dataset: xr.Dataset) -> dict[str, Any]:
+        """Return the arcs, from the variables that hold the result of `columns`."""
+        columns = {name: dataset[name].values for name in ("arc", "channel", "image", "x", "px")}
+        starts = np.flatnonzero(np.diff(columns.pop("arc"), prepend=0))
+        parts = [np.split(column, starts[1:]) for column in columns.values()] if starts.size else [[]] * 4
+        arcs = (
             ManifoldArc(int(channel[0]), int(image[0]), read_only(x), read_only(px))
             for channel, image, x, px in zip(*parts, strict=True)
         )
+        return {"arcs": tuple(arcs)}
 
     def describe(self) -> str:
         """Return the numbers of arcs and points in one sentence."""

@@ -153,12 +153,6 @@ class Orbit(OrbitResult):
             raise ValueError("this orbit has no potential; must be one of `integrate_orbit`")
         return self.potential
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes held by the arrays."""
-        state = (self.x, self.y, self.px, self.py)
-        return sum(array.nbytes for array in (self.t, *state, self.sali, self.lyapunov_exponent, self.r2))
-
 
 @checks_types(potential=Potential, execution=Execution)
 def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, execution: Execution = DEFAULT_EXECUTION) -> Orbit:

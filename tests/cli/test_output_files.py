@@ -27,7 +27,7 @@ def test_text_and_bytes_are_written(tmp_path: Path) -> None:
     assert ((tmp_path / "a").read_bytes(), (tmp_path / "b").read_bytes()) == ("R²\n".encode(), b"\x00\n")
 
 
-def test_number_at_the_end_of_a_name_is_no_ending() -> None:
+def test_a_number_at_the_end_of_a_name_is_not_taken_for_an_ending() -> None:
     assert name_files(Path("maps/h0.19"), ["nc", "png"], ["nc"]) == {"nc": Path("maps/h0.19.nc")}
 
 

@@ -65,17 +65,17 @@ def check(parameters: dict[str, str]) -> None:
 
 
 @given(links)
-def test_any_link(parameters: dict[str, str]) -> None:
+def test_any_link_gives_a_legal_view(parameters: dict[str, str]) -> None:
     check(parameters)
 
 
 @given(st.sampled_from([name for name in NAMES if name]), values)
-def test_link_with_one_arbitrary_value(name: str, value: str) -> None:
+def test_one_arbitrary_value_in_a_link_gives_a_legal_view(name: str, value: str) -> None:
     check({**LEGAL, name: value})
 
 
 @given(formulas, st.dictionaries(st.sampled_from(["case", "omega_1", "omega_2", "epsilon", "h", "orbits"]), values, max_size=3))
-def test_link_with_a_formula(formula: str, others: dict[str, str]) -> None:
+def test_any_formula_in_a_link_gives_a_legal_view(formula: str, others: dict[str, str]) -> None:
     check({"case": TYPED, **others, "V": formula})
 
 

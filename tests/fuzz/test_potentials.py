@@ -64,7 +64,7 @@ def test_potential_with_any_terms(terms: list[tuple[Any, ...]]) -> None:
 
 
 @given(formulas)
-def test_any_formula(text: str) -> None:
+def test_any_formula_is_reviewed_or_refused(text: str) -> None:
     potential = result_or_error(lambda: parse_formula(text), ["formula"])
     if potential is not None:
         assert parse_formula(write_formula(potential)).terms == potential.terms
@@ -90,7 +90,7 @@ def test_any_parameters_of_a_known_potential(name: str, omega_1: Any, omega_2: A
 
 
 @given(case_strings)
-def test_any_potential_argument(case: str) -> None:
+def test_any_potential_argument_is_found_or_refused(case: str) -> None:
     result_or_error(lambda: find_potential(case), ["case", *WELL_PARAMETERS])
     assert not set(file_name_part(case)) & set("/\\\0 \n")
 

@@ -35,8 +35,6 @@ from engine import (
 )
 from engine.foundations.validation import LONGEST_TIME
 from engine.measures.power_law_fit import fit_uncertainty
-from engine.slices.default_window import default_window
-from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
 from engine.trajectories.birkhoff_digits import compute_birkhoff_digits
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
@@ -137,7 +135,7 @@ def test_lyapunov_orbits(energy: Any) -> None:
 
 @given(planes, energies | st.tuples(energies, energies))
 def test_default_window(plane: Any, energy: Any) -> None:
-    result_or_error(lambda: default_window(CASE, plane, energy), ["energy", "plane"])
+    result_or_error(lambda: MapSpec(CASE, plane, energy).find_window(), ["energy", "plane"])
 
 
 @given(st.sampled_from(list(Plane)), st.floats(), st.lists(st.floats(), min_size=1, max_size=4))
@@ -148,11 +146,9 @@ def test_start_states(plane: Plane, energy: float, x: list[float]) -> None:
 
 
 @given(planes, energies, st.tuples(floats, floats, floats, floats))
-def test_equipotentials(plane: Any, energy: Any, corners: Any) -> None:
-    names = ["window", "energy", "energies", "plane"]
-    window = result_or_error(lambda: Window(*corners), names) or small_map().spec.find_window()
-    result_or_error(lambda: trace_zero_velocity_curve(CASE, plane, energy, window), names)
-    result_or_error(lambda: trace_equipotentials(CASE, plane, (energy, energy), window), names)
+def test_zero_velocity_curves(plane: Any, energy: Any, corners: Any) -> None:
+    names = ["window", "energy", "plane"]
+    result_or_error(lambda: MapSpec(CASE, plane, energy, window=corners).trace_zero_velocity_curve(), names)
 
 
 @given(planes, energies, coordinates, coordinates, times, mostly(st.floats(1e-6, 0.01)))

@@ -21,7 +21,7 @@ values = (
 
 
 @given(st.dictionaries(st.sampled_from([*VARIABLES, "ESCAPE_EXPLORER_CACHE", "PATH"]), values, max_size=4))
-def test_any_environment(environment: dict[str, str]) -> None:
+def test_any_environment_gives_legal_settings_or_an_error(environment: dict[str, str]) -> None:
     settings = result_or_error(lambda: read_settings(environment), VARIABLES)
     if settings is None:
         return

@@ -17,7 +17,7 @@ from tests.peers.exit_lines import exit_lines
 T_MAX = 60.0
 STARTS = 20
 SHIFT = np.array([1e-11, 0.0, 0.0, 0.0])
-SETS = [("I", 0.13), ("I", 0.5), ("II", 0.17), ("II", 0.5), ("III", 0.35), ("III", 0.6), ("III", 1.0)]
+SETS = [("I", 0.13), ("II", 0.5), ("III", 0.35)]
 
 
 def interior_starts(name: str, energy: float, plane: Plane) -> np.ndarray:

@@ -38,7 +38,7 @@ class _Entry:
     __ge__ = __le__
 
 
-def test_a_stack_that_waits_has_no_cause() -> None:
+def test_a_stack_that_waits_for_an_event_is_reported_as_waiting() -> None:
     thread = threading.Thread(target=(event := threading.Event()).wait)
     thread.start()
     frame = sys._current_frames()[thread.ident or 0]

@@ -67,7 +67,7 @@ NAN = {"type": "number", "value": "nan"}
         (lambda: TextInput(), "js_property_callbacks", [], [{}]),
     ],
 )  # fmt: skip
-def test_properties(model: Any, name: str, accepted: list[Any], refused: list[Any]) -> None:
+def test_properties_take_legal_values_only(model: Any, name: str, accepted: list[Any], refused: list[Any]) -> None:
     document, widget = Document(), model()
     document.add_root(widget)
     assert [value for value in accepted if not is_accepted(document, change(widget, name, value))] == []

@@ -84,7 +84,7 @@ def test_the_path_of_a_lyapunov_orbit_has_its_times() -> None:
     assert float(path["t"][-1]) == exit_orbit.period
 
 
-def test_codes_say_what_they_mean() -> None:
+def test_codes_have_their_meanings_in_the_attributes() -> None:
     outcomes = result_of("outcomes").to_xarray()
     assert outcomes["fate"].attrs["codes"].startswith("0: bounded; -1: forbidden")
     assert outcomes.sizes == {"orbit": 50}

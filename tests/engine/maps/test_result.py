@@ -168,13 +168,6 @@ def test_classified_orbits_have_the_outcomes_of_the_map(whole: EscapeMap, outcom
         np.testing.assert_array_equal(getattr(outcomes, name), getattr(whole, name)[inside], err_msg=name)
 
 
-def test_outcomes_do_not_depend_on_the_order_of_orbits(starts: np.ndarray, outcomes: Outcomes) -> None:
-    order = np.random.default_rng(0).permutation(len(starts))
-    shuffled = classify_orbits(SPEC.potential, 0.35, starts[order], 300.0)
-    for name in OUTCOMES:
-        np.testing.assert_array_equal(getattr(shuffled, name), getattr(outcomes, name)[order], err_msg=name)
-
-
 def test_cancelled_orbits_stay_undecided(starts: np.ndarray) -> None:
     cancel = threading.Event()
     cancel.set()

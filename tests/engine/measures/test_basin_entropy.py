@@ -88,19 +88,6 @@ def test_random_labels_have_the_entropy_of_a_multinomial(labels: int) -> None:
     assert result.s_b_error < 1e-3
 
 
-def test_a_circle_has_the_mean_entropy_of_straight_lines() -> None:
-    place = np.arange(1500.0)
-    inside = np.hypot(*np.meshgrid(place - 749.3, place - 749.7)) < 600.0
-    rng = np.random.default_rng(0)
-    angle, offset = rng.uniform(0.0, 2.0 * np.pi, (100_000, 1)), rng.uniform(-3.0, 3.0, (100_000, 1))
-    x, y = (side.ravel() for side in np.meshgrid(np.arange(-2, 3), np.arange(-2, 3)))
-    share = np.mean(x * np.cos(angle) + y * np.sin(angle) > offset, axis=1)
-    expected = np.mean([entropy_of(part, 1.0 - part) for part in share[(share > 0) & (share < 1)]])
-    result = compute_basin_entropy(inside.astype(int))
-    assert result.s_bb == pytest.approx(expected, abs=DEVIATIONS * result.s_bb_error)
-    assert not result.beyond_ln2
-
-
 def test_grebogis_map_has_the_entropies_of_attractors_jl() -> None:
     """See test/basins/uncertainty_tests.jl in Attractors.jl: 300 × 300 starts, boxes of 6 × 6."""
     result = compute_basin_entropy(grebogi_basins(300), box=6)

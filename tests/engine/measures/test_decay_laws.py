@@ -196,14 +196,6 @@ def test_intervals_have_the_width_of_the_scatter_and_hold_the_rate_as_often_as_t
     assert stats.binomtest(held, SEEDS, 0.95).pvalue > FALSE_ALARM
 
 
-def test_the_error_of_an_exponent_is_that_of_a_mean_of_logarithms() -> None:
-    """In a window that hardly cuts off any escape, γ is 1 / mean of ln(t / t_low)."""
-    logarithms = np.log(power_times(1000) / T_LOW)
-    fitted = both(fit(power_times(1000)))[1]
-    assert fitted.rate == pytest.approx(1.0 / logarithms.mean(), rel=1e-3)
-    assert standard_error(fitted) == pytest.approx(logarithms.std() / np.sqrt(1000) / logarithms.mean() ** 2, rel=1e-2)
-
-
 def test_p_values_of_the_true_law_are_uniform(many: tuple[float, list[LawFit]]) -> None:
     assert stats.kstest([fitted.p_value for fitted in many[1]], "uniform").pvalue > FALSE_ALARM
 

@@ -64,12 +64,6 @@ def test_the_cantor_set_has_its_known_dimension() -> None:
     assert fit.high - fit.low < 0.05
 
 
-def test_a_smooth_boundary_has_exponent_one() -> None:
-    fit = fit_set(lambda x: np.floor(10.0 * x), 100_000, smallest=1e-5)
-    assert is_near(fit, 1.0)
-    assert fit.high - fit.low < 0.2
-
-
 def test_the_interval_has_95_percent_coverage() -> None:
     alpha, random = 0.02, np.random.default_rng(3)
     fits = [fit_uncertainty(*counts(law(alpha, 0.6), random)) for _ in range(TRIALS)]

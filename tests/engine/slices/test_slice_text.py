@@ -40,5 +40,5 @@ def test_a_named_slice_is_written_as_its_name(plane: Plane) -> None:
         ("u=1:0.5:0:0,px", "", Slice(Direction("u", 1.0, 0.5), C.PX)),
     ],
 )
-def test_texts_are_understood(axes: str, held: str, plane: Slice) -> None:
+def test_axes_and_held_coordinates_are_read(axes: str, held: str, plane: Slice) -> None:
     assert read_slice(axes, held, System("I")) == plane

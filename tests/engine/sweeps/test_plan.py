@@ -21,7 +21,7 @@ def test_plan_counts_starts_and_bytes() -> None:
 
 
 def test_time_scales_with_pixels_and_cores(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.sweeps.plan._measure_seconds", lambda spec, _execution: 0.5 + 1e-4 * np.prod(spec.resolution))
+    monkeypatch.setattr("engine.sweeps.plan.measure_seconds", lambda spec, _execution: 0.5 + 1e-4 * np.prod(spec.resolution))
     one = plan_sweep(replace(SPEC, resolution=(1000, 1000)), cores=1)
     many = plan_sweep(replace(SPEC, resolution=(1000, 1000)), cores=10)
     assert one.seconds == pytest.approx(3 * 100.5)
@@ -35,7 +35,7 @@ def test_plan_uses_the_midpoints_of_twelve_intervals(monkeypatch: pytest.MonkeyP
         seen.add(float(spec.energy))  # type: ignore[arg-type]
         return 1.0
 
-    monkeypatch.setattr("engine.sweeps.plan._measure_seconds", measured)
+    monkeypatch.setattr("engine.sweeps.plan.measure_seconds", measured)
     plan_sweep(replace(SPEC, values=tuple(np.linspace(0.0, 0.24, 241))))
     assert sorted(seen) == pytest.approx(np.arange(0.01, 0.24, 0.02), abs=0.001)
 

@@ -8,7 +8,7 @@ from engine import Potential
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.sweeps.warmup import (
-    _Compilations,
+    Compilations,
     is_ready_for_maps,
     prepare_for_analyses,
     prepare_for_evidence,
@@ -30,7 +30,7 @@ def test_kernels_are_compiled_in_the_order_of_need() -> None:
 
 
 def test_background_compilation_lets_maps_go_first() -> None:
-    compilations, order = _Compilations(), []
+    compilations, order = Compilations(), []
 
     def background() -> None:
         compilations.wait()

@@ -31,5 +31,5 @@ def test_each_has_a_sentence_and_what_an_orbit_does() -> None:
     ]
 
 
-def test_files_keep_them() -> None:
+def test_written_outcomes_are_read_again() -> None:
     assert read_outcomes(write_outcomes(ALL)) == ALL

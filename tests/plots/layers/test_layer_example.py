@@ -35,8 +35,7 @@ def late(monkeypatch: pytest.MonkeyPatch) -> Any:
     entry = run_example("Example: add a layer", GIVEN)["LATE"]
     for module in (map_analyses, map_images, table):
         monkeypatch.setattr(module, "LAYERS", {**table.LAYERS, entry.name: entry})
-    yield entry
-    PixelAnalysis.kinds.pop(entry.result.__name__)
+    return entry
 
 
 def test_the_layer_of_the_example_is_drawn_explained_and_stored(late: Any, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ def line_of(name: str, energy: float, window: Window | None = None, rotation: fl
 
 
 def test_a_rotating_frame_and_bodies_are_named() -> None:
-    assert ", Ω = 0.2, h = 0.15, " in line_of("HH", 0.15, rotation=0.2)
+    assert ", Ω = 0.2, h = 0.15, " in line_of("I", 0.15, rotation=0.2)
     assert "disc of radius " in line_of("Copenhagen", -1.7)
     assert "Ω" not in line_of("I", 0.15)
 

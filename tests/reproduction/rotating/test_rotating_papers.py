@@ -43,7 +43,7 @@ def test_shares_of_outcomes_add(computed: EscapeMap) -> None:
     assert outcome_share(frame, 2, BOUNDED) == 50.0
 
 
-def test_bounded_starts_are_counted_on_one_side(computed: EscapeMap) -> None:
+def test_shares_of_bounded_starts_are_those_of_each_side(computed: EscapeMap) -> None:
     frame = with_fates(computed, [BOUNDED] * 3 + [1] * 9)
     assert bounded_share_beside(frame, -1) == 50.0
     assert bounded_share_beside(frame, 1) == 0.0

@@ -45,7 +45,7 @@ def test_a_smooth_basin_boundary_has_exponent_one_and_the_correct_amplitude() ->
     assert np.abs(deviation[many]).max() < 6.5
 
 
-def test_it_agrees_with_neighbouring_fates_along_lines(henon_heiles: UncertaintyExponent) -> None:
+def test_the_exponent_agrees_with_that_of_neighbouring_fates_along_lines(henon_heiles: UncertaintyExponent) -> None:
     """Independent estimate: the share of neighbours with different fates on fine grids along lines, against the grid step."""
     x, lines, strides = np.linspace(-0.3, 0.3, 2**13 + 1), 64, 2 ** np.arange(10)
     shares = np.zeros((lines, strides.size))

@@ -206,7 +206,7 @@ def test_written_formulas_with_functions_parse_to_equal_potentials(seed: int) ->
         ("xy + 1/(x² + 2)", "xy + (x² + 2)⁻¹", lambda x, y: x * y + 1 / (x**2 + 2)),
     ],
 )
-def test_a_divisor_that_is_a_power_stays_one(text: str, written: str, function: Callable[..., np.ndarray]) -> None:
+def test_a_power_in_the_denominator_is_written_as_a_power(text: str, written: str, function: Callable[..., np.ndarray]) -> None:
     potential, places = parse_formula(text), (np.array([0.3, -0.2]), np.array([0.1, 0.4]))
     assert potential.name == written
     np.testing.assert_allclose(potential.value(*places), function(*places), rtol=1e-13)
