@@ -14,10 +14,9 @@ import param
 from panel.custom import JSComponent
 
 from app.state.view import PICTURES
-from app.views.maps.well import TITLE
 from plots.layers import table
 
-_TITLES = {"well": TITLE} | {name: picture.title for name, picture in table.PICTURES.items()}
+_TITLES = {"well": "the well"} | {name: picture.title for name, picture in table.PICTURES.items()}
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
 """The picture that a key enlarges or reduces."""
