@@ -225,8 +225,8 @@ class AnalysisPresenter:
             low, high = default_range(state.system, name)
             along, energy = ParameterAxis(name, low, high, state.system), state.energy
         self._swept = SweepSpec(
-            state.potential, plane, _swept_values(low, high), _SIDES, t_max=state.t_max, measures=CURVES, along=along, energy=energy,
-            refine=REFINED_VALUES,
+            state.potential, plane, _swept_values(low, high), _SIDES, t_max=state.t_max, measures=CURVES, along=along,
+            energy=energy, refine=REFINED_VALUES,
         )  # fmt: skip
         self.curves.show_running(True)
         self._sweeping.submit(sweep_job(self._swept))

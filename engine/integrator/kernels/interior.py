@@ -36,8 +36,8 @@ _FAR_SHARE = 0.25
 _COS, _SIN = np.cos(0.1), np.sin(0.1)
 # Smallest decrease of V in a step, relative to that along the gradient.
 _DECREASE = 0.25
-# V on lines to the origin must be lower than the energy by this, so that they do not pass over a saddle of the same energy; points
-# may lie above the energy by as much.
+# V on lines to the origin must be lower than the energy by this, so that they do not pass over a saddle of the same energy;
+# points may lie above the energy by as much.
 _ENERGY_MARGIN = 1e-12
 # A point with a smaller slope counts as critical.
 _NO_SLOPE = 1e-9
