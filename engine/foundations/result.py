@@ -99,7 +99,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         options
             ``palette``: ``"paper"`` or ``"safe"`` for all results; ``picture`` of a map: ``"basins"``, ``"times"``,
             ``"crossings"``, ``"characters"`` or ``"curves"``; ``show`` of an orbit: ``"path"``, ``"sali"``,
-            ``"exponent"`` or ``"r2"``.
+            ``"exponent"`` or ``"r2"``; ``measure`` of a sweep: a name of `MEASURES`, by default the first one that is drawn.
 
         Returns
         -------

@@ -28,15 +28,17 @@ from engine.integrator.jit.disk_cache import DEFINE
 from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import straight_line, table_reader
 from engine.integrator.kernels import fixed_step, interior, orbit_lanes, periodic_shooting, propagate
-from engine.integrator.source.recurrence import Definition, GeneratedCode, generate_code
-from engine.integrator.source.series import REACH, Setting
+from engine.integrator.source.recurrence import Definition, GeneratedCode, find_structure, generate
+from engine.integrator.source.series import REACH, Setting, Structure
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
 # Number of cached potentials; binding the coefficients of another one with a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()
-# Number of potentials whose generation is remembered, see `_outline`.
-_generated: set[tuple[Hashable, Setting]] = set()
+# The code of each structure, the name of its module and its kernels. Machine code is never unloaded, and neither are these.
+_defined: dict[Structure, tuple[GeneratedCode, str, dict[str, GeneratedKernel]]] = {}
+# What potentials with known functions have in common, see `_outline`.
+_outlines: set[tuple[Hashable, Setting]] = set()
 
 
 def load_kernels(
@@ -68,13 +70,13 @@ def load_kernels(
     functions that a kernel needs are compiled, which takes some seconds, or loaded from the cache, when a potential of the same
     structure first uses it.
     """
-    with _lock:
-        return _load(definition, Setting(channels, sides, rotation != 0.0), rotation, reach)
+    return _load(definition, Setting(channels, sides, rotation != 0.0), rotation, reach)
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
-    """Return whether functions were generated for a potential of the same form and setting; generating them takes 0.3 s."""
-    return (_outline(definition), setting) in _generated
+    """Return whether functions were generated for a potential of the same structure; generating them takes up to 0.3 s."""
+    # Finding the structure of another formula takes up to 0.2 s.
+    return (_outline(definition), setting) in _outlines and find_structure(definition, setting, REACH) in _defined
 
 
 class GeneratedKernel:
@@ -137,9 +139,8 @@ class _BoundKernel:
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)
 def _load(definition: Definition, setting: Setting, rotation: float, reach: float) -> ModuleType:
-    code = generate_code(definition, reach=reach, **setting._asdict())
-    name, generated = _define_module(code)
-    _generated.add((_outline(definition), setting))
+    code, name, generated = _define(find_structure(definition, setting, reach))
+    _outlines.add((_outline(definition), setting))
     coefficients = code.tabulate(definition, rotation)
     bound = ModuleType(name)
     for each, function in generated.items():
@@ -153,6 +154,16 @@ def _load(definition: Definition, setting: Setting, rotation: float, reach: floa
                 if needed:
                     setattr(bound, each, _BoundKernel(function, needed, coefficients))
     return bound
+
+
+def _define(structure: Structure) -> tuple[GeneratedCode, str, dict[str, GeneratedKernel]]:
+    """Return the entry of `_defined`; a thread that needs a known one does not wait for others that generate code."""
+    if structure not in _defined:
+        with _lock:
+            if structure not in _defined:
+                code = generate(structure)
+                _defined[structure] = code, *_define_module(code)
+    return _defined[structure]
 
 
 def _outline(definition: Definition) -> Hashable:

@@ -282,31 +282,33 @@ def generate_code(
     rotates
         Whether the frame rotates.
     """
-    return _generate(_find_structure(definition, Setting(channels, sides, rotates), reach))
+    return generate(find_structure(definition, Setting(channels, sides, rotates), reach))
 
 
 def code_digest(definition: Definition, setting: Setting) -> str:
     """Return `GeneratedCode.digest` of a potential without keeping the code, which takes megabytes."""
-    return _write_code(_find_structure(definition, setting, REACH)).digest
+    return _write_code(find_structure(definition, setting, REACH)).digest
 
 
 @functools.singledispatch
-def _find_structure(definition: Any, setting: Setting, reach: float) -> Structure:
+def find_structure(definition: Any, setting: Setting, reach: float) -> Structure:
+    """Return the structure of a potential, on which its generated functions depend."""
     raise TypeError(f"definition={definition!r}: must be terms or an expression")
 
 
-@_find_structure.register(tuple)
+@find_structure.register(tuple)
 def _of_polynomial(terms: Terms, setting: Setting, reach: float) -> Structure:
     return structure_of_polynomial(terms, setting, reach)
 
 
-@_find_structure.register(Expression)
+@find_structure.register(Expression)
 def _of_expression(expression: Expression, setting: Setting, _reach: float) -> Structure:
     return structure_of_expression(expression, setting)
 
 
 @functools.lru_cache(maxsize=_STRUCTURES)
-def _generate(structure: Structure) -> GeneratedCode:
+def generate(structure: Structure) -> GeneratedCode:
+    """Return the generated functions for all potentials of a structure; large formulas take seconds."""
     return _write_code(structure)
 
 

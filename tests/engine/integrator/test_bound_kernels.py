@@ -1,6 +1,14 @@
 from __future__ import annotations
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
 from engine.integrator import bound_kernels
+from engine.integrator.source.recurrence import GeneratedCode, generate
+from engine.integrator.source.series import Setting, Structure
+from tests.waiting import SECONDS
 
 TERMS = ((2, 0, 0.5), (0, 2, 0.5))
 
@@ -9,3 +17,39 @@ def test_potentials_of_one_structure_share_code_with_their_own_coefficients() ->
     kernels = [bound_kernels.load_kernels(((2, 0, c), (0, 2, 0.5)), 0) for c in (0.5, 0.7)]
     assert [module.potential_value(2.0, 1.0) for module in kernels] == [2.5, 0.7 * 4 + 0.5]
     assert kernels[0].potential_value.function is kernels[1].potential_value.function
+
+
+def test_functions_of_a_known_structure_are_not_generated_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    bound_kernels.load_kernels(TERMS, 0)
+    # Whatever other structures were needed meanwhile.
+    monkeypatch.setattr(bound_kernels, "generate", None)
+    assert bound_kernels.load_kernels(((2, 0, 0.9), (0, 2, 0.5)), 0).potential_value(2.0, 1.0) == 0.9 * 4 + 0.5
+
+
+def test_a_potential_of_the_same_powers_may_need_other_functions() -> None:
+    setting = Setting(0, (), False)
+    weak, strong = (((2, 0, 0.5), (0, 2, 0.5), (2, 2, c)) for c in (-0.1, 1e6))
+    bound_kernels.load_kernels(weak, 0)
+    assert bound_kernels.is_generated(weak, setting)
+    assert not bound_kernels.is_generated(strong, setting)
+
+
+def test_known_functions_are_there_while_others_are_generated(monkeypatch: pytest.MonkeyPatch) -> None:
+    bound_kernels.load_kernels(TERMS, 0)
+    begun, end = threading.Event(), threading.Event()
+
+    def wait(structure: Structure) -> GeneratedCode:
+        begun.set()
+        assert end.wait(SECONDS)
+        return generate(structure)
+
+    monkeypatch.setattr(bound_kernels, "generate", wait)
+    with ThreadPoolExecutor(2) as threads:
+        other = threads.submit(bound_kernels.load_kernels, (*TERMS, (11, 0, 0.1)), 0)
+        assert begun.wait(SECONDS)
+        known = threads.submit(bound_kernels.load_kernels, ((2, 0, 0.8), (0, 2, 0.5)), 0)
+        try:
+            assert known.result(SECONDS).potential_value(1.0, 0.0) == 0.8
+        finally:
+            end.set()
+        assert other.result(SECONDS).potential_value(1.0, 0.0) == 0.6
