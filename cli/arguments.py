@@ -41,8 +41,9 @@ def find_system(case: Case) -> System:
     Parameters
     ----------
     case
-        Potential: I, II or III as in Zotos (2014), a name listed by `potential`, or a formula in x and y; parameters follow @, as
-        in III@omega_1=1.1,epsilon=0.5; letters of a formula are also parameters: 0.5(x^2+y^2)-a x y^2@a=1.5.
+        Potential: I, II or III as in Zotos (2014), a name listed by `potential`, or a formula in x and y, with clauses such as
+        "; masses (8, 8)"; parameters follow @, as in III@omega_1=1.1,epsilon=0.5, or rotation=1 for the rate of the frame;
+        letters of a formula are also parameters: 0.5(x^2+y^2)-a x y^2@a=1.5.
     """
     name, _, parameters = case.partition("@")
     chosen = _read_parameters(case, name, parameters) if parameters else {}

@@ -99,12 +99,13 @@ def checked_flag(name: str, value: Any) -> bool:
     return bool(value)
 
 
-def checked_number(name: str, value: Any, requirement: str = "a finite number", largest: float = LARGEST_NUMBER) -> float:
-    """Return a real number of at most `largest` in magnitude as a float; the error says "must be <requirement>"."""
+def checked_number(name: str, value: Any, requirement: str = "", largest: float = LARGEST_NUMBER) -> float:
+    """Return a real number of at most `largest` in magnitude as a float; the error says "must be <requirement>", or this."""
     is_real = isinstance(value, numbers.Real) and not isinstance(value, bool)
     # The comparison precedes the conversion, because an integer may be too large for a float.
     if not is_real or not -largest <= value <= largest:
-        raise ValueError(f"{name}={short_repr(value)}: must be {requirement}, at most {largest:g} in magnitude")
+        legal = requirement or f"a finite number, at most {largest:g} in magnitude"
+        raise ValueError(f"{name}={short_repr(value)}: must be {legal}")
     return float(value)
 
 

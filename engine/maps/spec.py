@@ -62,13 +62,13 @@ class MapSpec:
         the default window, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows, the default
         window is shifted by half a pixel if its middle line would be a line of symmetry, on which orbits stay for ever.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless; if the unit of time 1/ω of the well is above 1, in this unit. The
-        default is 1e5; in rotating frames 1000/Ω, and with centres or an escape radius 1000, because bounded orbits are
-        integrated to the end there.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless; by default 1e5, in rotating frames 1000/Ω, with centres or an escape
+        radius 1000, because bounded orbits are integrated to the end there. If the unit of time 1/ω of the well is above 1, the
+        limit is 1e8 in this unit.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
-        Whether orbits are followed into the past. This equals following (x, y, −px, −py) into the future, in a rotating frame
+        Follow orbits into the past. This equals following (x, y, −px, −py) into the future, in a rotating frame
         with −Ω for Ω. Fates are then the outcomes backward in time, such as the channels through which orbits entered,
         escape times count backward from the start, and crossings are the upward crossings of the reversed orbit.
 

@@ -52,8 +52,8 @@ def fit_decay_laws(
 
     A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until one law is not ruled
     out, neither for them nor for their later half. This half is the window, by the rule of Deluca & Corral (2013, Acta Geophys.
-    61, 1351) with an additional margin. If there is no such window, the one with the largest p value is used, and no law is
-    preferred. The laws are compared by their log-likelihood ratio (Vuong 1989, Econometrica 57, 307).
+    61, 1351) with an additional margin. If there is no such window, there is no fit. The laws are compared by their
+    log-likelihood ratio (Vuong 1989, Econometrica 57, 307).
 
     Parameters
     ----------
@@ -89,13 +89,10 @@ def fit_decay_laws(
     t_high = t_max if window is None else float(window[1])
     all_times = np.unique(statistics.escape_times)
     times = all_times[(all_times > 0.0) & (all_times <= t_high)]
-    if window is not None:
-        t_low, settled = float(window[0]), True
-    else:
-        t_low, settled = _choose_t_low(times, t_high) if not statistics.undecided else (np.nan, False)
+    t_low = _choose_t_low(times, t_high) if window is None else float(window[0])
     sample = _Sample(t_low, t_high, times[times > (t_low if np.isfinite(t_low) else 0.0)])
     counts = (sample.times.size, all_times.size, statistics.undecided)
-    laws = DecayLaws(*compute_survival(statistics), t_low, t_high, *counts, settled, made_by=statistics.made_by)
+    laws = DecayLaws(*compute_survival(statistics), t_low, t_high, *counts, made_by=statistics.made_by)
     if counts[0] < MIN_ESCAPES or statistics.undecided or not np.isfinite(t_low):
         return laws
     return _compare(laws, sample, statistics)
@@ -153,20 +150,15 @@ class _Sample:
         return likelihoods
 
 
-def _choose_t_low(times: np.ndarray, t_high: float) -> tuple[float, bool]:
-    """Return the start of the window, and whether a law holds from there on; (NaN, False) if there are too few escapes."""
-    largest, t_low = 0.0, float("nan")
+def _choose_t_low(times: np.ndarray, t_high: float) -> float:
+    """Return the time from which a law holds; NaN if there is none, or if there are too few escapes."""
     remaining = times.size - 1
     while int(remaining * _SETTLED_SHARE) >= MIN_ESCAPES:
         sample, later = (_latest(times, t_high, count) for count in (remaining, int(remaining * _SETTLED_SHARE)))
-        for law in DecayLaw:
-            p_value = sample.p_value(law)
-            if p_value >= MIN_P_VALUE and later.p_value(law) >= MIN_P_VALUE:
-                return later.t_low, True
-            if p_value >= largest:
-                largest, t_low = p_value, sample.t_low
+        if any(sample.p_value(law) >= MIN_P_VALUE and later.p_value(law) >= MIN_P_VALUE for law in DecayLaw):
+            return later.t_low
         remaining = int(remaining * _WINDOW_RATIO)
-    return t_low, False
+    return float("nan")
 
 
 def _latest(times: np.ndarray, t_high: float, count: int) -> _Sample:
@@ -182,9 +174,9 @@ def _compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> 
     differences = sample.log_likelihoods(DecayLaw.EXPONENTIAL) - sample.log_likelihoods(DecayLaw.POWER_LAW)
     ratio, half_width = float(differences.mean()), _DEVIATIONS * float(differences.std()) / math.sqrt(differences.size)
     preferred = None
-    if laws.settled and exponential.plausible and ratio > half_width:
+    if exponential.plausible and ratio > half_width:
         preferred = DecayLaw.EXPONENTIAL
-    elif laws.settled and power_law.plausible and ratio < -half_width:
+    elif power_law.plausible and ratio < -half_width:
         preferred = DecayLaw.POWER_LAW
     return replace(
         laws, exponential=exponential, power_law=power_law, preferred=preferred,

@@ -84,15 +84,13 @@ class DecayLaws(RecordedResult):
     times, survival
         (m,) survival S(t), the share of the decided starts that are still inside just after t.
     t_low, t_high
-        Window of the fits; t_low is NaN if no window could be chosen.
+        Window of the fits; t_low is NaN if no law holds in any window that could be chosen.
     escapes
         Number of distinct escape times in the window, or in (0, t_high] if t_low is NaN.
     escapes_in_all
         Number of distinct escape times.
     undecided
         Number of starts not decided yet; if it is not 0, there is no fit.
-    settled
-        Whether the window was given, or begins where a law was found to hold; otherwise no law is preferred.
     exponential, power_law
         The fits; None if there is no fit.
     preferred
@@ -109,7 +107,6 @@ class DecayLaws(RecordedResult):
     escapes: int
     escapes_in_all: int
     undecided: int
-    settled: bool = False
     exponential: LawFit | None = None
     power_law: LawFit | None = None
     preferred: DecayLaw | None = None
@@ -137,14 +134,14 @@ class DecayLaws(RecordedResult):
     def _describe_missing_fit(self) -> str:
         if self.undecided:
             return f"No fit: {format_count(self.undecided, 'orbit is', 'orbits are')} undecided, so late escapes are missing."
+        if self.escapes > 2 * MIN_ESCAPES:
+            return f"No fit: neither law holds for the latest of {format_count(self.escapes, 'escape')}, however few of them."
         return (
             f"No fit: {format_count(self.escapes, 'escape')}, but a fit needs {MIN_ESCAPES} in a given window "
             f"and {2 * MIN_ESCAPES} to choose one."
         )
 
     def _describe_doubt(self, exponential: LawFit, power_law: LawFit) -> str:
-        if not self.settled:
-            return "Neither law holds in any window; these are the closest fits"
         possible = [fit.law for fit in (exponential, power_law) if fit.plausible]
         if len(possible) == 2:
             return "The data do not decide between the two laws"

@@ -220,10 +220,12 @@ def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarra
         codes of starts without an outcome.
     """
     if hasattr(labels, "fate"):
+        if valid is not None:
+            raise ValueError(f"valid={short_repr(valid)}: must be None for a map, of which the interior pixels count")
         labels, valid = exit_labels(read_complete_starts("labels", labels).fate, bounded=bounded)
     labels = checked_array("labels", labels, keep_type=True)
     if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
-        raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be integers, (rows, columns)")
+        raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be a map, or integers, (rows, columns)")
     if valid is None:
         if labels.size and labels.min() < 0:
             raise ValueError(

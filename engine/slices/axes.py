@@ -224,7 +224,7 @@ class ParameterAxis(_SystemAxis):
             raise ValueError(f"system={short_repr(self.system)}: must be a System, or the potential of one")
         known = self.system.parameter_names
         if self.key not in known:
-            legal = f"one of the system, {', '.join(known)}" if known else "one of the system, which has none"
+            legal = f"a parameter of the system: {', '.join(known)}" if known else "a parameter of the system, which has none"
             raise ValueError(f"parameter {short_repr(self.key)}: must be {legal}")
         low, high = (checked_number(f"parameter {self.key}", value) for value in (self.low, self.high))
         if not low < high:

@@ -207,7 +207,7 @@ class Slice:
     def checked_energy(self, energy: Any) -> Energy:
         """Return an energy of this slice: one finite number, or the pair (low, high) with an axis h."""
         if self.energy_axis is None:
-            return checked_number("energy", energy, f"one finite number on {self.title}")
+            return checked_number("energy", energy, f"one finite number on {self.title}, at most {LARGEST_NUMBER:g} in magnitude")
         values = checked_array("energy", energy).ravel()
         if values.size != 2 or not (np.all(np.abs(values) <= LARGEST_NUMBER) and values[0] < values[1]):
             raise ValueError(

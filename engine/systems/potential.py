@@ -15,21 +15,14 @@ import numpy as np
 from engine.expressions.nodes import Expression
 from engine.foundations.former_names import with_former_fields
 from engine.foundations.result import Result
-from engine.foundations.validation import (
-    LONGEST_TIME,
-    check_type,
-    checked_items,
-    checked_number,
-    checked_t_max,
-    replace_unchecked,
-)
+from engine.foundations.validation import LONGEST_TIME, check_type, checked_items, checked_number, checked_t_max
 from engine.integrator.source.polynomial_recurrence import Terms
 from engine.systems.forms.expression_form import as_form
 from engine.systems.forms.form import Form
 from engine.systems.motion import Motion, checked_mass
 from engine.systems.outcomes import KINDS, Centre, End, EscapeCircle, Outcome
 from engine.systems.provenance import describe_potential
-from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
+from engine.systems.related_wells import SEARCHED, ContinuedWell, Lineage, scaled_to_well
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
 
@@ -212,19 +205,7 @@ class Potential(Motion):
 
         If all units are 1, it is the potential itself.
         """
-        units = self.units
-        if units == WellUnits():
-            return self
-        # Legal ranges apply to the units of the potential.
-        return replace_unchecked(
-            self,
-            form=self.form.scaled(units.length, units.energy),
-            rotation=self.rotation * units.time,
-            ends=tuple(end.scaled(1.0 / units.length) for end in self.ends),
-            lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
-            system=None,
-            mass=1.0,
-        )
+        return self if self.units == WellUnits() else scaled_to_well(self)
 
     def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
         """Return the potential as a member of a family, with known exits; the parameters are those of `ContinuedWell`."""

@@ -1,17 +1,22 @@
-"""Wells whose exits follow from those of another potential, without a search."""
+"""Wells whose exits follow from those of another potential, without a search, and potentials in units of their wells."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from engine.foundations.arrays import read_only
+from engine.foundations.validation import replace_unchecked
 from engine.systems.merged_channels import ChannelMerger
 from engine.systems.well import Well
 from engine.systems.well_units import WellUnits
+
+if TYPE_CHECKING:
+    from engine.systems.potential import Potential
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,3 +110,18 @@ class Lineage:
 
 SEARCHED = Lineage()
 """Lineage of a well whose exits are searched among the critical points."""
+
+
+def scaled_to_well(potential: Potential) -> Potential:
+    """Return a potential in units of its well, see `Potential.in_well_units`."""
+    units = potential.units
+    # Legal ranges apply to the units of the potential.
+    return replace_unchecked(
+        potential,
+        form=potential.form.scaled(units.length, units.energy),
+        rotation=potential.rotation * units.time,
+        ends=tuple(end.scaled(1.0 / units.length) for end in potential.ends),
+        lineage=replace(potential.lineage, make_well=partial(ScaledWell, stated=potential.well)),
+        system=None,
+        mass=1.0,
+    )

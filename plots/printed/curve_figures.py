@@ -54,13 +54,15 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
     name_panel(grid[0], SHARES.title, style)
     add_panel_legend(grid[0], "best", style)
     for axes, measure in zip(grid[1:], shown, strict=False):
-        _draw_panel(axes, curves, measure, style)
+        draw_measure(axes, curves, measure, style)
+        name_panel(axes, measure.title, style)
     for axes in grid[1 + len(shown) :]:
         axes.remove()
     return figure
 
 
-def _draw_panel(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle) -> None:
+def draw_measure(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle = SCREEN) -> None:
+    """Draw the numbers of a measure against the energy or a parameter, with their error bars."""
     curve = measure.curve
     for (name, label), colour in zip(measure.labels.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
         words = re.sub(r"_(\w+)", r"$_{\1}$", label)
@@ -73,7 +75,6 @@ def _draw_panel(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle)
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
     style_axes(axes, style, grid=True)
     label_axes(axes, curves.symbol, curve.axis, style)
-    name_panel(axes, measure.title, style)
     if len(axes.lines) > 1:
         add_panel_legend(axes, "best", style)
 

@@ -23,10 +23,11 @@ from engine.slices.planes import SPACE
 from plots.layers.layer import Layer
 from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, TITLES, map_legend
+from plots.pictures.charts import CURVE_PANELS, SHARES, is_measured
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, PALETTES, Entry, Palette, rgba
-from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
+from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_measure, draw_shares
 from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, legend_handles, name_panel, set_font, style_axes
 from plots.printed.map_figure import draw_limits, draw_picture, draw_pixels, draw_strokes, show_window
 from plots.printed.orbit_figure import draw_path, draw_quantity
@@ -36,6 +37,7 @@ _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
 # Position of the legend of a map in shares of the axes: the middle, below the label of the horizontal axis.
 _BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
+# Values below 10⁻¹⁶ are drawn there on logarithmic axes, which cannot show 0.
 _MOST_DECADES = 16
 
 
@@ -228,9 +230,18 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
 
 
 @_draw.register
-def _draw_sweep(result: Sweep, axes: Axes, palette: Palette) -> None:
+def _draw_sweep(result: Sweep, axes: Axes, palette: Palette, *, measure: str | None = None) -> None:
+    drawn = {SHARES.name: SHARES} | {panel.name: panel for panel in CURVE_PANELS if is_measured(panel, result)}
     if "share" not in result.dataset:
-        raise TypeError("a sweep has a picture with the measure 'shares' only")
+        del drawn[SHARES.name]
+    if not drawn:
+        raise TypeError("a sweep without numbers against the energy or a parameter has no picture")
+    if measure is not None and measure not in drawn:
+        raise ValueError(f"measure={measure!r}: must be one of {', '.join(drawn)}")
+    chosen = measure or next(iter(drawn))
+    if chosen != SHARES.name:
+        draw_measure(axes, result, drawn[chosen])
+        return
     draw_shares(axes, result.values, result["share"], result.outcomes)
     label_axes(axes, result.symbol, "percentage of starts")
     add_panel_legend(axes, "center right")

@@ -20,4 +20,7 @@ def refusal(found: PotentialReview) -> str | None:
             return f"It has {count} {kind.word}s; the page has colours for {most}."
     if potential.escape_radius is None and abs(potential.well.energy_at(HIGHEST_SHOWN)) > LARGEST_NUMBER:
         return f"Its escape energy is {found.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
+    extreme = max(abs(found.energies.low), abs(found.energies.high))
+    if extreme > LARGEST_NUMBER:
+        return f"Its energies reach {extreme:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
     return None

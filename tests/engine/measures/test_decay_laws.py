@@ -217,17 +217,15 @@ def test_a_chosen_window_excludes_an_early_burst() -> None:
 
 def test_a_law_that_always_holds_is_fitted_to_the_later_half() -> None:
     laws = fit(exponential_times(2000), None)
-    assert laws.settled
     assert laws.escapes == pytest.approx(1000, rel=0.01)
 
 
-def test_no_law_is_preferred_without_a_window() -> None:
+def test_there_is_no_fit_without_a_window_in_which_a_law_holds() -> None:
     """Eight bursts, each three times later than the previous one."""
     times = np.concatenate([np.linspace(0.9, 1.0, 400) * 3.0**k for k in range(8)])
     laws = fit(times, None)
-    assert not laws.settled
-    assert laws.preferred is None
-    assert laws.describe().startswith("Neither law holds in any window")
+    assert (laws.exponential, laws.power_law, laws.preferred) == (None, None, None)
+    assert laws.describe().startswith("No fit: neither law holds for the latest of 3 200 escapes")
 
 
 # Conclusions.

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from engine import Result
+from engine import CASES, Plane, Result, SweepSpec, compute_sweep
 from engine.results import DecayLaws, SampledOrbits
 from plots.pictures.palette import PALETTES
 from tests.results import POTENTIAL, RESULTS, SPEC, result_of
@@ -96,3 +96,14 @@ def test_invalid_options_are_named() -> None:
         result_of("orbit").plot(axes, show="p")
     with pytest.raises(ValueError, match="palette='blue'"):
         POTENTIAL.plot(axes, palette="blue")
+
+
+def test_a_sweep_draws_the_measure_that_is_asked_for_or_its_first_one() -> None:
+    request = SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.25, 0.3), resolution=(20, 20), t_max=100.0, measures=("basin_entropy",))
+    sweep = compute_sweep(request)
+    axes = sweep.plot(Figure().subplots())
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), sweep["s_b"])
+    assert axes.get_xlabel() == "h"
+    assert axes.lines[0].get_label() == "S$_{b}$"
+    with pytest.raises(ValueError, match=r"^measure='shares': must be one of basin_entropy$"):
+        sweep.plot(Figure().subplots(), measure="shares")

@@ -18,5 +18,10 @@ def test_an_escape_energy_beyond_the_largest_number_is_refused() -> None:
     assert "energies up to 1e+09" in str(refusal(review_potential(parse_formula("(x² + y²)/2 + 1e-7y³"))))
 
 
+def test_energies_beyond_the_largest_number_are_refused_without_an_escape_energy() -> None:
+    review = review_potential(parse_formula("−1e9/√(r² + 0.0001); escape 10"))
+    assert "energies up to 1e+09" in str(refusal(review))
+
+
 def test_known_potentials_are_accepted() -> None:
     assert [name for name in POTENTIALS if refusal(review_potential(POTENTIALS[name]))] == []
