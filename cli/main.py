@@ -138,7 +138,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(f"{type(error).__name__}: {_message(error)}", FAILED)
     if returned == INTERRUPTED:
         # Typer turns a second Ctrl-C into this exit code.
-        return _fail("interrupted; nothing was written", INTERRUPTED)
+        return _fail("interrupted", INTERRUPTED)
     return returned if isinstance(returned, int) else 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from html import escape
 from typing import Any
@@ -161,7 +162,7 @@ class AnalysisPresenter:
             self.note(**{layer.name: sentence for layer in self._layers_on() if (sentence := layer.refusal(spec))})
 
     def note(self, **sentences: str) -> None:
-        """Show a sentence for each of these layers; an empty sentence removes the earlier one."""
+        """Show notes by name, of a layer or of the comparison; an empty sentence removes a note."""
         self._notes |= sentences
         body = " ".join(escape(sentence) for sentence in self._notes.values() if sentence)
         self.notes.object = with_terms(body)
@@ -223,10 +224,9 @@ class AnalysisPresenter:
         if name != "h":
             low, high = default_range(state.system, name)
             along, energy = ParameterAxis(name, low, high, state.system), state.energy
-        swept = np.round(np.linspace(low, high, SWEPT_VALUES), 4).tolist()
         self._swept = SweepSpec(
-            state.potential, plane, swept, _SIDES, t_max=state.t_max, measures=CURVES, along=along, energy=energy,
-            refine=REFINED_VALUES,
+            state.potential, plane, _swept_values(low, high), _SIDES, t_max=state.t_max, measures=CURVES, along=along,
+            energy=energy, refine=REFINED_VALUES,
         )  # fmt: skip
         self.curves.show_running(True)
         self._sweeping.submit(sweep_job(self._swept))
@@ -255,3 +255,11 @@ class AnalysisPresenter:
         else:
             system = spec.along.system.with_parameter(spec.along.key, value)
             self._open_view(system, {"energy": spec.energy, "plane": spec.plane, "window": None, "starts": (), "chosen": 0})
+
+
+def _swept_values(low: float, high: float) -> list[float]:
+    """Return evenly spaced values from `low` to `high`, with few digits."""
+    spacing = (high - low) / (SWEPT_VALUES - 1)
+    decimals = max(4, 2 - math.floor(math.log10(spacing)))
+    values: list[float] = np.round(np.linspace(low, high, SWEPT_VALUES), decimals).tolist()
+    return values

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
@@ -168,7 +168,9 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
-        return sum(int(getattr(value, "nbytes", 0)) for value in vars(self).values())
+        # Without what is cached: a potential in units of its well is its own.
+        values = (getattr(self, each.name) for each in fields(cast("Any", self)))
+        return sum(int(getattr(value, "nbytes", 0)) for value in values)
 
     def provenance(self) -> dict[str, Any]:
         """Return how the result was made, in plain values, as far as it is known: the version, the potential, the request."""

@@ -13,7 +13,7 @@ _MOST_STEPS = 100
 def find_root(function: Callable[[float], float], low: float, high: float, *, absolute: float, relative: float) -> float:
     """Find a root by Brent's method (Brent 1973, Algorithms for Minimization without Derivatives, chapter 4).
 
-    It makes the same steps as `scipy.optimize.brentq`, whose import takes longer than a whole search.
+    The steps are those of `scipy.optimize.brentq`, which is not used because its import takes longer than a search.
 
     Parameters
     ----------
@@ -22,22 +22,32 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
     low, high
         The ends of the bracket; the function has different signs there.
     absolute, relative
-        The root has an error of at most ``absolute + relative * abs(root)``.
+        The root is within ``absolute + relative * abs(root)`` of a change of sign.
+
+    Returns
+    -------
+    The root; after 100 steps, which a continuous function does not need, the last point.
 
     Raises
     ------
     ValueError
-        If the function has the same sign at both ends, or is NaN somewhere.
+        If the function has the same sign at both ends, or is NaN at a point where it is evaluated.
     """
+
+    def checked(x: float) -> float:
+        found = function(x)
+        if math.isnan(found):
+            raise ValueError(f"bracket=({low}, {high}): the function is NaN at {x}")
+        return found
+
     before, here = low, high
-    value_before, value = function(before), function(here)
+    value_before, value = checked(before), checked(here)
     if value_before * value > 0.0:
         raise ValueError(f"bracket=({low}, {high}): the function must have different signs at its ends")
+    # The root lies between `here` and `across`.
     across, value_across = before, value_before
     last_step = step = here - before
     for _ in range(_MOST_STEPS):
-        if math.isnan(value):
-            raise ValueError(f"bracket=({low}, {high}): the function is NaN at {here}")
         if value_before and value and (value_before < 0.0) != (value < 0.0):
             across, value_across = before, value_before
             last_step = step = here - before
@@ -51,25 +61,28 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
         trial = math.inf
         if abs(last_step) > tolerance and abs(value) < abs(value_before):
             trial = _interpolate((before, value_before), (here, value), (across, value_across))
+        # Interpolate only if the steps shrink fast enough; otherwise bisect.
         if 2.0 * abs(trial) < min(abs(last_step), 3.0 * abs(half) - tolerance):
             last_step, step = step, trial
         else:
             last_step = step = half
         before, value_before = here, value
         here += step if abs(step) > tolerance else math.copysign(tolerance, half)
-        value = function(here)
+        value = checked(here)
     return here
 
 
 def _interpolate(before: tuple[float, float], here: tuple[float, float], across: tuple[float, float]) -> float:
-    """Return the step to the root of a line through two points or an inverse parabola through three; infinite if undefined."""
+    """Return the step from `here` by linear interpolation, or by inverse quadratic interpolation if all three points differ.
+
+    Infinite if it is undefined."""
     (x0, f0), (x, f), (x1, f1) = before, here, across
     if x0 == x1:
         return -f * (x - x0) / (f - f0)
-    slope, other = (f0 - f) / (x0 - x), (f1 - f) / (x1 - x)
-    divisor = other * slope * (f1 - f0)
+    slope_before, slope_across = (f0 - f) / (x0 - x), (f1 - f) / (x1 - x)
+    divisor = slope_across * slope_before * (f1 - f0)
     # The product of small values can underflow.
-    return -f * (f1 * other - f0 * slope) / divisor if divisor else math.inf
+    return -f * (f1 * slope_across - f0 * slope_before) / divisor if divisor else math.inf
 
 
 def bisect(
@@ -92,6 +105,6 @@ def bisect(
     """
     for _ in range(halvings):
         middle = 0.5 * (within + beyond)
-        outside = is_beyond(middle)
-        within, beyond = np.where(outside, within, middle), np.where(outside, middle, beyond)
+        past = is_beyond(middle)
+        within, beyond = np.where(past, within, middle), np.where(past, middle, beyond)
     return within, beyond

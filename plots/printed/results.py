@@ -37,6 +37,7 @@ _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
 # Position of the legend of a map in shares of the axes: the middle, below the label of the horizontal axis.
 _BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
+# Values below 10⁻¹⁶ are drawn there on logarithmic axes, which cannot show 0.
 _MOST_DECADES = 16
 
 

@@ -24,9 +24,9 @@ class EndTimes:
     """Median times to the end of orbits; NaN if there are none.
 
     Attributes
-    For starts whose eight neighbours have the same outcome.
+    ----------
     inside
-        Of starts whose eight neighbours end alike.
+        For starts whose eight neighbours have the same outcome.
     at_boundary
         For starts next to a start with another outcome, but not next to a bounded one.
     """

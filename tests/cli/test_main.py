@@ -134,7 +134,7 @@ def test_ctrl_c_cancels_a_map_and_a_second_one_ends_it_at_once(times: int, run_i
 
     code, out, line = run_in_terminal("map", interrupt, *LONG, "--trust", "--output", tmp_path / "map")
     assert (code, out) == (INTERRUPTED, "")
-    assert line.endswith("escape-explorer: interrupted; nothing was written")
+    assert "escape-explorer: interrupted" in line
     assert not any(tmp_path.iterdir())
     assert signal.getsignal(signal.SIGINT) is before
 

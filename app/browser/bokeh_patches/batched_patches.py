@@ -11,11 +11,10 @@ The change for upstream is ``batched_patches.patch``.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from bokeh.document import Document
-from bokeh.document.events import DocumentPatchedEvent, ModelChangedEvent
 from bokeh.io.doc import patch_curdoc
 from bokeh.server.session import ServerSession
 
@@ -34,9 +33,6 @@ async def _send_pending_patches(session: ServerSession, pending: Sequence[Any]) 
 def serialize_batches(pending: Sequence[Any]) -> list[tuple[Any, Any]]:
     """Serialize consecutive changes of the same document for the same connections into one message each.
 
-    Of several labels of a button only the last is sent: Bokeh rebuilds the button for each, and does not wait for the rebuild
-    before it.
-
     Parameters
     ----------
     pending
@@ -54,16 +50,6 @@ def _serialize(patches: list[Any]) -> tuple[Any, Any]:
     first = patches[0]
     document: Document = first.event.document
     with patch_curdoc(document):
-        message = first.protocol.create("PATCH-DOC", _last_labels(patch.event for patch in patches))
+        message = first.protocol.create("PATCH-DOC", [patch.event for patch in patches])
         message.prepare()
     return message, first.connections
-
-
-def _last_labels(events: Iterable[DocumentPatchedEvent]) -> list[DocumentPatchedEvent]:
-    """Return the events with the last label of each button at the place of its first change."""
-    kept: list[DocumentPatchedEvent] = []
-    for event in events:
-        is_label = isinstance(event, ModelChangedEvent) and event.attr == "label"
-        if not is_label or not any(earlier.combine(event) for earlier in kept):
-            kept.append(event)
-    return kept

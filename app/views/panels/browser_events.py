@@ -14,7 +14,9 @@ import param
 from panel.custom import JSComponent
 
 from app.state.view import PICTURES
-from plots.layers.table import TITLES
+from plots.layers import table
+
+_TITLES = {"well": "the well"} | {name: picture.title for name, picture in table.PICTURES.items()}
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
 """The picture that a key enlarges or reduces."""
@@ -41,7 +43,7 @@ KEYS: Mapping[str, str] = MappingProxyType(
         "Enter": "orbit in the middle of the maps",
         "Escape": "show all pictures, or stop the computation",
         "?": "these keys",
-        **{key: f"enlarge: {TITLES.get(name, name)}" for key, name in PICTURE_KEYS.items()},
+        **{key: f"enlarge: {_TITLES[name]}" for key, name in PICTURE_KEYS.items()},
     }
 )
 """The action of each key, by its name."""

@@ -73,8 +73,8 @@ class FigureForm:
         formats = {format.name: format for format in FigureFormat}
         self.format = SegmentedControl(label="Format", options=formats, value=FigureFormat.PNG, margin=(6, 10))
         self.titles = Switches(label="Titles and provenance", options=[_TITLES], value=[_TITLES], margin=(6, 10))
-        self.save = button("Save figure", self._on_save, kind="primary")
-        self.copy = ImageCopier(self._on_copy, on_copied, margin=(5, 10))
+        self.save = button("Save figure", self._on_save, kind="primary", margin=(5, 10, 5, 0))
+        self.copy = ImageCopier(self._on_copy, on_copied, margin=(5, 0))
         self.text = StatusPane("", margin=(0, 10), css_classes=["quiet"])
         results.param.watch(lambda *events: self._offer(), ["frame", "analyses", "orbits", "curves"])
         self._offer()
@@ -83,7 +83,7 @@ class FigureForm:
         """The section, in a column."""
         boxes = [
             NumberBox(
-                partial(self.type, name), self._style[name], label=label, step=step, min_width=60, margin=(0, 4, 0, 10),
+                partial(self.type, name), self._style[name], label=label, step=step, min_width=60, margin=(0, 14, 0, 0),
                 sizing_mode="stretch_width",
             )
             for name, (label, step) in _NUMBERS.items()

@@ -30,15 +30,16 @@ from engine.integrator.kernels.events import (
 # Lengths and energies are in units of the well. When the step reaches its smallest length, the path has reached a minimum.
 _LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
 _MOST_STEPS = 10_000
-# Far from the exits, steps are proportional to the distance, by this factor.
+# Far from the origin the longest step is this share of |x| + |y|.
 _FAR_SHARE = 0.25
 # The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
 _COS, _SIN = np.cos(0.1), np.sin(0.1)
 # Smallest decrease of V in a step, relative to that along the gradient.
 _DECREASE = 0.25
-# On lines to the origin V stays below the energy by at least this, so that they do not pass over a saddle of the same energy.
+# V on lines to the origin must be lower than the energy by this, so that they do not pass over a saddle of the same energy;
+# points may lie above the energy by as much.
 _ENERGY_MARGIN = 1e-12
-# Largest slope at a critical point.
+# A point with a smaller slope counts as critical.
 _NO_SLOPE = 1e-9
 # Number of parts of a line to the origin.
 _PIECES = 32

@@ -39,3 +39,12 @@ def test_bisection_encloses_each_boundary_from_either_side() -> None:
     np.testing.assert_allclose(np.abs(high - low), 2.0**-20)
     assert np.all(signs * (low - boundaries) <= 0.0)
     assert np.all(signs * (high - boundaries) > 0.0)
+
+
+@pytest.mark.parametrize("undefined", [(1.0, 1.1), (1.9, 2.0), (1.4, 1.7)])
+def test_a_function_that_is_nan_is_refused(undefined: tuple[float, float]) -> None:
+    def function(x: float) -> float:
+        return math.nan if undefined[0] <= x <= undefined[1] else x - 1.6
+
+    with pytest.raises(ValueError, match="the function is NaN at "):
+        find_root(function, 1.0, 2.0, absolute=1e-12, relative=1e-12)

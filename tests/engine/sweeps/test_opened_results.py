@@ -182,7 +182,7 @@ def test_files_of_netcdf_3_are_read_as_the_base_installation_writes_them(name: s
 
 def test_every_kind_of_result_is_tested() -> None:
     kinds = {type(computed(name)) for name in RESULTS} | {EscapeMap, Sweep}
-    of_engine = (getattr(engine, name) for name in engine.__all__)
+    of_engine = (getattr(package, name) for package in (engine, engine.results) for name in package.__all__)
     results = {each for each in of_engine if inspect.isclass(each) and issubclass(each, Result)} - {Result}
     assert {kind.__name__ for kind in results - kinds} == set()
 

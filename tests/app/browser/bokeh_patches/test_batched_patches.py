@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import pytest
 from bokeh.document import Document
 from bokeh.document.events import DocumentPatchedEvent
-from bokeh.models import Button, Range1d
+from bokeh.models import Range1d
 from bokeh.protocol import Protocol
 from bokeh.server import session
 from bokeh.server.session import ServerSession
@@ -38,7 +38,7 @@ def new_document() -> Document:
     return document
 
 
-def patches(document: Document, connections: tuple[str, ...], *changes: tuple[str, Any]) -> list[Any]:
+def patches(document: Document, connections: tuple[str, ...], *changes: tuple[str, float]) -> list[Any]:
     events: list[Any] = []
     document.on_change_dispatch_to(Receiver(events))  # type: ignore[arg-type]
     for name, value in changes:
@@ -46,7 +46,7 @@ def patches(document: Document, connections: tuple[str, ...], *changes: tuple[st
     return [Patch(event, Protocol(), connections) for event in events]
 
 
-def changes(message: Any) -> list[tuple[str, Any]]:
+def changes(message: Any) -> list[tuple[str, float]]:
     return [(event["attr"], event["new"]) for event in json.loads(message.content_json)["events"]]
 
 
@@ -64,13 +64,6 @@ def test_changes_of_a_document_for_the_same_connections_are_one_message_in_their
         [("end", 2.0), ("start", 0.6)],
         [("end", 3.0)],
     ]
-
-
-def test_of_several_labels_of_a_button_only_the_last_is_sent() -> None:
-    document = Document()
-    document.add_root(Button(label="Stop"))
-    pending = patches(document, ("first",), ("label", "Continue"), ("disabled", True), ("label", "Done"))
-    assert [changes(message) for message, _ in serialize_batches(pending)] == [[("label", "Done"), ("disabled", True)]]
 
 
 def test_replaced_function_and_patch_fields_are_unchanged_upstream(monkeypatch: pytest.MonkeyPatch) -> None:
