@@ -282,7 +282,9 @@ def test_the_legends_have_the_colours_of_the_palette(explorer: ExplorerPage) -> 
 
 
 def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:
-    palette = "() => Bokeh.documents[0].get_model_by_name('basins').renderers[0].glyph.color_mapper.palette"
+    # Layers have renderers of their own.
+    renderers = "Bokeh.documents[0].get_model_by_name('basins').renderers"
+    palette = f"() => {renderers}.find(each => each.data_source.name == 'maps').glyph.color_mapper.palette"
     before = explorer.page.evaluate(palette)
     item = explorer.page.locator(".foot[data-picture=basins] .patch").first
     item.hover()
