@@ -1,4 +1,4 @@
-"""The amount of compiled code in a process. Numba cannot unload code, so that a server has to limit it."""
+"""A limit on the compiled code of a process, for servers, because Numba cannot unload code."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 LARGEST_CODE = 40_000
-"""Largest number of operations of one code if there is a limit; the largest code of the catalogue has about as many."""
+"""Largest number of operations of one code if there is a limit. The largest code of the catalogue has about as many."""
 
 SHARES = 4
-"""Share of the limit that one account may use."""
+"""One account may use one part in this many of the limit."""
 
 _account: ContextVar[Hashable] = ContextVar("account", default=None)
 
@@ -21,7 +21,7 @@ class CompiledCodeLimitError(ValueError):
 
 
 class CompiledOperations:
-    """Number of operations of all generated functions, each about 0.4 kB of memory, or 1 kB if compiled in this process.
+    """Counts the operations of all generated functions, which take 0.4 kB each, or 1 kB if compiled in this process.
 
     Reserved code is always compiled and does not count.
 
@@ -40,7 +40,7 @@ class CompiledOperations:
 
     @property
     def used(self) -> int:
-        """Number of operations so far that count."""
+        """Number of operations that count so far."""
         with self._lock:
             return sum(count for count, _ in self._counted())
 
@@ -95,7 +95,7 @@ compiled_operations = CompiledOperations()
 
 @contextmanager
 def charged_to(account: Hashable) -> Iterator[None]:
-    """Charge what is compiled within this context to an account; None charges no account."""
+    """Charge code compiled within this context to an account; None charges no account."""
     token = _account.set(account)
     try:
         yield

@@ -47,13 +47,13 @@ _other_process: Callable[[Callable[[], None]], None] | None = None
 
 
 def compile_in(process: Callable[[Callable[[], None]], None] | None) -> None:
-    """Compile in another process that shares the cache, so that the memory used by Numba's compiler is not held by this process.
+    """Let another process that shares the cache compile, so that this process does not hold the memory of Numba's compiler.
 
     Parameters
     ----------
     process
-        Calls a function in the other process, to which cloudpickle can send it, and raises ValueError if it cannot; None to
-        compile in this process.
+        Calls a function, which cloudpickle can send, in the other process, and raises a ValueError if that fails; None to compile
+        in this process.
     """
     global _other_process
     _other_process = process
@@ -139,7 +139,7 @@ def _hash_source(file: str) -> str:
 
 @functools.cache
 def _hash_package(folder: Path) -> str:
-    """Return the hashes of all source files of a package and its subpackages: kernels contain code and constants of others."""
+    """Return the hashes of all source files in a package: kernels contain code and constants of other modules."""
     return "".join(_hash_source(str(path)) for path in sorted(folder.rglob("*.py")))
 
 

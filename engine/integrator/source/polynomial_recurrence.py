@@ -53,8 +53,10 @@ Entry = tuple[Monomial, float, int]
 # A derivative of V: for each of its monomials, the term of V from which it arises and the factor of its differentiation.
 _Derivative = Mapping[Monomial, tuple[Monomial, float]]
 
-# Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and also those in the variational equations.
-_GRADIENT, _HESSIAN = ((0,), (1,)), ((0, 0), (0, 1), (1, 1))
+# Derivatives of V with respect to x (0) and y (1) in the equations of motion.
+_GRADIENT = (0,), (1,)
+# The same for the variational equations.
+_HESSIAN = (0, 0), (0, 1), (1, 1)
 _GRADIENT_AND_HESSIAN = (*_GRADIENT, *_HESSIAN)
 
 _Difference = tuple[Product, Product] | None
@@ -113,7 +115,7 @@ class PolynomialStructure(NamedTuple):
 
     def tabulate(self, terms: Any, entries: Sequence[Entry]) -> list[float]:
         """Return multiples of the coefficients."""
-        polynomial = _sorted(terms)
+        polynomial = _sort_terms(terms)
         return [-1.0 / divisor * (polynomial[term] * multiple) for term, multiple, divisor in entries]
 
 
@@ -139,7 +141,7 @@ def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...],
 
 
 def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
-    """Write a derivative of V as a sum over the series formed; the series of a difference replaces those of both squares."""
+    """Write a derivative of V as a sum over computed series; the series of a difference replaces those of both squares."""
     contained = difference[1].monomial if difference is not None else None
     return {m: origin for m, origin in _derivative(monomials, axes).items() if m != contained}
 
@@ -199,7 +201,7 @@ def _recurrence(
 
 def structure_of_polynomial(terms: Terms, setting: Setting, reach: float = REACH) -> PolynomialStructure:
     """Return the structure of a potential that is a polynomial."""
-    polynomial = _sorted(terms)
+    polynomial = _sort_terms(terms)
     differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
     can_hide = setting.rotates or crossings_can_hide(polynomial, reach)
     return PolynomialStructure(tuple(polynomial), setting, can_hide, *differences)
@@ -209,7 +211,7 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
     """Return whether, without rotation, the signs of y at the ends of a step can miss two crossings of y = 0 in it.
 
     If V is even in y, ÿ = −g(x, y) y. With g below (π/h)², two zeros of y are further than h apart, by Sturm's comparison with
-    the oscillator of that frequency. Terms of g that are nowhere positive cannot raise it.
+    the oscillator of that frequency. Terms of g that are nowhere positive cannot raise g.
     """
     force = derivative(terms, 1)
     if any(j % 2 == 0 for _, j in force):
@@ -218,6 +220,6 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
     return bound >= (math.pi / LONGEST_STEP) ** 2
 
 
-def _sorted(terms: Terms) -> dict[Monomial, float]:
+def _sort_terms(terms: Terms) -> dict[Monomial, float]:
     """Sort the terms by degree, so that the order in which they are given does not matter."""
     return {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}

@@ -5,9 +5,17 @@ from __future__ import annotations
 from engine.integrator.source.series import ORDER, Series, Setting
 from engine.integrator.source.straight_line import StraightLine, Value, where
 
-HIDDEN, GATE, OVERSHOOT, NEAR = 1, 2, 4, 8
-"""Flags of a step: it may hide crossings of y = 0; it ends beyond the gate of an exit; it ends after the horizon; it may cross
-and recross an exit although its end is not beyond the gate."""
+HIDDEN = 1
+"""Flag of a step that may hide crossings of y = 0."""
+
+GATE = 2
+"""Flag of a step that ends beyond the gate of an exit."""
+
+OVERSHOOT = 4
+"""Flag of a step that ends after the horizon."""
+
+NEAR = 8
+"""Flag of a step that may cross and recross an exit although its end is not beyond the gate."""
 
 # Maxima of σ − σ^k for 0 ≤ σ ≤ 1, rounded up; 1 for larger k.
 _LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
