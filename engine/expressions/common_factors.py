@@ -46,7 +46,7 @@ def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
 
 
 def _most_common_factor(terms: Terms) -> Expression | None:
-    """Find the factor of most products, and return all factors that these products share as a product; None if all differ.
+    """Find the most common factor, and return all factors that the products with it share, as a product; None if all differ.
 
     Of several most common factors, the first is used, so that graphs do not depend on hashes.
     """

@@ -89,6 +89,6 @@ def evaluate_at(graph: Graph, numbers: Sequence[float], x: float, y: float) -> l
     try:
         values = node_values(graph, numbers, x, y, _FLOATS)
     except (ArithmeticError, ValueError):
-        # A value is infinite or undefined: functions of `math` raise errors, those of NumPy return it.
+        # For infinite or undefined values, functions of `math` raise errors; those of NumPy do not.
         return [float(value) for value in evaluate(graph, numbers, x, y)]
     return [values[index] for index in graph.results]

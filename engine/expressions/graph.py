@@ -1,8 +1,8 @@
 """Expressions as a list of operations without repeated parts; this form is evaluated, compiled and sent to the browser.
 
 The graph of an expression refers to its numbers by position, so that expressions that differ only in their numbers have the same
-graph and share compiled code. The graph has few products and powers, because the series of a
-product or power needs a sum over all lower orders.
+graph and share compiled code. The graph has few products and powers, because the series of a product or power needs a sum over
+all lower orders.
 """
 
 from __future__ import annotations

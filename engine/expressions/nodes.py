@@ -176,7 +176,7 @@ def power(base: Expression, exponent: float) -> Expression:
 
 
 def _keeps_domain(inner: float) -> bool:
-    """Return whether (b^inner)^a may become b^(inner a), not so for even powers: √(b²) is |b|."""
+    """Return whether (b^inner)^a can be written as b^(inner a); not for even `inner`: √(b²) is |b|."""
     return inner != int(inner) or (int(inner) % 2 != 0 and abs(inner) == 1.0)
 
 

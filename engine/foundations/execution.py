@@ -20,8 +20,8 @@ import numpy as np
 
 # About the least number of indices in a task.
 _LEAST_PART = 1000
-# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. At idle
-# priority, another program could stop a thread that holds the interpreter lock, and all other threads would wait for that lock.
+# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. At idle priority,
+# another program could stop a thread that holds the interpreter lock, and all other threads would wait for this lock.
 _NICE_VALUE = 10
 # Calls shorter than this, in seconds, show no progress bar.
 _DELAY = 1.0

@@ -126,7 +126,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     @classmethod
     def kinds(cls) -> dict[str, type[Any]]:
-        """Return all subclasses by name, which files contain."""
+        """Return all subclasses, by the name that files contain."""
         return {name: kind for each in cls.__subclasses__() for name, kind in {each.__name__: each, **each.kinds()}.items()}
 
     @classmethod

@@ -35,7 +35,7 @@ _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interi
 # Number of cached potentials; binding the coefficients of another potential of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()
-# Code, name of the module and kernels of each structure, which stay as long as machine code, that is, for ever.
+# Code, name of the module and kernels of each structure. Entries stay, because machine code is never unloaded.
 _code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, GeneratedKernel]]] = {}
 # Outlines (see `_outline`) and settings of all potentials for which functions were generated.
 _outlines: set[tuple[Hashable, Setting]] = set()

@@ -145,9 +145,9 @@ class Motion(Result):
         """Return this potential with other frequencies of its well and another strength of its perturbation.
 
         V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 consists of the terms of degree 3 and higher.
-        In general V1 is V without the constant, linear and quadratic terms of its expansion about the origin. The terms
-        with x², y² and x y are multiplied by ω1², ω2² and ω1 ω2, even if the quadratic terms are not ½ (x² + y²), so that the
-        default values give the potential itself. Constant and linear terms are unchanged.
+        In general V1 is V without the constant, linear and quadratic terms of its expansion about the origin. The terms with x²,
+        y² and x y are multiplied by ω1², ω2² and ω1 ω2, even if the quadratic terms are not ½ (x² + y²), so that the default
+        values give the potential itself. Constant and linear terms are unchanged.
 
         Parameters
         ----------

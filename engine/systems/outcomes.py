@@ -53,7 +53,7 @@ class Kind:
 
     @classmethod
     def outcome(cls, number: int, name: str = "", *, occurs: bool = True) -> Outcome:
-        """Return the outcome with a number among the outcomes of this kind; without a name it is called "exit 1" or the like."""
+        """Return the outcome with a number among the outcomes of this kind; its default name is "exit 1", "centre 1" …"""
         name = name or f"{cls.word} {number}"
         return Outcome(cls, cls.label.format(name), cls.action.format(name), occurs, number)
 

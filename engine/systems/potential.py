@@ -165,12 +165,12 @@ class Potential(Motion):
 
     @property
     def critical_points(self) -> np.ndarray:
-        """(n, 2) all points with ∇V = 0; a critical point at the origin is exactly (0, 0). ValueError if they form a curve."""
+        """All points (n, 2) with ∇V = 0; a point at the origin is exactly (0, 0). ValueError if the points form a curve."""
         return self.well.critical_points
 
     @property
     def saddles(self) -> np.ndarray:
-        """(n, 2) the saddles that lead out of the well at the origin, in channel order; none with an escape radius."""
+        """The saddles (n, 2) that lead out of the well at the origin, in channel order; none with an escape radius."""
         return self.well.saddles
 
     @property

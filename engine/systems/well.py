@@ -56,15 +56,15 @@ class Well(ReadOnlyArrays):
 
     @property
     def critical_points(self) -> np.ndarray:
-        """(n, 2) all points with ∇V = 0; one at the origin is exactly (0, 0). Raises ValueError if they form a curve.
+        """All points (n, 2) with ∇V = 0; a point at the origin is exactly (0, 0). ValueError if the points form a curve.
 
-        For a formula that is not a polynomial these are all points of a region, see `engine.systems.forms.stationary_points`.
+        For a formula that is not a polynomial, these are all points of a region, see `engine.systems.forms.stationary_points`.
         """
         return self._points_and_indices[:, :2]
 
     @property
     def critical_indices(self) -> np.ndarray:
-        """(n,) the index of each critical point: 1 for a minimum or a maximum, −1 for a saddle, 0 for a degenerate one."""
+        """The index (n,) of each critical point: 1 for a minimum or a maximum, −1 for a saddle, 0 for a degenerate point."""
         return self._points_and_indices[:, 2]
 
     @cached_property
@@ -73,9 +73,9 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def saddles(self) -> np.ndarray:
-        """(n, 2) saddle points (∇V = 0, V_xx V_yy − V_xy² < 0) that lead out of the well at the origin.
+        """Saddle points (n, 2), ∇V = 0 and V_xx V_yy − V_xy² < 0, that lead out of the well at the origin.
 
-        They are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from which
+        The saddles are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from which
         exactly one of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test without
         the square of V_xy, which is a misprint. With an escape radius there are no exit saddles.
         """
@@ -103,7 +103,7 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def saddle_energies(self) -> np.ndarray:
-        """(channels,) V at each exit saddle, in channel order."""
+        """V at each exit saddle, in channel order, of shape (channels,)."""
         return read_only(np.asarray(self.form.value(self.saddles[:, 0], self.saddles[:, 1]), dtype=float))
 
     @cached_property
@@ -123,16 +123,16 @@ class Well(ReadOnlyArrays):
         )
 
     def is_closed_at(self, energy: Any) -> Any:
-        """Return whether no orbit of the well ends at an energy: it is below all saddles, and there are no other ends.
+        """Return whether no orbit of the well ends at an energy: the energy is below all saddles, and there are no other ends.
 
-        With an escape radius the result is always False. The statement also holds in a rotating frame, where orbits cannot pass
-        the zero-velocity curve V = h.
+        With an escape radius, the result is always False. In a rotating frame the same holds, because orbits cannot pass the
+        zero-velocity curve V = h.
         """
         return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.ends)
 
     @cached_property
     def outward_directions(self) -> np.ndarray:
-        """(channels, 2) unit vectors along the unstable direction of each exit saddle, pointing away from the well."""
+        """Unit vectors (channels, 2) along the unstable direction of each exit saddle, pointing away from the well."""
         directions = np.array([self._unstable_direction(saddle) for saddle in self.saddles]).reshape(-1, 2)
         if self.mirror_in_x:
             for k in np.flatnonzero(self.saddles[:, 0] < 0.0):
@@ -218,7 +218,7 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def mirror_channels(self) -> np.ndarray:
-        """(outcomes + 1,) the image of each fate under x → −x; entry 0 is 0. Only valid if `mirror_in_x`."""
+        """The image of each fate under x → −x, of shape (outcomes + 1,); entry 0 is 0. Only valid if `mirror_in_x`."""
         of_kinds = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
         images = [np.arange(1)]
         for points in (self.saddles, *of_kinds):

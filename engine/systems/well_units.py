@@ -60,7 +60,7 @@ class WellUnits:
 
     @property
     def state(self) -> np.ndarray:
-        """(4,) units of x, y, px, py."""
+        """Units of x, y, px, py, of shape (4,)."""
         return np.array([self.length, self.length, self.momentum, self.momentum])
 
     @property

@@ -11,7 +11,7 @@ LARGEST_CODE = 40_000
 """Largest number of operations of one code if there is a limit. The largest code of the catalogue has about as many."""
 
 SHARES = 4
-"""One account may use one part in this many of the limit."""
+"""Number of equal shares of the limit, of which one account may use one."""
 
 _account: ContextVar[Hashable] = ContextVar("account", default=None)
 

@@ -19,7 +19,7 @@ from engine.integrator.kernels.events import (
     exit_height,
 )
 
-# First columns in a table of: gate, reach, the columns of an exit that describe its axes, and its columns from `MIDDLE`.
+# Columns of a table: the gate, the reach, the first column for the axes of an exit, and the first of its columns from `MIDDLE`.
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 

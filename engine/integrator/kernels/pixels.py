@@ -8,7 +8,7 @@ from engine.integrator.jit.decorator import kernel
 from engine.integrator.kernels.events import BOUNDED, FORBIDDEN, NOT_COMPUTED, OUTSIDE
 from engine.integrator.kernels.slice_starts import interval_centre
 
-# Limit of the reported number of crossings, as in 16 bits.
+# Largest reported number of crossings, that of 16 bits.
 _MOST_CROSSINGS = 65535.0
 
 

@@ -40,7 +40,7 @@ class ByName[Value](Mapping[str, Value]):
         self._kind, self._names, self._make, self._titles = kind, tuple(names), make, dict(titles or {})
 
     def __getitem__(self, name: str) -> Value:
-        """Return the value of a name; raise an `UnknownNameError` that suggests similar names if there is none."""
+        """Return the value of a name; for an unknown name, raise an `UnknownNameError` that suggests similar ones."""
         given: object = name
         if isinstance(given, str) and given in self._names:
             return self._make(given)

@@ -47,7 +47,7 @@ def exact_polynomial(terms: ExactTerms) -> fmpq_mpoly:
 def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
     """Find all real common roots of two polynomials without a common factor, each once.
 
-    During the search, the precision of `flint.ctx` is changed, which all threads share.
+    The search changes the precision of `flint.ctx`, which all threads share, until it ends.
 
     Raises
     ------

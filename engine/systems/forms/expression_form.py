@@ -144,7 +144,7 @@ class ExpressionForm:
 
     @cached_property
     def singular_points(self) -> np.ndarray:
-        """(n, 2) isolated zeros of divisors and of the arguments of roots and logarithms."""
+        """Isolated zeros (n, 2) of divisors and of the arguments of roots and logarithms."""
         found = [_isolated_zeros(base) for base in singular_bases(self.expression)]
         return read_only(np.concatenate([NO_POINTS, *found]))
 

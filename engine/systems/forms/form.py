@@ -85,7 +85,7 @@ class Form(Protocol):
 
     @property
     def singular_points(self) -> np.ndarray:
-        """(n, 2) isolated points at which V is not defined: poles, zeros of the argument of a logarithm or a root."""
+        """Isolated points (n, 2) at which V is not defined: poles, zeros of the argument of a logarithm or a root."""
 
     def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
         """Return whether V is not defined along a curve between points in arrays of any shape; an example is 1/x."""

@@ -37,7 +37,7 @@ _SUBNORMAL = 1e-290
 _CONVERGED = 1e-12
 # Points closer than this, relative to their distance from the origin plus that of the nearest point, are the same.
 _SAME = 1e-8
-# The same for degenerate points, to which Newton's method converges slowly.
+# The same for degenerate points, whose places are less accurate.
 _SAME_DEGENERATE = 1e-5
 # A Hessian is singular if the ratio of its eigenvalues is at most this. For polynomials the rounding errors of the coefficients
 # decide (`critical_points`); for expressions the error of the second derivatives is not known.
