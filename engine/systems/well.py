@@ -75,9 +75,9 @@ class Well(ReadOnlyArrays):
     def saddles(self) -> np.ndarray:
         """Saddle points (n, 2), ∇V = 0 and V_xx V_yy − V_xy² < 0, that lead out of the well at the origin.
 
-        The saddles are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from which
-        exactly one of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test without
-        the square of V_xy, which is a misprint. With an escape radius there are no exit saddles.
+        The saddles are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from
+        which exactly one of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test
+        without the square of V_xy, which is a misprint. With an escape radius there are no exit saddles.
         """
         if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
