@@ -93,7 +93,7 @@ def _interval(ends: Ends) -> Interval:
     return Interval(np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high))
 
 
-def _widened(operation: Callable[..., Ends]) -> Callable[..., Interval]:
+def _widen(operation: Callable[..., Ends]) -> Callable[..., Interval]:
     """Decorate an operation on intervals so that the rounding error widens its result."""
 
     @functools.wraps(operation)
@@ -115,7 +115,7 @@ def _linear(constant: float, coefficients: Sequence[float], operands: Sequence[I
     return _interval((low - error, high + error))
 
 
-@_widened
+@_widen
 def _product(one: Interval, other: Interval) -> Ends:
     if one is other:
         return _square(one)
@@ -129,7 +129,7 @@ def _square(base: Interval) -> Ends:
     return least**2, base.size**2
 
 
-@_widened
+@_widen
 def _power(base: Interval, exponent: float) -> Ends:
     """Return the power −1, or a non-integer power of the nonnegative part of the base."""
     if exponent == -1.0:
@@ -141,17 +141,17 @@ def _power(base: Interval, exponent: float) -> Ends:
     return (ends[0], ends[1]) if exponent > 0.0 else (ends[1], ends[0])
 
 
-@_widened
+@_widen
 def _exp(exponent: Interval) -> Ends:
     return np.exp(exponent.low), np.exp(exponent.high)
 
 
-@_widened
+@_widen
 def _log(argument: Interval) -> Ends:
     return np.log(np.maximum(argument.low, 0.0)), np.log(np.maximum(argument.high, 0.0))
 
 
-@_widened
+@_widen
 def _sine(angle: Interval, shift: float = 0.0) -> Ends:
     """Return sin(angle + shift)."""
     first, last = angle.low + shift, angle.high + shift

@@ -125,7 +125,7 @@ class _BoundKernel:
 
     def __init__(self, function: Any, needed: tuple[GeneratedKernel, ...], coefficients: np.ndarray) -> None:
         self.function = function
-        self._needed = needed
+        self._generated = needed
         self._coefficients = coefficients
 
     @property
@@ -134,7 +134,7 @@ class _BoundKernel:
         return list(self.function.signatures)
 
     def __call__(self, *arguments: Any) -> Any:
-        return self.function(*(generated.address for generated in self._needed), self._coefficients, *arguments)
+        return self.function(*(generated.address for generated in self._generated), self._coefficients, *arguments)
 
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)

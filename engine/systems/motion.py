@@ -43,7 +43,7 @@ class Motion(Result):
     rotation: float
     mass: float
 
-    def _changed(self, **values: Any) -> Self:
+    def _copy_with(self, **values: Any) -> Self:
         """Return a copy with other values of some attributes."""
         raise NotImplementedError
 
@@ -134,12 +134,12 @@ class Motion(Result):
         if self.rotation:
             raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
         half = -0.5 * self.mass * checked_number("rotation", rotation) ** 2
-        return self._changed(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
+        return self._copy_with(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
 
     @cached_property
     def reversed_in_time(self) -> Self:
         """Return the potential with −Ω, whose orbits are those of this potential backward in time with reversed velocities."""
-        return self._changed(rotation=-self.rotation) if self.rotation else self
+        return self._copy_with(rotation=-self.rotation) if self.rotation else self
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Self:
         """Return this potential with other frequencies of its well and another strength of its perturbation.
@@ -171,7 +171,7 @@ class Motion(Result):
             raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
         changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
-        return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)
+        return self._copy_with(name=f"{self.name} ({changed})" if changed else self.name, form=form)
 
     def check_at_rest(self, what: str) -> None:
         """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""

@@ -212,7 +212,7 @@ class Potential(Motion):
         """Return the potential as a member of a family, with known exits; the parameters are those of `ContinuedWell`."""
         return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
 
-    def _changed(self, **values: Any) -> Potential:
+    def _copy_with(self, **values: Any) -> Potential:
         """Return a copy with other values of some attributes, whose well is searched anew."""
         return replace(self, lineage=SEARCHED, system=None, **values)
 
@@ -247,11 +247,11 @@ class Potential(Motion):
         nearest = minima[np.argmin(np.hypot(*(minima - place).T))].tolist()
         ends = tuple(end.moved(*nearest) for end in self.ends)
         origin = self.origin[0] + nearest[0], self.origin[1] + nearest[1]
-        return self._changed(form=self.form.moved(*nearest), ends=ends, origin=origin, exit_names=())
+        return self._copy_with(form=self.form.moved(*nearest), ends=ends, origin=origin, exit_names=())
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
         """Return the potential with other centres and another escape radius; the parameters are those of `Potential`."""
-        return self._changed(centres=centres, escape_radius=escape_radius)
+        return self._copy_with(centres=centres, escape_radius=escape_radius)
 
     def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
         """Return `t_max`, above 0, as a float. The limit `longest` is in the time unit of the well if that exceeds 1.

@@ -153,7 +153,7 @@ class _Recurrence:
         # Sums of products, see `_inner_sum`.
         self._inner_sums: dict[tuple[int, int, bool, int], Value] = {}
         # Sums of series, see `_common_product`.
-        self._combined: dict[tuple[int, int], list[Value]] = {}
+        self._common_sums: dict[tuple[int, int], list[Value]] = {}
         self._orders = 0
 
     def advance_to(self, k: int) -> None:
@@ -211,7 +211,7 @@ class _Recurrence:
     def _common_product(self, index: int, root: int, entries: Mapping[int, Value], k: int) -> Value:
         """Return (Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k; x + d is almost 0 near a body."""
         factors = {product: self.graph.nodes[product].operands for product in entries}
-        combined = self._combined.setdefault((index, root), [])
+        combined = self._common_sums.setdefault((index, root), [])
         for j in range(len(combined), k + 1):
             combined.append(reduce(add, (entries[each] * self.series[f][j] for each, (f, _) in factors.items())))
         pairs = [(self.series[root][j], combined[k - j]) for j in range(1, k + 1)]
