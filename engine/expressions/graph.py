@@ -18,7 +18,7 @@ _GRAPHS = 256
 
 
 class Node(NamedTuple):
-    """An operation on the results of earlier ones.
+    """An operation on the results of earlier operations.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Intervals that contain all values of an expression on boxes, to prove that it has no zero in a box, or exactly one.
+"""Intervals that contain all values of an expression on boxes, to prove that it has no zero or exactly one zero in a box.
 
 In interval arithmetic (Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis) each operation of a graph is replaced by
 an operation on lower and upper ends, and the rounding error widens the result. The functions of NumPy are assumed to be accurate

@@ -13,7 +13,7 @@ Terms = Mapping[Powers, float]
 ExactTerms = Mapping[Powers, Fraction]
 
 HIGHEST_DEGREE = 12
-"""Highest degree of a potential. Searches for critical points are tested up to it; higher degrees slow Taylor steps."""
+"""Highest degree of a potential. Searches for critical points are tested up to 12, and higher degrees slow Taylor steps."""
 
 # Limit on the bits of a numerator or denominator, so that a short formula cannot cause long computations.
 _MOST_BITS = 1000

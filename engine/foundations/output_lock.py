@@ -23,7 +23,7 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 
 @contextmanager
 def hold_lock(path: Path) -> Iterator[None]:
-    """Reserve a path for this process, with a file `.NAME.lock` beside it that is deleted at the end.
+    """Reserve a path for this process by a file `.NAME.lock` beside the path; the file is deleted at the end.
 
     The operating system releases the lock when the process ends, even if it is killed. The file of a killed process stays until
     the next process with this output deletes it. The file is beside the output, because only there does it protect outputs on

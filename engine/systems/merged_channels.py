@@ -21,7 +21,7 @@ class ChannelMerger(NamedTuple):
 
 
 class MergedExit(NamedTuple):
-    """The increasing numbers of two or more channels that form one exit, and whether it leads all around the well."""
+    """The increasing numbers of two or more channels that form one exit, and whether the exit leads all around the well."""
 
     channels: tuple[int, ...]
     closes_ring: bool

@@ -159,7 +159,7 @@ class End(Kind):
 
 
 class Centre(End):
-    """A body; an orbit that enters the disc around it has collided with it.
+    """A body; an orbit that enters the disc around the body has collided with it.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ class Centre(End):
 
 @dataclass(frozen=True)
 class EscapeCircle(End):
-    """The circle around the origin beyond which orbits have escaped; with it, saddles are not exits."""
+    """The circle around the origin beyond which orbits have escaped; with such a circle, saddles are not exits."""
 
     key, word, attribute = "escape", "escape", "escape_radius"
     label, action = "escape", "escape beyond the escape radius"

@@ -1,4 +1,4 @@
-"""Wells whose exits follow from those of another potential, without a search, and potentials in units of their wells."""
+"""Wells whose exits follow from another potential without a search, and potentials in units of their wells."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class ScaledWell(Well):
 
 @dataclass(frozen=True, eq=False)
 class ContinuedWell(Well):
-    """A well whose exits were continued from those of a nearby potential.
+    """A well whose exits were continued from the exits of a nearby potential.
 
     Attributes
     ----------

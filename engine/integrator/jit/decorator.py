@@ -29,7 +29,7 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def subroutine(function: Callable[..., Any]) -> Any:
-    """Return the function as a part of the kernels that call it; when Python calls it, it runs uncompiled.
+    """Return the function as a part of the kernels that call it; called by Python, the function runs uncompiled.
 
     A subroutine compiles in less time than a kernel, because it has no interface to Python, no file in the cache, and no second
     version for literal arguments. It is always inlined: otherwise functions of the same name in several kernels would share the

@@ -33,7 +33,7 @@ SETTINGS = {
     "NUMBA_CPU_FEATURES": "",
     "NUMBA_DISABLE_INTEL_SVML": "1",
 }
-"""Environment of the process that calls `lower_kernels`; Numba reads it when it is imported."""
+"""Environment of the process that calls `lower_kernels`, which Numba reads when it is imported."""
 
 _SIZE, _DOUBLE, _LONG = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
 

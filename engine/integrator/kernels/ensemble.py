@@ -158,7 +158,7 @@ def _variance(values, channels):
     for orbit in range(channels.shape[0]):
         if channels[orbit] != 0:
             continue
-        # The values are taken relative to the first, because those of a small disc differ only in their last digits.
+        # The values are taken relative to the first, because the values of a small disc differ only in their last digits.
         if count == 0:
             origin = values[orbit]
         difference = values[orbit] - origin

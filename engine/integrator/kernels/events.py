@@ -28,7 +28,7 @@ MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 # Values of the column SHAPE; orbits cannot return from a CURVE.
 CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
 
-# Fates of an orbit or a start, besides the number, 1 or more, of the channel through which it escaped.
+# Fates of an orbit or a start, besides the number, 1 or more, of the channel through which an orbit escaped.
 BOUNDED, FORBIDDEN, OUTSIDE, NOT_COMPUTED, FAILED = 0, -1, -2, -3, -4
 
 # Degree of the polynomial f, a sum of Chebyshev polynomials.

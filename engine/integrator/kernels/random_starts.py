@@ -91,7 +91,7 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
 
 @subroutine
 def _find_above(values, limit):
-    """Return the index of the first of rising values (n,) above a limit; the last value must be above it."""
+    """Return the index of the first of rising values (n,) above a limit; the last value must be above the limit."""
     low, high = 0, values.shape[0] - 1
     while low < high:
         middle = (low + high) // 2

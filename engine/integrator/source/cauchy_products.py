@@ -14,7 +14,7 @@ Polynomial = Mapping[Monomial, float]
 
 X, Y = (1, 0), (0, 1)
 
-# Coefficients count as equal up to this relative difference; those of terms like −x³ ε/3 have a few rounding errors.
+# Coefficients count as equal up to this relative difference; coefficients such as that of −x³ ε/3 have a few rounding errors.
 _ROUNDING = 1e-15
 # Number of cached results of `_cheapest`, of 1 kB each; a potential of degree 8 needs about 4 000.
 _CHEAPEST_PRODUCTS = 4096

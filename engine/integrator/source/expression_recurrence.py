@@ -181,7 +181,7 @@ class _Recurrence:
         return reduce(add, self._remainders(node), value)
 
     def _remainders(self, node: Node) -> Iterator[Value]:
-        """Yield what the remainders add to a sum with x or y, such as the distance from a body; elsewhere they do not matter."""
+        """Yield the terms that remainders add to a sum with x or y, such as the distance from a body; others do not matter."""
         for operand, place in zip(node.operands, node.numbers, strict=False):
             remainder = self.remainders.get(self.graph.nodes[operand].kind)
             if remainder is not None and node.kind in ("sum", "shift"):

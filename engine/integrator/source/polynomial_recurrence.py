@@ -174,7 +174,7 @@ def _recurrence(
     difference: _Difference,
     rotates: bool,
 ) -> dict[Monomial, list[Value]]:
-    """Return the series of x and y and of `products`; a difference of two squares is stored as the first of them."""
+    """Return the series of x and y and of `products`; a difference of two squares is stored in place of the first square."""
     series: dict[Monomial, list[Value]] = {
         X: [program.input("x0"), program.input("x1")],
         Y: [program.input("y0"), program.input("y1")],
@@ -208,7 +208,7 @@ def structure_of_polynomial(terms: Terms, setting: Setting, reach: float = REACH
 
 
 def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
-    """Return whether, without rotation, the signs of y at the ends of a step can miss two crossings of y = 0 in it.
+    """Return whether, without rotation, the signs of y at the ends of a step can miss two crossings of y = 0 in the step.
 
     If V is even in y, ÿ = −g(x, y) y. With g below (π/h)², two zeros of y are further than h apart, by Sturm's comparison with
     the oscillator of that frequency. Terms of g that are nowhere positive cannot raise g.
@@ -221,5 +221,5 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
 
 
 def _sort_terms(terms: Terms) -> dict[Monomial, float]:
-    """Sort the terms by degree, so that the order in which they are given does not matter."""
+    """Sort the terms by degree, so that their given order does not matter."""
     return {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}

@@ -39,7 +39,7 @@ def _sag(series: Series, h: Value) -> Value:
 
 
 def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
-    """Return the test of a step for hidden crossings of y = 0, for potentials where they are possible: HIDDEN or 0.
+    """Return the test of a step for hidden crossings of y = 0, for potentials where these are possible: HIDDEN or 0.
 
     The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. So there are no hidden crossings if ẏ keeps its sign (|ẏ(0)| h > bound),
     or if both ends lie on one side, further away than bound/2.

@@ -97,7 +97,7 @@ class ExpressionForm:
         return isinstance(self.expression, Sum) and self.expression.constant != 0.0
 
     def value(self, x: Any, y: Any) -> Any:
-        """Return V at (x, y); arrays broadcast; NaN where it is not defined."""
+        """Return V at (x, y); arrays broadcast; NaN where V is not defined."""
         return self._evaluate(x, y, self.expression)[0]
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
@@ -190,7 +190,7 @@ class ExpressionForm:
         return next(n for n in range(_MOST_ROTATIONS, 0, -1) if n == 1 or self._is_turned_by(2.0 * math.pi / n))
 
     def _is_turned_by(self, angle: float) -> bool:
-        """Return whether a rotation leaves V unchanged where it is defined."""
+        """Return whether a rotation leaves V unchanged where V is defined."""
         one, other = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
         known = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
         error = np.abs(one[known] - other[known]).max(axis=1)

@@ -147,7 +147,7 @@ class PolynomialForm:
         return False
 
     def plus(self, terms: Terms) -> PolynomialForm:
-        """Add terms, leaving out those that cancel."""
+        """Add a polynomial; terms that cancel are left out."""
         added = self.coefficients | {powers: self.coefficients.get(powers, 0.0) + c for powers, c in terms.items()}
         return checked_form(tuple((i, j, c) for (i, j), c in added.items() if c))
 

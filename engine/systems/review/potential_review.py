@@ -107,7 +107,7 @@ class SystemReview(PotentialReview):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore: those of the catalogue for its parameter values, otherwise those derived from the potential."""
+        """Energies to explore: from the catalogue for its parameter values, otherwise derived from the potential."""
         known = self.system.entry.energies
         return super().energies if known is None or self.system.parameters else known
 
