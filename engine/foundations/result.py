@@ -179,7 +179,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     def to_xarray(self) -> xr.Dataset:
         """Return a dataset of the columns along one dimension, or of the scalars for a result without columns.
 
-        Its attributes contain the provenance, and the scalars if they are not variables. NetCDF and Zarr can store it.
+        Its attributes contain the provenance, and the scalars if they are not variables. NetCDF and Zarr can store the dataset.
         """
         import xarray as xr
 

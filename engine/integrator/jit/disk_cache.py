@@ -11,7 +11,7 @@ Numba has no public interface for caches, so this module uses internal names of 
 - ``CompileResult._reduce`` and ``CompileResult._rebuild``: compiled code to and from objects that can be pickled;
 - ``numba.core.serialize.dumps``: Numba's pickling of these objects;
 - ``library.has_dynamic_globals``: whether code contains addresses that are valid in this process only;
-- ``codegen.magic_tuple()``: the target, processor and its features that code was compiled for;
+- ``codegen.magic_tuple()``: the target, the processor and its features for which code was compiled;
 - ``rtsys.initialize()``: prepares the memory management that the loaded code needs.
 """
 

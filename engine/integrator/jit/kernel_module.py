@@ -4,9 +4,8 @@ Numba lowers a kernel to LLVM instructions that hardly depend on the machine: on
 address, and this layout is replaced. Numba must not optimise the code for this machine. Only environment variables prevent this,
 and `lower_kernels` is therefore called in a separate process.
 
-This is the only module that uses parts of Numba, version 0.68, that are not public: the context of the target, for its calling
-convention and the layout of arrays (`populate_array`), and the functions of its memory management to which code refers
-(`_RUNTIME`).
+This module uses parts of Numba 0.68 that are not public: the context of the target, for its calling convention and the layout of
+arrays (`populate_array`), and the functions of its memory management to which code refers (`_RUNTIME`).
 """
 
 from __future__ import annotations

@@ -4,9 +4,9 @@ A path leads downhill from the point until V on the straight line to the origin 
 and the point is inside if the whole path crosses the exits an even number of times. If the path leads to another minimum, or to a
 value of V below that at the origin, it ends outside, and the point is inside if it crosses the exits an odd number of times.
 
-The two kernels differ in how they evaluate V. For polynomials they use the terms, with a proof that V on a line is below a level.
-For expressions they use a generated function, and replace V on a line between neighbouring points by the cubic with its values
-and slopes.
+The two kernels evaluate V in different ways. That for polynomials uses the terms, with a proof that V on a line is below a level.
+That for expressions uses a generated function, and replaces V on a line between neighbouring points by the cubic with the same
+values and slopes.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ _MOST_CHANNELS = 128
 def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
     """Return the q < 0 at which the line across the channel at u meets the zero-velocity curve V = energy; NaN if nowhere.
 
-    (u, q) are coordinates from the saddle along `outward` and 90° counterclockwise from it.
+    The coordinates (u, q) are measured from the saddle along `outward` and along the direction 90° counterclockwise from it.
     """
     x = saddle_x + u * outward_x
     y = saddle_y + u * outward_y

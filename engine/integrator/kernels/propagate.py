@@ -202,7 +202,7 @@ def _refill_lane(orbits, todo, next_orbit, active, lanes, i, lane_orbit, crossed
 
 @subroutine
 def _judge_step(jets, coefficients, flags, now, new, i, final, exits, orbit, single):
-    """Return what happens in a flagged step: (the orbit ends, exit that it crosses or 0, the orbit fails, events are to be located).
+    """Return what happens in a flagged step: (orbit ends, exit that it crosses or 0, orbit fails, events are to be located).
 
     now, new: lanes at the start and the end of the step; i: lane of the orbit; single: buffer for one step.
     """

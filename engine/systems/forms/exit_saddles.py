@@ -2,7 +2,7 @@
 
 From a saddle two lines of steepest descent start, one on each side along its unstable direction. If one ends at the origin and
 the other elsewhere, at another minimum or at infinity, the saddle is an exit of the well. The two lines of steepest ascent run
-along the walls of the channel; above the energy of a maximum at which one of them ends, the channel has no wall there.
+along the walls of the channel; above the energy of a maximum at which one line ends, the channel has no wall there.
 """
 
 from __future__ import annotations
