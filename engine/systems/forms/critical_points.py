@@ -1,6 +1,6 @@
 """All critical points of a polynomial V, found with proof, in rational arithmetic.
 
-A coefficient represents the decimal that Python prints, or a fraction with a small denominator that rounds to the same double. The
+A coefficient represents the decimal that Python prints, or a fraction of small denominator that rounds to the same double. The
 result is therefore the same on every machine, and exact for typed formulas. V_x and V_y are divided by their greatest common
 divisor. The quotients have isolated common roots (`find_common_roots`). Where the divisor vanishes, the force vanishes along
 curves or at single points.
