@@ -34,7 +34,7 @@ def _terms_of(total: Expression) -> Terms:
 
 
 def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
-    """Return (d, e) with d e = c m; sums among the factors of m whose first coefficient is ±2^k are scaled to 1 in e."""
+    """Return (d, e) with d e = c m. Sums among the factors of m whose first coefficient is ±2^k have the coefficient 1 in e."""
     factors = []
     for base, n in part.factors if isinstance(part, Product) else ():
         scale = base.terms[0][1] if isinstance(base, Sum) and n == int(n) else 1.0
@@ -46,9 +46,9 @@ def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
 
 
 def _most_common_factor(terms: Terms) -> Expression | None:
-    """Find the most common factor, and return all factors that the products with it share, as a product; None if all differ.
+    """Find the most common factor, and return the product of all factors that the products with this factor share.
 
-    Of several most common factors, the first is used, so that graphs do not depend on hashes.
+    None if no factor is common. Of several most common factors, the first is used, so that graphs do not depend on hashes.
     """
     counts = Counter(factor for part, _ in terms for factor in _factors(part))
     factor, count = max(counts.items(), key=lambda item: item[1], default=(None, 0))
@@ -64,7 +64,10 @@ def _contains(part: Expression, factor: Expression) -> bool:
 
 
 def _factors(part: Expression) -> tuple[Expression, ...]:
-    """Return the factors of a product in order, with b for a positive integer power of b; empty for a single factor."""
+    """Return the factors of a product in order, empty if the product is its only factor.
+
+    A positive integer power of b has the factor b.
+    """
     if not isinstance(part, Product):
         return ()
     found = tuple(base if n > 0.0 and n == int(n) else power(base, n) for base, n in part.factors)

@@ -107,7 +107,7 @@ class _Builder:
         raise TypeError(expression)
 
     def _power(self, base: int, exponent: float) -> int:
-        """Return the index of a power; positive integer powers are products, whose series are regular where the base is 0."""
+        """Return the index of a power. Positive integer powers are products, whose series are regular where the base is 0."""
         if exponent == 1.0:
             return base
         if exponent != int(exponent):
@@ -119,7 +119,10 @@ class _Builder:
         return square if int(exponent) % 2 == 0 else self._node(Node("product", (square, base)))
 
     def _real_power(self, base: int, exponent: float) -> int:
-        """Return the index of a non-integer power, which uses the next higher power if known; an inverse root adds the root."""
+        """Return the index of a non-integer power.
+
+        The next higher power is used if it is a node, and is added for an inverse root.
+        """
         if exponent == -0.5:
             self._real_power(base, 0.5)
         key = base, exponent

@@ -47,7 +47,7 @@ def join_signed(parts: list[tuple[float, str]]) -> str:
 
 
 def _term(part: Expression, size: float, digits: int | None) -> str:
-    """Return a positive multiple of a term; the number precedes functions, so that the parser reads the number exactly."""
+    """Return a positive multiple of a term. The number precedes functions, so that the parser reads the number exactly."""
     powers = powers_of(part)
     if powers is not None:
         return monomial_term(*powers, size, digits)

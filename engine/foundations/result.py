@@ -79,10 +79,10 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Names of the attributes that contain codes, each with the enumeration of its codes."""
 
     row_dimension: ClassVar[str] = ""
-    """Name of the dimension of the columns in files; empty if the first column, of distinct values, is the coordinate."""
+    """Name of the dimension of the columns in files. Empty if the first column has distinct values and is the coordinate."""
 
     held_as: ClassVar[dict[str, str]] = {}
-    """Names of fields that files store under another name or as several parts, each with the other name or that of one part."""
+    """{field: name} of fields that files store under another name or as several parts. The name is that in files or of one part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:

@@ -1,4 +1,4 @@
-"""Fields of results in files: numbers and texts are unchanged, tuples and dataclasses become JSON. Also their former names."""
+"""Fields of results in files, and their former names. Numbers and texts are unchanged, tuples and dataclasses become JSON."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def short_repr(value: Any) -> str:
 
 
 def checks_types[**P, T](**kinds: Any) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorate a function to raise a ValueError for arguments of wrong types; `kinds` gives one or more types for a parameter."""
+    """Decorate a function to raise a ValueError for arguments of wrong types. `kinds` gives the legal types of parameters."""
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         places = [(place, name) for place, name in enumerate(inspect.signature(function).parameters) if name in kinds]
@@ -121,7 +121,7 @@ def checked_count(name: str, value: Any, least: int, most: int) -> int:
 
 
 def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarray:
-    """Return an array of floats, or with `keep_type` of the type of the value; shape and range are not checked."""
+    """Return an array of floats, or with `keep_type` of the type of the value. Shape and range are not checked."""
     try:
         array: np.ndarray = np.asarray(value, dtype=None if keep_type else float)
     except (TypeError, ValueError, OverflowError):

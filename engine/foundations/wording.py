@@ -78,7 +78,7 @@ def _exit(code: int) -> str:
 
 
 def show_numbers(numbers: Mapping[str, Any], codes: Mapping[str, type[IntEnum]], labels: Sequence[str] = ()) -> dict[str, str]:
-    """Return scalars as text, by name: codes in words, where `labels` name fates 1, 2 and so on; other numbers to four digits."""
+    """Return scalars as text, by name: codes in words, other numbers to four digits. `labels` name fates 1, 2 and so on."""
     return {name: _show(value, codes.get(name), labels) for name, value in numbers.items()}
 
 

@@ -52,7 +52,10 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
 
 
 def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
-    """Return exit numbers of outcomes, of shape (mergers + 1, outcomes + 1); row k is for energies above the first k mergers."""
+    """Return the exit numbers of outcomes, of shape (mergers + 1, outcomes + 1).
+
+    Row k is for energies above the first k of the sorted mergers.
+    """
     numbers = np.tile(np.arange(outcomes + 1, dtype=np.int8), (len(mergers) + 1, 1))
     for k in range(len(mergers)):
         for merged in merged_exits(mergers[: k + 1], np.inf):

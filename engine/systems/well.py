@@ -176,7 +176,7 @@ class Well(ReadOnlyArrays):
         )
 
     def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
-        """Return the exits of several channels above the maxima between them; each has the lowest number of its channels."""
+        """Return the exits of several channels above the maxima between them. Each has the lowest number of its channels."""
         return merged_exits(self.channel_mergers, energy)
 
     def exit_numbers(self, energy: Any) -> np.ndarray:

@@ -49,11 +49,13 @@ def _parts(value: Fraction, count: int) -> list[float]:
 
 _LN_2_PARTS, _HALF_PI_PARTS = _parts(_LN_2, 2), _parts(_PI / 2, 3)
 
-# Coefficients, the highest first: of exp r for |r| ≤ log 2 / 2, of sin r / r and cos r in r² for |r| ≤ π/4, and of
-# (atanh s / s − 1) / s² in s² for |s| ≤ (√2 − 1)/(√2 + 1).
+# Coefficients of polynomials, the highest first: exp r for |r| ≤ log 2 / 2.
 _EXP = [1.0 / math.factorial(k) for k in range(14, -1, -1)]
+# sin r / r in r² for |r| ≤ π/4.
 _SIN = [(-1.0) ** k / math.factorial(2 * k + 1) for k in range(8, -1, -1)]
+# cos r in r² for |r| ≤ π/4.
 _COS = [(-1.0) ** k / math.factorial(2 * k) for k in range(9, -1, -1)]
+# (atanh s / s − 1) / s² in s² for |s| ≤ (√2 − 1)/(√2 + 1).
 _ATANH = [1.0 / (2 * k + 3) for k in range(10, -1, -1)]
 
 

@@ -181,7 +181,10 @@ class _Recurrence:
         return reduce(add, self._remainders(node), value)
 
     def _remainders(self, node: Node) -> Iterator[Value]:
-        """Yield the terms that remainders add to a sum with x or y, such as the distance from a body; others do not matter."""
+        """Yield the terms that remainders add to a sum with x or y, such as the distance from a body.
+
+        Elsewhere remainders do not matter.
+        """
         for operand, place in zip(node.operands, node.numbers, strict=False):
             remainder = self.remainders.get(self.graph.nodes[operand].kind)
             if remainder is not None and node.kind in ("sum", "shift"):
@@ -209,7 +212,10 @@ class _Recurrence:
         return total(self.program, chain(single, common))
 
     def _common_product(self, index: int, root: int, entries: Mapping[int, Value], k: int) -> Value:
-        """Return (Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k; x + d is almost 0 near a body."""
+        """Return (Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k.
+
+        The factor x + d is almost 0 near a body.
+        """
         factors = {product: self.graph.nodes[product].operands for product in entries}
         combined = self._common_sums.setdefault((index, root), [])
         for j in range(len(combined), k + 1):
@@ -223,7 +229,10 @@ class _Recurrence:
         return self.series[node.operands[0]][k]
 
     def product(self, _index: int, node: Node, k: int) -> Value:
-        """Return (u v)_k = Σ u_j v_(k − j); products of u + c and v + d differ only in the first and the last term."""
+        """Return (u v)_k = Σ u_j v_(k − j).
+
+        Products of u + c and v + d for all c and d differ only in the first and the last term.
+        """
         one, other = node.operands
         u, v = self.series[one], self.series[other]
         if one == other:

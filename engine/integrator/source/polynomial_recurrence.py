@@ -63,7 +63,10 @@ _Difference = tuple[Product, Product] | None
 
 
 class PolynomialStructure(NamedTuple):
-    """The facts on which generated code depends; the differences are those of `_find_difference` without and with the Hessian."""
+    """The facts on which generated code depends.
+
+    `_find_difference` returns `difference` for the gradient alone, and `tangent_difference` for the gradient and the Hessian.
+    """
 
     monomials: tuple[Monomial, ...]
     setting: Setting
@@ -141,7 +144,7 @@ def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...],
 
 
 def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
-    """Write a derivative of V as a sum over computed series; the series of a difference replaces those of both squares."""
+    """Write a derivative of V as a sum over computed series. The series of a difference replaces the series of both squares."""
     contained = difference[1].monomial if difference is not None else None
     return {m: origin for m, origin in _derivative(monomials, axes).items() if m != contained}
 
@@ -174,7 +177,7 @@ def _recurrence(
     difference: _Difference,
     rotates: bool,
 ) -> dict[Monomial, list[Value]]:
-    """Return the series of x and y and of `products`; a difference of two squares is stored in place of the first square."""
+    """Return the series of x, y and `products`. A difference of two squares is stored in place of the first square."""
     series: dict[Monomial, list[Value]] = {
         X: [program.input("x0"), program.input("x1")],
         Y: [program.input("y0"), program.input("y1")],

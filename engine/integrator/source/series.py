@@ -54,12 +54,12 @@ class Setting(NamedTuple):
 
     @property
     def needs_whole_steps(self) -> bool:
-        """Whether an orbit can cross and recross an exit within a step; it cannot at exits over saddles in a frame at rest."""
+        """Whether an orbit can cross and recross an exit within a step, which exits over saddles in a frame at rest exclude."""
         return bool(self.sides) or self.rotates
 
 
 class Structure(Hashable, Protocol):
-    """The facts on which the generated code of a potential depends; hashable. Polynomials and expressions have one class each."""
+    """The hashable facts on which the generated code of a potential depends. Polynomials and expressions have one class each."""
 
     @property
     def setting(self) -> Setting:
@@ -79,7 +79,7 @@ class Structure(Hashable, Protocol):
 
     @property
     def largest_norm(self) -> float:
-        """Norm of the last coefficients above which steps would be too short to change t; such an orbit fails, as with NaN."""
+        """Norm of the last coefficients above which steps would be too short to change t. Such an orbit fails, as with NaN."""
 
     def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
         """Return the series of x and y to `ORDER` from the inputs x0, x1, y0 and y1; `remainders` are added to x0 and y0."""

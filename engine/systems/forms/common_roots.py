@@ -32,7 +32,7 @@ _NEAR = 1e-9
 
 @dataclass(frozen=True)
 class CommonRoot:
-    """A common root (x, y), with an interval for each coordinate, and its multiplicity, which is 1 where the two curves cross."""
+    """A common root (x, y), with an interval for each coordinate. The multiplicity is 1 where the two curves cross."""
 
     x: arb
     y: arb

@@ -197,7 +197,10 @@ class ExpressionForm:
         return bool(known.any() and np.all(error <= _ROTATION_ERROR * np.abs(one[known]).max(axis=1)))
 
     def limits_refusal(self) -> str | None:
-        """Return a refusal if V or its derivatives are too large; these can be a hundred times as large as V, which is first."""
+        """Return a refusal if V or its derivatives are too large.
+
+        V is checked first, because its derivatives can be a hundred times as large.
+        """
         graphs = (
             ("V has", lambda: (self.expression,)),
             ("The first derivatives of V have", lambda: slopes(self.expression)),

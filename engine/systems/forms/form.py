@@ -88,7 +88,7 @@ class Form(Protocol):
         """Isolated points (n, 2) at which V is not defined: poles, zeros of the argument of a logarithm or a root."""
 
     def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
-        """Return whether V is not defined along a curve between points in arrays of any shape; an example is 1/x."""
+        """Return whether V is not defined along a curve, such as 1/x along x = 0, between points in arrays of any shape."""
 
     def plus(self, terms: Terms) -> Form:
         """Return V plus a polynomial {(i, j): c}."""
@@ -100,7 +100,7 @@ class Form(Protocol):
         """See `Potential.with_parameters`."""
 
     def moved(self, x: float, y: float) -> Form:
-        """Return V with the origin moved to its critical point (x, y); a polynomial then has the exact slope 0 there."""
+        """Return V with the origin moved to its critical point (x, y). The slope of a polynomial there becomes exactly 0."""
 
     def count_rotations(self) -> int:
         """See `PotentialReview.rotations`."""

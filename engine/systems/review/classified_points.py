@@ -64,7 +64,10 @@ def minima_of(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
 
 
 def other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
-    """Return the nearest minimum if a clause can move the axes there; None, for example, if the axes are already moved."""
+    """Return the nearest minimum if a clause can move the axes there; otherwise None.
+
+    Axes are moved only once, and not in a rotating frame or with an escape radius.
+    """
     nearest = next(iter(minima_of(points)), None)
     is_moved = any(potential.origin)
     if nearest is None or nearest is point_at_origin(points) or is_moved or potential.rotation:

@@ -26,7 +26,7 @@ _LEAST_SPREAD = 0.25
 
 
 def energy_range(potential: Potential, highest_energy: float, critical_energies: Sequence[float]) -> EnergyRange:
-    """Return a range given by multiples of the depth of the well; with an escape radius, a range around the critical energies.
+    """Return a range given by multiples of the depth of the well. With an escape radius, it is around the critical energies.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float
 
 
 def _range_around(potential: Potential, energies: np.ndarray) -> EnergyRange:
-    """Return energies from below the lowest critical point to above the highest one, where all of the plane is allowed."""
+    """Return energies from below the lowest critical point to above the highest one, where the whole plane is allowed."""
     span = max(float(np.ptp(energies)), _LEAST_SPREAD * float(np.abs(energies).max()), _NARROWEST * potential.units.energy)
     decimals = 2 - math.floor(math.log10(span))
     ends = energies.min() - 0.5 * span, energies.max() + 0.5 * span, np.median(energies)

@@ -43,7 +43,7 @@ def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, .
 
 
 def _known_points(potential: Potential) -> tuple[CriticalPoint, ...]:
-    """Return the critical points; empty if they are not found, because a system with an escape radius does not need them."""
+    """Return the critical points; empty if they are not found. A system with an escape radius does not need them."""
     try:
         return classify_points(potential)
     except (UndecidedError, NotIsolatedError):

@@ -27,7 +27,10 @@ def check_defined(potential: Potential) -> None:
 
 
 def singularity_refusal(potential: Potential) -> str | None:
-    """Return a sentence if orbits can reach a point where V is not defined, which does not count beyond exits; or None."""
+    """Return a sentence if orbits can reach a point where V is not defined; otherwise None.
+
+    Orbits do not reach points beyond the exits.
+    """
     if potential.escape_radius is None:
         return _origin_refusal(potential)
     for x, y in potential.form.singular_points.tolist():
