@@ -82,7 +82,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Name of the dimension of the columns in files. Empty if the first column has distinct values and is the coordinate."""
 
     held_as: ClassVar[dict[str, str]] = {}
-    """{field: name} of fields that files store under another name or as several parts. The name is that in files or of one part."""
+    """{field: name} of fields that files store under another name or as several parts. The name is that in files or of a part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:
