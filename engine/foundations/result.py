@@ -99,7 +99,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         options
             ``palette``: ``"paper"`` or ``"safe"`` for all results; ``picture`` of a map: ``"basins"``, ``"times"``,
             ``"crossings"``, ``"characters"`` or ``"curves"``; ``show`` of an orbit: ``"path"``, ``"sali"``,
-            ``"exponent"`` or ``"r2"``; ``measure`` of a sweep: a name of `MEASURES`, by default the first one that is drawn.
+            ``"exponent"`` or ``"r2"``; ``measure`` of a sweep: a name of `MEASURES`, by default the first measure with a picture.
 
         Returns
         -------
@@ -168,7 +168,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
-        # Only the fields count; a cached object, such as a potential in units of its well, counts its own bytes.
+        # Only the fields count: a cached value can be the object itself, as `in_well_units` of a potential whose units are 1.
         values = (getattr(self, each.name) for each in fields(cast("Any", self)))
         return sum(int(getattr(value, "nbytes", 0)) for value in values)
 
