@@ -25,7 +25,7 @@ from engine.expressions.nodes import (
 
 # Coefficients count as equal if their relative difference is at most this.
 _ROUNDING = 1e-14
-# Number of cached derivatives, of 1 kB each.
+# Number of cached derivatives, of about 1 kB each.
 _DERIVATIVES = 4096
 
 
@@ -38,7 +38,7 @@ def derivative(expression: Expression, axis: int) -> Expression:
         case Sum(_, terms):
             return linear_combination((c, derivative(part, axis)) for part, c in terms)
         case Product(factors):
-            return linear_combination((n, _factor_derived(factors, k, axis)) for k, (_, n) in enumerate(factors))
+            return linear_combination((n, _differentiate_factor(factors, k, axis)) for k, (_, n) in enumerate(factors))
         case Function("log", argument) if (inverse_root := _of_inverse_hyperbolic_sine(argument, axis)) is not None:
             return inverse_root
         case Function(name, argument):
@@ -57,7 +57,7 @@ def curvatures(expression: Expression) -> tuple[Expression, Expression, Expressi
     return derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1)
 
 
-def _factor_derived(factors: tuple[tuple[Expression, float], ...], k: int, axis: int) -> Expression:
+def _differentiate_factor(factors: tuple[tuple[Expression, float], ...], k: int, axis: int) -> Expression:
     """Return a product with factor k, b^n, replaced by b^(n − 1) b'."""
     base, n = factors[k]
     others = (power(other, m) for place, (other, m) in enumerate(factors) if place != k)
@@ -78,7 +78,7 @@ def _outer_derivative(name: str, argument: Expression) -> Expression:
 def _of_inverse_hyperbolic_sine(argument: Expression, axis: int) -> Expression | None:
     """Return (p'/c) b^(−½), the derivative of log(p + c b^½) if c² b' = 2 p' p with a number p' ≠ 0; None for other arguments.
 
-    Where p < 0, cancellation would cost digits in p + c b^½, and therefore in u'/u.
+    Where p < 0, terms of u = p + c b^½ cancel, so that the usual u'/u would lose digits.
     """
     terms = argument.terms if isinstance(argument, Sum) else ()
     roots = [(part, c) for part, c in terms if isinstance(part, Product) and [n for _, n in part.factors] == [0.5]]
@@ -102,7 +102,7 @@ def substitute(expression: Expression, x: Expression, y: Expression) -> Expressi
 
 
 def replace_parts(expression: Expression, parts: Mapping[Expression, Expression]) -> Expression:
-    """Replace some parts of an expression by others."""
+    """Replace the parts of an expression that are keys of `parts` by their values."""
     if expression in parts:
         return parts[expression]
     match expression:

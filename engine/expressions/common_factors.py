@@ -9,14 +9,15 @@ from engine.expressions.nodes import Expression, Product, Sum, linear_combinatio
 
 Terms = tuple[tuple[Expression, float], ...]
 
-# The mantissa of a power of two.
-_POWER_OF_TWO = 0.5
+# Mantissa of all powers of two in `math.frexp`.
+_MANTISSA_OF_POWERS = 0.5
 
 
 def factor_out(terms: Terms) -> Terms:
     """Rewrite Σ c m with the most common factors of its products factored out; the constants of new sums are 0.
 
-    Sums among the factors get the first coefficient 1 if that is exact, so that u (2x + 1) + v (x + ½) has a common factor.
+    Sums among the factors are scaled to a first coefficient of 1 where that is exact, so that u (2x + 1) + v (x + ½) has a common
+    factor.
     """
     terms = _terms_of(linear_combination(_with_unit_sums(part, c) for part, c in terms))
     while (factor := _most_common_factor(terms)) is not None:
@@ -33,11 +34,11 @@ def _terms_of(total: Expression) -> Terms:
 
 
 def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
-    """Return (d, e) with d e = c m; the sums among the factors of e have the first coefficient 1 if it was a power of two."""
+    """Return (d, e) with d e = c m. Sums among the factors of m whose first coefficient is ±2^k have the coefficient 1 in e."""
     factors = []
     for base, n in part.factors if isinstance(part, Product) else ():
         scale = base.terms[0][1] if isinstance(base, Sum) and n == int(n) else 1.0
-        if abs(math.frexp(scale)[0]) != _POWER_OF_TWO:
+        if abs(math.frexp(scale)[0]) != _MANTISSA_OF_POWERS:
             scale = 1.0
         c *= scale**n
         factors.append(power(linear_combination([(1.0 / scale, base)]), n))
@@ -45,9 +46,9 @@ def _with_unit_sums(part: Expression, c: float) -> tuple[float, Expression]:
 
 
 def _most_common_factor(terms: Terms) -> Expression | None:
-    """Return the product of all factors shared by those products that share the most common one, at least two of them.
+    """Find the most common factor, and return the product of all factors that the products with this factor share.
 
-    Of several most common factors the first is taken, so that a program never depends on hashes.
+    None if no factor is common. Of several most common factors, the first is used, so that graphs do not depend on hashes.
     """
     counts = Counter(factor for part, _ in terms for factor in _factors(part))
     factor, count = max(counts.items(), key=lambda item: item[1], default=(None, 0))
@@ -58,12 +59,15 @@ def _most_common_factor(terms: Terms) -> Expression | None:
 
 
 def _contains(part: Expression, factor: Expression) -> bool:
-    """Return whether a product has all factors of another one."""
+    """Return whether a product has all factors of another product."""
     return all(each in _factors(part) for each in _factors(factor) or (factor,))
 
 
 def _factors(part: Expression) -> tuple[Expression, ...]:
-    """Return the factors of a product of at least two, in order; a positive integer power of b has the factor b."""
+    """Return the factors of a product in order, empty if the product is its only factor.
+
+    A positive integer power of b has the factor b.
+    """
     if not isinstance(part, Product):
         return ()
     found = tuple(base if n > 0.0 and n == int(n) else power(base, n) for base, n in part.factors)

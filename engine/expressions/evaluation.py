@@ -1,4 +1,4 @@
-"""Evaluation of a graph for any kind of numbers: one walk through its nodes, with a table of operations for each kind."""
+"""Evaluation of a graph for any kind of numbers: one walk through the nodes, with a table of operations for each kind."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Operations[Value]:
     Attributes
     ----------
     linear
-        A constant plus the products of coefficients and values.
+        A constant plus the sum of the products of coefficients and values.
     product
         Product of two values; the square if both are the same object.
     power
@@ -76,11 +76,11 @@ def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.
     x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     with np.errstate(all="ignore"):
         values = node_values(graph, numbers, x, y, _ARRAYS)
-    return [_filled(values[index], x.shape) for index in graph.results]
+    return [_fill(values[index], x.shape) for index in graph.results]
 
 
-def _filled(value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """Return a value as an array of a shape; the value of a constant is one number."""
+def _fill(value: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """Return a value as an array of a given shape; the value of a constant expression is a single number."""
     return np.asarray(value) if np.shape(value) == shape else np.full(shape, value)
 
 
@@ -89,6 +89,6 @@ def evaluate_at(graph: Graph, numbers: Sequence[float], x: float, y: float) -> l
     try:
         values = node_values(graph, numbers, x, y, _FLOATS)
     except (ArithmeticError, ValueError):
-        # The value is infinite or not defined.
+        # For infinite or undefined values, functions of `math` raise errors; those of NumPy do not.
         return [float(value) for value in evaluate(graph, numbers, x, y)]
     return [values[index] for index in graph.results]

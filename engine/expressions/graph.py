@@ -1,8 +1,8 @@
 """Expressions as a list of operations without repeated parts; this form is evaluated, compiled and sent to the browser.
 
 The graph of an expression refers to its numbers by position, so that expressions that differ only in their numbers have the same
-graph and share compiled code. The graph has few products and powers, because the series of each needs a sum over all lower
-orders.
+graph and share compiled code. The graph has few products and powers, because the series of a product or power needs a sum over
+all lower orders.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ _GRAPHS = 256
 
 
 class Node(NamedTuple):
-    """An operation on the results of earlier ones.
+    """An operation on the results of earlier operations.
 
     Attributes
     ----------
     kind
-        ``x``, ``y``, ``sum``, ``shift``, which adds a number, ``product`` of two, ``power``, ``exp``, ``log``, ``sin`` or
+        ``x``, ``y``, ``sum``, ``shift`` (adds a number), ``product`` (of two values), ``power``, ``exp``, ``log``, ``sin`` or
         ``cos``.
     operands
         Indices of nodes. A sine has as its second operand the cosine of the same argument, and a cosine the sine, because each is
         the derivative of the other, up to a sign. A power u^a has as its second operand u^(a + 1), if that is also a node.
     numbers
-        Positions of the coefficients of a sum, one for each operand, and of its constant if that is not 0; of the number of a
-        shift.
+        For a sum, positions of the coefficients, one for each operand, and of the constant unless that is 0; for a shift, the
+        position of its number.
     exponent
         The exponent of a power.
     """
@@ -42,14 +42,14 @@ class Node(NamedTuple):
 
 
 class Graph(NamedTuple):
-    """The operations, and the indices of the nodes whose values are those of the expressions."""
+    """The operations of expressions, and the index of the node of each expression."""
 
     nodes: tuple[Node, ...]
     results: tuple[int, ...]
 
     @property
     def convolutions(self) -> int:
-        """Return the number of nodes whose series need a sum over all lower orders for each coefficient."""
+        """Number of nodes whose series need a sum over all lower orders for each coefficient."""
         return sum(node.kind not in ("x", "y", "sum", "shift") for node in self.nodes)
 
 
@@ -70,7 +70,7 @@ class _Builder:
         self.nodes: list[Node] = []
         self.numbers: list[float] = []
         self._places: dict[Any, int] = {}
-        # The keys are (base, exponent).
+        # Indices of powers by (index of the base, exponent).
         self._powers: dict[tuple[int, float], int] = {}
 
     def add(self, expression: Expression) -> int:
@@ -86,17 +86,17 @@ class _Builder:
             case Sum(constant, terms) if constant and (len(terms) > 1 or (terms and terms[0][1] == 1.0)):
                 # Sums that differ only in their constants share a node.
                 if len(terms) == 1:
-                    return self._append(Node("shift", (self.add(terms[0][0]),), self._numbers_at([constant])))
-                return self._append(Node("shift", (self.add(Sum(0.0, terms)),), self._numbers_at([constant])))
+                    return self._append(Node("shift", (self.add(terms[0][0]),), self._add_numbers([constant])))
+                return self._append(Node("shift", (self.add(Sum(0.0, terms)),), self._add_numbers([constant])))
             case Sum(constant, terms):
                 terms = factor_out(terms)
                 operands = tuple(self.add(part) for part, _ in terms)
                 values = [*(c for _, c in terms), *([constant] if constant or not terms else [])]
-                return self._append(Node("sum", operands, self._numbers_at(values)))
+                return self._append(Node("sum", operands, self._add_numbers(values)))
             case Product(factors):
-                # Polynomials last: the force of a centre along x is that along y times another coordinate.
+                # Polynomials come last, so that the forces of a centre along x and y share the product of the other factors.
                 ordered = sorted(factors, key=lambda factor: _is_polynomial(*factor))
-                first_place, *others = (self._raised(self.add(base), n) for base, n in ordered)
+                first_place, *others = (self._power(self.add(base), n) for base, n in ordered)
                 for other in others:
                     first_place = self._node(Node("product", (first_place, other)))
                 return first_place
@@ -106,20 +106,23 @@ class _Builder:
                 return self._append(Node(name, (self.add(argument),)))
         raise TypeError(expression)
 
-    def _raised(self, base: int, exponent: float) -> int:
-        """Return a power; positive integer powers are products, which have no singularity where the base is 0."""
+    def _power(self, base: int, exponent: float) -> int:
+        """Return the index of a power. Positive integer powers are products, whose series are regular where the base is 0."""
         if exponent == 1.0:
             return base
         if exponent != int(exponent):
             return self._real_power(base, exponent)
         if exponent < 0.0:
-            return self._raised(self._node(Node("power", (base,), exponent=-1.0)), -exponent)
-        half = self._raised(base, float(int(exponent) // 2))
+            return self._power(self._node(Node("power", (base,), exponent=-1.0)), -exponent)
+        half = self._power(base, float(int(exponent) // 2))
         square = self._node(Node("product", (half, half)))
         return square if int(exponent) % 2 == 0 else self._node(Node("product", (square, base)))
 
     def _real_power(self, base: int, exponent: float) -> int:
-        """Return a power that is not an integer, from the next higher power if that exists; an inverse root uses the root."""
+        """Return the index of a non-integer power.
+
+        The next higher power is used if it is a node, and is added for an inverse root.
+        """
         if exponent == -0.5:
             self._real_power(base, 0.5)
         key = base, exponent
@@ -128,8 +131,8 @@ class _Builder:
             self._powers[key] = self._append(Node("power", (base,) if higher is None else (base, higher), exponent=exponent))
         return self._powers[key]
 
-    def _numbers_at(self, values: list[float]) -> tuple[int, ...]:
-        """Return the places of new numbers."""
+    def _add_numbers(self, values: list[float]) -> tuple[int, ...]:
+        """Add numbers and return their positions."""
         first = len(self.numbers)
         self.numbers += values
         return tuple(range(first, first + len(values)))
@@ -142,7 +145,7 @@ class _Builder:
         return sine if name == "sin" else cosine
 
     def _node(self, node: Node) -> int:
-        """Return the index of a node, adding the node if it is new."""
+        """Add a node if it is new, and return its index."""
         if node not in self._places:
             self._places[node] = self._append(node)
         return self._places[node]

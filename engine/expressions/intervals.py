@@ -1,8 +1,8 @@
-"""Intervals that contain all values of an expression on boxes, to prove that it has no zero in a box, or exactly one.
+"""Intervals that contain all values of an expression on boxes, to prove that it has no zero or exactly one zero in a box.
 
 In interval arithmetic (Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis) each operation of a graph is replaced by
-one on lower and upper ends, widened by its rounding error. The functions of NumPy are assumed to be accurate to four units in the
-last place. If an expression is undefined on part of a box, the interval contains its values on the rest.
+an operation on lower and upper ends, and the rounding error widens the result. The functions of NumPy are assumed to be accurate
+to four units in the last place. If an expression is undefined on part of a box, the interval contains its values on the rest.
 """
 
 from __future__ import annotations
@@ -17,9 +17,11 @@ import numpy as np
 from engine.expressions.evaluation import Operations, node_values
 from engine.expressions.graph import Graph, Node
 
-# Relative and absolute widening of an interval that covers the rounding error of an operation.
-_RELATIVE, _ABSOLUTE = 4.0 * 2.0**-52, 1e-300
-# For larger angles the position within a period is not accurate enough.
+# Widening of an interval that covers the rounding error of an operation, relative to an end.
+_RELATIVE = 4.0 * 2.0**-52
+# Absolute widening, which covers underflow.
+_ABSOLUTE = 1e-300
+# Largest angle of a sine, in radians. For larger angles the position within a period is not accurate enough.
 _LARGEST_ANGLE = 1e8
 
 
@@ -32,11 +34,11 @@ class Interval:
 
     @property
     def size(self) -> np.ndarray:
-        """(n,) the largest magnitude."""
+        """The largest magnitudes, of shape (n,)."""
         return np.maximum(np.abs(self.low), np.abs(self.high))
 
     def excludes_zero(self) -> np.ndarray:
-        """Return (n,) whether 0 lies outside the interval."""
+        """Return whether 0 lies outside each interval, of shape (n,)."""
         excluded: np.ndarray = (self.low > 0.0) | (self.high < 0.0)
         return excluded
 
@@ -52,7 +54,7 @@ class Enclosure:
     defined
         (n,) whether all expressions are defined and bounded on the whole box.
     nowhere
-        (n,) whether an expression is defined nowhere in the box.
+        (n,) whether at least one expression is undefined on the whole box.
     """
 
     values: list[Interval]
@@ -86,13 +88,13 @@ Ends = tuple[np.ndarray, np.ndarray]
 
 
 def _interval(ends: Ends) -> Interval:
-    """Make an interval of its ends; NaN represents the whole line."""
+    """Make an interval of its ends; an end of NaN becomes infinite."""
     low, high = ends
     return Interval(np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high))
 
 
-def _widened(operation: Callable[..., Ends]) -> Callable[..., Interval]:
-    """Widen the result of an operation on intervals by the rounding error."""
+def _widen(operation: Callable[..., Ends]) -> Callable[..., Interval]:
+    """Decorate an operation on intervals so that the rounding error widens its result."""
 
     @functools.wraps(operation)
     def widened(*operands: Any) -> Interval:
@@ -113,7 +115,7 @@ def _linear(constant: float, coefficients: Sequence[float], operands: Sequence[I
     return _interval((low - error, high + error))
 
 
-@_widened
+@_widen
 def _product(one: Interval, other: Interval) -> Ends:
     if one is other:
         return _square(one)
@@ -127,9 +129,9 @@ def _square(base: Interval) -> Ends:
     return least**2, base.size**2
 
 
-@_widened
+@_widen
 def _power(base: Interval, exponent: float) -> Ends:
-    """Return the power −1, or a power that is not an integer, for which only the nonnegative part of the base counts."""
+    """Return the power −1, or a non-integer power of the nonnegative part of the base."""
     if exponent == -1.0:
         across = (base.low < 0.0) & (base.high > 0.0)
         # An end that is 0 is approached from inside the interval.
@@ -139,17 +141,17 @@ def _power(base: Interval, exponent: float) -> Ends:
     return (ends[0], ends[1]) if exponent > 0.0 else (ends[1], ends[0])
 
 
-@_widened
+@_widen
 def _exp(exponent: Interval) -> Ends:
     return np.exp(exponent.low), np.exp(exponent.high)
 
 
-@_widened
+@_widen
 def _log(argument: Interval) -> Ends:
     return np.log(np.maximum(argument.low, 0.0)), np.log(np.maximum(argument.high, 0.0))
 
 
-@_widened
+@_widen
 def _sine(angle: Interval, shift: float = 0.0) -> Ends:
     """Return sin(angle + shift)."""
     first, last = angle.low + shift, angle.high + shift

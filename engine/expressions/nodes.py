@@ -1,7 +1,7 @@
 """Expressions in x and y: immutable trees in canonical form, so that equal formulas are equal objects.
 
 An expression is a coordinate, a sum Σ c m + constant, a product Π b^a with real exponents, or a function exp, log, sin or cos of
-an expression. Numbers are the coefficients of sums; a single number is a sum without terms. Parameters are replaced by values.
+an expression. Numbers are the coefficients of sums; a single number is a sum without terms. Parameters already have their values.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Expression:
         return self._hash
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without the hash, which differs between processes."""
+        """Return the state without the cached key and hash; hashes differ between processes."""
         return {name: value for name, value in self.__dict__.items() if name not in ("key", "_hash")}
 
 
@@ -72,7 +72,7 @@ class Function(Expression):
 
 @dataclass(frozen=True, eq=False)
 class Product(Expression):
-    """Π b^a; the exponents are finite and not 0."""
+    """Π b^a, with finite exponents a ≠ 0."""
 
     factors: tuple[tuple[Expression, float], ...]
 
@@ -84,7 +84,7 @@ class Product(Expression):
 
 @dataclass(frozen=True, eq=False)
 class Sum(Expression):
-    """constant + Σ c m; no m is a sum, and no c is 0."""
+    """constant + Σ c m, where no m is a sum and no c is 0."""
 
     constant: float
     terms: tuple[tuple[Expression, float], ...]
@@ -176,7 +176,7 @@ def power(base: Expression, exponent: float) -> Expression:
 
 
 def _keeps_domain(inner: float) -> bool:
-    """Return whether (b^inner)^a = b^(inner a) wherever the left side is real; False for even powers of negative numbers."""
+    """Return whether (b^inner)^a can be written as b^(inner a); not for even `inner`: √(b²) is |b|."""
     return inner != int(inner) or (int(inner) % 2 != 0 and abs(inner) == 1.0)
 
 
@@ -192,7 +192,7 @@ def from_terms(terms: Terms) -> Expression:
 
 
 def as_terms(expression: Expression) -> dict[Powers, float] | None:
-    """Return {(i, j): c} of an expression that is a polynomial, expanded; None for other expressions."""
+    """Return {(i, j): c} of an expanded polynomial; None for other expressions."""
     whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
     terms = {(0, 0): whole.constant} if whole.constant else {}
     for part, c in whole.terms:

@@ -6,9 +6,16 @@ from functools import lru_cache
 
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 
-EVEN, ODD, NEITHER = 1, -1, 0
-"""The sign of f(−x)/f(x); 0 if it is not constant."""
+EVEN = 1
+"""Parity of a function with f(−x) = f(x)."""
 
+ODD = -1
+"""Parity of a function with f(−x) = −f(x)."""
+
+NEITHER = 0
+"""Parity of any other function."""
+
+# Number of cached parities.
 _PARITIES = 1024
 
 
@@ -17,7 +24,7 @@ def parity(expression: Expression, axis: int) -> int:
     """Return `EVEN`, `ODD` or `NEITHER`, the parity under a change of sign of a coordinate.
 
     A sum whose terms are exchanged by the reflection, such as the terms of two equal centres, is `NEITHER`: in floating point its
-    value and that at the mirror image can differ in the last bit.
+    values at mirror images can differ in the last bit.
     """
     match expression:
         case Coordinate(own):

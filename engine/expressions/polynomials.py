@@ -13,7 +13,7 @@ Terms = Mapping[Powers, float]
 ExactTerms = Mapping[Powers, Fraction]
 
 HIGHEST_DEGREE = 12
-"""Highest degree of a potential. Critical points are tested up to it, and the cost of a Taylor step grows with it."""
+"""Highest degree of a potential. Searches for critical points are tested up to 12, and higher degrees slow Taylor steps."""
 
 # Limit on the bits of a numerator or denominator, so that a short formula cannot cause long computations.
 _MOST_BITS = 1000
@@ -47,7 +47,7 @@ def evaluate(terms: Terms, x: Any, y: Any) -> Any:
 
 
 def _power(x: np.ndarray, i: int) -> np.ndarray:
-    """Return x to an integer power, equal for x and −x up to sign; NumPy's powers above 3 are not."""
+    """Return x^i, of exactly equal magnitude for x and −x, which powers of NumPy above 3 do not ensure."""
     if i < 4:
         return x**i
     return np.abs(x) ** i if i % 2 == 0 else x * np.abs(x) ** (i - 1)
@@ -85,7 +85,7 @@ def substitute[C: (float, complex)](terms: Terms, x: Mapping[Powers, C], y: Mapp
 def exact_sum(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
     """Return a + b, without the terms that cancel."""
     zero = Fraction(0)
-    return _checked({powers: a.get(powers, zero) + b.get(powers, zero) for powers in {**a, **b}})
+    return _nonzero_terms({powers: a.get(powers, zero) + b.get(powers, zero) for powers in {**a, **b}})
 
 
 def exact_negative(a: ExactTerms) -> dict[Powers, Fraction]:
@@ -97,18 +97,18 @@ def exact_product(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
     """Return a · b, without the terms that cancel; raise `TooLargeError` before multiplying if the degree would be too high."""
     if a and b and degree(a) + degree(b) > HIGHEST_DEGREE:
         raise TooLargeError(f"degree {degree(a) + degree(b)}; the highest degree is {HIGHEST_DEGREE}")
-    return _checked(multiply(a, b))
+    return _nonzero_terms(multiply(a, b))
 
 
 def exact_power(a: ExactTerms, exponent: int) -> dict[Powers, Fraction]:
-    """Return the power of a with an integer exponent from 0 to `HIGHEST_DEGREE`."""
+    """Return a to an integer power from 0 to `HIGHEST_DEGREE`."""
     total: dict[Powers, Fraction] = {(0, 0): Fraction(1)}
     for _ in range(exponent):
         total = exact_product(total, a)
     return total
 
 
-def _checked(a: ExactTerms) -> dict[Powers, Fraction]:
+def _nonzero_terms(a: ExactTerms) -> dict[Powers, Fraction]:
     """Return the nonzero terms; raise `TooLargeError` if a number has too many digits."""
     nonzero = {powers: c for powers, c in a.items() if c}
     for c in nonzero.values():

@@ -37,7 +37,7 @@ def _with_square(base: Expression) -> tuple[dict[Powers, float] | None, float]:
 
 
 def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:
-    """Return (a, b) of each linear a x + b y + c with a, b ≠ 0 that is a base or the argument of a function, each once."""
+    """Return (a, b) of each linear base or argument of a function, a x + b y + c with a, b ≠ 0, without repetitions."""
     found = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
     gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in found if terms and degree(terms) == 1)
     return tuple(dict.fromkeys((a, b) for a, b in gradients if a and b))

@@ -7,8 +7,9 @@ from fractions import Fraction
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, powers_of
 
 _TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+# Largest denominator of a number that is written as a fraction.
 _LARGEST_DENOMINATOR = 1000
-# Numbers with a finite decimal expansion are written as fractions up to this denominator: ½, ¼, ⅛, but 0.55125, not 441/800.
+# Largest denominator of a fraction with a finite decimal expansion: ½, ¼, ⅛, but 0.55125 instead of 441/800.
 _LARGEST_OF_DECIMALS = 8
 
 
@@ -27,7 +28,7 @@ def short_fraction(value: float, tolerance: float) -> Fraction | None:
 def write_expression(expression: Expression, digits: int | None = None) -> str:
     """Return an expression as text, such as "x²/2 + y²/2 − x²y exp(−y²)".
 
-    digits: significant digits of numbers; None for as many as the parser needs to read the same numbers.
+    digits: significant digits of numbers; None for as many as the parser needs to read the numbers exactly.
     """
     whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
     parts: list[tuple[float, str]] = [(c, _term(part, abs(c), digits)) for part, c in whole.terms]
@@ -37,7 +38,7 @@ def write_expression(expression: Expression, digits: int | None = None) -> str:
 
 
 def join_signed(parts: list[tuple[float, str]]) -> str:
-    """Join texts, each with a number that gives its sign, to a sum."""
+    """Join texts to a sum; the number of each pair gives the sign of its text."""
     text = ""
     for c, part in parts:
         sign = ("−" if c < 0 else "") if not text else (" − " if c < 0 else " + ")
@@ -46,7 +47,7 @@ def join_signed(parts: list[tuple[float, str]]) -> str:
 
 
 def _term(part: Expression, size: float, digits: int | None) -> str:
-    """Return a positive multiple of a term; the number precedes functions, so that it is read back exactly."""
+    """Return a positive multiple of a term. The number precedes functions, so that the parser reads the number exactly."""
     powers = powers_of(part)
     if powers is not None:
         return monomial_term(*powers, size, digits)

@@ -9,13 +9,13 @@ import numpy as np
 
 
 def read_only(array: np.ndarray) -> np.ndarray:
-    """Mark an array read-only in place and return it; for several arrays, ``map(read_only, arrays)``."""
+    """Mark an array read-only in place, and return it."""
     array.flags.writeable = False
     return array
 
 
 class ReadOnlyArrays:
-    """Base of dataclasses whose arrays are read-only, also after unpickling, for which NumPy does not keep the flag."""
+    """Base of dataclasses whose arrays stay read-only after unpickling, although NumPy does not pickle the flag."""
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         vars(self).update({name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in state.items()})

@@ -20,16 +20,16 @@ from pathlib import Path
 import platformdirs
 
 CACHE_VARIABLE = "ESCAPE_EXPLORER_CACHE"
-"""Environment variable with the folder for compiled kernels, instead of the user's cache folder."""
+"""Environment variable that names a folder to use instead of the user's cache folder."""
 
 SUFFIX = ".kernel"
-"""Suffix of the files."""
+"""Suffix of the names of complete files."""
 
 LARGEST_SIZE = 256 * 2**20
-"""Size limit of all files together, in bytes; the kernels of one potential take about 0.2 MB."""
+"""Size limit of all files together, in bytes. The kernels of one potential take about 0.2 MB."""
 
 MOST_FILES = 4096
-"""Limit on the number of files; each write lists all of them, which takes 0.01 s."""
+"""Limit on the number of files. Each write lists all files, which takes 0.01 s."""
 
 _PART = ".part"
 _HASH_BYTES = hashlib.sha256().digest_size
@@ -39,16 +39,17 @@ log = logging.getLogger(__name__)
 
 
 def cache_folder() -> Path:
-    """Return the folder for compiled kernels, which may not exist yet."""
+    """Return the folder of the cached files, which may not exist yet."""
     return Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("escape-explorer")) / "kernels"
 
 
 def read_cached(path: Path) -> bytes | None:
-    """Read a file without its hash, and mark it as the most recently used one.
+    """Read a file, verify its hash, and mark the file as most recently used.
 
     Returns
     -------
-    The content; None if there is no file, or if another user owns or can write the file or its folder, which logs a warning.
+    The content without the hash. None if the file is missing, or if another user owns or can write the file or its folder; the
+    latter logs a warning.
 
     Raises
     ------
@@ -75,10 +76,10 @@ def read_cached(path: Path) -> bytes | None:
 
 
 def write_cached(path: Path, payload: bytes, *, largest_size: int = LARGEST_SIZE, most_files: int = MOST_FILES) -> None:
-    """Write a file, and delete the least recently used ones beyond the limits; log a warning if it cannot be written."""
+    """Write a file, and delete the least recently used files beyond the limits; log a warning if writing fails."""
     folder = path.parent
     try:
-        # Files of the folder belong to this user only.
+        # Only this user can access the folder.
         folder.parent.mkdir(parents=True, exist_ok=True)
         folder.mkdir(mode=stat.S_IRWXU, exist_ok=True)
         if _is_private_folder(folder):
@@ -95,7 +96,7 @@ def delete_cached(name: str) -> None:
 
 
 def _is_private_folder(folder: Path) -> bool:
-    """Return whether a folder is missing or only this user can write to it; log a warning otherwise."""
+    """Return whether only this user can write to a folder, or the folder is missing; otherwise log a warning."""
     try:
         problem = _find_other_user(folder.stat())
     except OSError:
@@ -106,7 +107,7 @@ def _is_private_folder(folder: Path) -> bool:
 
 
 def _find_other_user(status: os.stat_result) -> str:
-    """Describe which other users may have written a file or folder, and the remedy; empty if there are none."""
+    """Describe who else may have written a file or folder, and the remedy; return an empty text for nobody."""
     if os.name != "posix":
         return ""
     if status.st_uid not in (os.geteuid(), _SUPERUSER):
@@ -123,7 +124,7 @@ def _mark_used(path: Path) -> None:
 
 
 def _delete_least_recently_used(folder: Path, largest_size: int, most_files: int) -> None:
-    """Delete files until the rest is within the limits; incomplete files of killed processes count as well."""
+    """Delete the least recently used files, also incomplete files of killed processes, until the limits are met."""
     files = []
     with os.scandir(folder) as entries:
         for entry in entries:

@@ -18,16 +18,16 @@ from typing import Any
 
 import numpy as np
 
-# Smallest part of an index array that is computed as a separate task.
+# About the least number of indices in a task.
 _LEAST_PART = 1000
-# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. Idle priority is not
-# used, because another program could stop such a thread while it holds the interpreter lock, for which all other threads wait.
+# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. At idle priority,
+# another program could stop a thread that holds the interpreter lock, and all other threads would wait for this lock.
 _NICE_VALUE = 10
 # Calls shorter than this, in seconds, show no progress bar.
 _DELAY = 1.0
 _FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}<{remaining}"
-# Whether a progress bar is shown; nested calls show none.
-_shown = threading.Event()
+# Set while a progress bar is shown, so that nested calls show none.
+_bar_is_shown = threading.Event()
 
 
 def count_cores() -> int:
@@ -44,7 +44,7 @@ def default_executor() -> ThreadPoolExecutor:
 
 
 if hasattr(os, "register_at_fork"):
-    # A child process inherits the pool but not its threads, for which it would wait.
+    # A child process inherits the pool without its threads, and would wait for them forever.
     os.register_at_fork(after_in_child=default_executor.cache_clear)
 
 
@@ -60,8 +60,8 @@ def _lower_priority() -> None:
 
 
 def count_workers(executor: Executor) -> int:
-    """Return the number of calls that an executor runs at once; 2 if it is unknown."""
-    # The number of workers of Dask's executor may change, so its client is asked each time.
+    """Return the number of calls that an executor runs in parallel; 2 if the number is unknown."""
+    # The number of Dask's workers may change, so each call asks the client.
     threads = getattr(getattr(executor, "_client", None), "nthreads", None)
     if threads is not None:
         return sum(threads().values()) or 2
@@ -69,7 +69,7 @@ def count_workers(executor: Executor) -> int:
 
 
 class SerialExecutor(Executor):
-    """An executor that runs each call at once in the calling thread, for single orbits or inside a worker of another pool."""
+    """An executor that runs each call immediately in the calling thread, for single orbits or inside a worker of another pool."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Call the function and return its completed future."""
@@ -85,16 +85,16 @@ class SerialExecutor(Executor):
 class Execution:
     """Options of a computation: its executor, its cancellation, and the receiver of its progress.
 
-    Complete results do not depend on them, to the last bit. A cancelled computation raises `concurrent.futures.CancelledError`,
-    except where the result marks what is missing: `compute_map` and the analyses of maps return a map whose ``complete`` is
-    False, and `classify_orbits` returns codes of orbits that were not computed.
+    No option changes a complete result, not even its last bit. A cancelled computation raises
+    `concurrent.futures.CancelledError`, except where the result marks what is missing: `compute_map` and the analyses of maps
+    return a map whose ``complete`` is False, and `classify_orbits` gives orbits that were not computed a code of their own.
 
     Parameters
     ----------
     executor
         Any `concurrent.futures.Executor`, including that of a Dask client; None for the thread pool of this process.
     cancel
-        When it is set, the computation ends within about 0.2 s; None for a computation that cannot be cancelled.
+        Setting this event ends the computation within about 0.2 s; None for a computation that cannot be cancelled.
     on_progress
         Called in the calling thread with the share done, 0 to 1; None for a progress bar in a terminal or a notebook.
     """
@@ -119,7 +119,7 @@ class Execution:
 
     @property
     def workers(self) -> int:
-        """How many calls run at once."""
+        """How many calls run in parallel."""
         return count_workers(self._pool)
 
     @property
@@ -137,7 +137,7 @@ class Execution:
         return replace(self, executor=SerialExecutor())
 
     def report(self, share: Callable[[], float]) -> None:
-        """Report the share done, 0 to 1; `share` is only evaluated if progress is followed or shown."""
+        """Report the share done, 0 to 1; without a receiver, `share` is not called."""
         if self.on_progress is not None:
             self.on_progress(share())
 
@@ -181,8 +181,8 @@ def run_parts(
 ) -> Iterator[tuple[np.ndarray, Any]]:
     """Run ``work(*select(part))`` in parallel for parts of an index array, and yield each part of `indices` with its result.
 
-    Parts that never ran because of a cancellation are left out. `work` must
-    be a module-level function, so that it can be pickled for other processes, and should release the GIL.
+    Parts that never ran because of a cancellation are left out. `work` must be a module-level function, so that it can be pickled
+    for other processes, and should release the GIL.
     """
     count = min(2 * execution.workers, math.ceil(indices.size / _LEAST_PART))
     parts = np.array_split(indices, count) if count else []
@@ -194,7 +194,7 @@ def run_parts(
 
 
 def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorate a function with a parameter ``execution`` so that it shows a progress bar, unless the caller follows the progress.
+    """Decorate a function with a parameter ``execution`` to show a progress bar, unless the caller receives the progress.
 
     In the main thread of a terminal or a notebook, a bar appears after a second. The environment variable ``TQDM_DISABLE=1``
     disables all bars.
@@ -211,7 +211,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
                 # The function itself raises the error.
                 return function(*args, **kwargs)
             follows = any(one is not None for one in (execution.on_progress, given.get("on_progress"), given.get("on_frame")))
-            if follows or _shown.is_set() or not _is_interactive():
+            if follows or _bar_is_shown.is_set() or not _is_interactive():
                 return function(*args, **kwargs)
             with _bar(label) as report:
                 arguments = signature.bind(*args, **kwargs)
@@ -224,7 +224,7 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
 
 
 def _bind(signature: inspect.Signature, args: Any, kwargs: Any) -> Mapping[str, Any]:
-    """Return the arguments of a call by name; no execution if the call does not fit the signature."""
+    """Return the arguments of a call by name; only an execution of None if the call does not fit the signature."""
     try:
         return signature.bind(*args, **kwargs).arguments
     except TypeError:
@@ -232,7 +232,7 @@ def _bind(signature: inspect.Signature, args: Any, kwargs: Any) -> Mapping[str, 
 
 
 def _is_interactive() -> bool:
-    """Return whether a person waits for this call."""
+    """Return whether this call runs in the main thread of a terminal or a notebook."""
     if threading.current_thread() is not threading.main_thread():
         return False
     return "ipykernel" in sys.modules or (sys.stderr is not None and sys.stderr.isatty())
@@ -250,9 +250,9 @@ def _bar(label: str) -> Iterator[Callable[[float], None]]:
     def report(share: float) -> None:
         bar.update(max(share - bar.n, 0.0))
 
-    _shown.set()
+    _bar_is_shown.set()
     try:
         with bar:
             yield report
     finally:
-        _shown.clear()
+        _bar_is_shown.clear()

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 GROUP = "escape_explorer.pictures"
-"""Group of the entry point of a module with the functions of `Pictures`."""
+"""Group of the entry point that names the module with the functions of `Pictures`."""
 
 
 def require_package(package: str, extra: str) -> None:
@@ -23,12 +23,12 @@ def require_package(package: str, extra: str) -> None:
     package
         Name under which the package is imported.
     extra
-        The extra of the distribution that includes it: files, page, cluster or movies.
+        The extra of the distribution that includes the package: files, page, cluster or movies.
 
     Raises
     ------
     ModuleNotFoundError
-        If it is not installed; the message contains the command that installs it.
+        If the package is not installed; the message contains the command that installs it.
     """
     if importlib.util.find_spec(package) is None:
         raise ModuleNotFoundError(f"{package} is not installed: pip install 'escape-explorer[{extra}]'", name=package)
@@ -49,7 +49,7 @@ class Pictures(Protocol):
 
 @functools.cache
 def load_pictures(group: str = GROUP) -> Pictures:
-    """Import the functions of the entry point in a group at the first call, because drawing libraries are slow to import.
+    """Load the entry point of a group at the first call, because drawing libraries are slow to import.
 
     Raises
     ------

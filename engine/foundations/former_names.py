@@ -38,11 +38,11 @@ FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
         ),
     }
 )
-"""Former public names, each with the new name and the "module:object" that it returns, relative to this package."""
+"""Former public names, each with its replacement and the "module:object" to return, relative to this package."""
 
 
 def find_former_name(name: str, stacklevel: int = 2) -> Any:
-    """Return the object of a former public name, with a warning; AttributeError for any other name.
+    """Return the object of a former public name, and warn; raise an AttributeError for any other name.
 
     stacklevel: the frame to which the warning refers, as in `warnings.warn`; by default the caller.
     """
@@ -59,7 +59,7 @@ def find_former_name(name: str, stacklevel: int = 2) -> Any:
 
 
 def with_former_fields[T](cls: type[T]) -> type[T]:
-    """Add the former names of its attributes and parameters to a dataclass; the use of each gives a warning."""
+    """Add former names of attributes and parameters to a dataclass; each use of a former name gives a warning."""
     names = {each.name for each in fields(cls)}  # type: ignore[arg-type]
     for old, new in FORMER_FIELDS.items():
         if hasattr(cls, new) or new in names:
@@ -91,7 +91,7 @@ def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
 
 
 def with_former_parameters[**P, T](**former: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorate a function so that parameters can be given by their former names; the use of each gives a warning."""
+    """Decorate a function to accept former names of parameters; each use of a former name gives a warning."""
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         @functools.wraps(function)
@@ -107,5 +107,5 @@ def with_former_parameters[**P, T](**former: str) -> Callable[[Callable[P, T]], 
 
 
 def _warn(old: str, new: str, stacklevel: int = 3) -> None:
-    """Warn; the warning refers by default to the caller of the function that calls this one."""
+    """Give a warning that refers, by default, to the code that calls the calling function."""
     warnings.warn(f"{old} is deprecated: use {new}", DeprecationWarning, stacklevel=stacklevel)

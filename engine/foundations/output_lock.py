@@ -1,4 +1,4 @@
-"""A lock for output that takes long to write: one process holds it, and other processes are told which one."""
+"""A lock for output that takes long to write: one process holds the lock, and other processes are told which."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from filelock import FileLock
 
-# Number of attempts. Each fails if the previous holder deletes the file between its opening and its locking.
+# Number of attempts. An attempt fails if the previous holder deletes the file after it is opened and before it is locked.
 _MOST_ATTEMPTS = 100
 # Errors of file systems without locks.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
@@ -23,11 +23,11 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 
 @contextmanager
 def hold_lock(path: Path) -> Iterator[None]:
-    """Reserve a path for this process, with a file `.NAME.lock` beside it that is deleted at the end.
+    """Reserve a path for this process by a file `.NAME.lock` beside the path; the file is deleted at the end.
 
     The operating system releases the lock when the process ends, even if it is killed. The file of a killed process stays until
-    the next one with this output deletes it: another place would not protect outputs on file systems that machines share. On
-    Windows, and on file systems without locks, nothing is reserved.
+    the next process with this output deletes it. The file is beside the output, because only there does it protect outputs on
+    file systems that machines share. On Windows, and on file systems without locks, nothing is reserved.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def hold_lock(path: Path) -> Iterator[None]:
     Raises
     ------
     BlockingIOError
-        When another process holds it; the message names its number, its machine and the time since when.
+        When another process holds the lock; the message names its number, its machine and the time when it began.
     OSError
         When the lock file cannot be written.
     """

@@ -1,6 +1,6 @@
-"""Results of computations, with methods for pictures on Matplotlib axes and in notebooks, and tables for pandas and xarray.
+"""Base classes of results: pictures on Matplotlib axes and in notebooks, tables for pandas, datasets for xarray, and files.
 
-Another package draws the pictures, and is imported when the first picture is drawn; see `engine.foundations.extras`.
+Another package draws the pictures. It is imported when the first picture is drawn; see `engine.foundations.extras`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class _NamesForUsers(type):
-    """Metaclass of results, which hides names of internal use from `dir` of a class, and thus from completion."""
+    """Metaclass that hides internal names of results from `dir` of a class, and thus from completion."""
 
     def __dir__(cls) -> list[str]:
         return [name for name in super().__dir__() if name not in cls.inner_names]  # type: ignore[attr-defined]
@@ -42,9 +42,9 @@ class Chart:
     x, y
         Names of the columns.
     across, up
-        Labels of the axes.
+        Labels of the horizontal and the vertical axis.
     logarithmic
-        The letters of the axes with a logarithmic scale.
+        Letters of the axes with a logarithmic scale, such as "xy".
     title
         Title above the axes, with attributes of the result in braces; empty for no title.
     by_channel
@@ -73,20 +73,20 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     """Attributes that `dir` omits, because they are for internal use."""
 
     chart: ClassVar[Chart | None] = None
-    """The chart of a result that is drawn as a line or bars."""
+    """The chart of a result that is drawn as a line or as bars; otherwise None."""
 
     codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
-    """Attributes that contain codes, with the enumeration that defines them."""
+    """Names of the attributes that contain codes, each with the enumeration of its codes."""
 
     row_dimension: ClassVar[str] = ""
-    """Name of the dimension of the columns in files; empty if the first column has distinct values and is the coordinate."""
+    """Name of the dimension of the columns in files. Empty if the first column has distinct values and is the coordinate."""
 
     held_as: ClassVar[dict[str, str]] = {}
-    """Fields that files store under another name, or as parts, with that name or the name of a part."""
+    """{field: name} of fields that files store under another name or as several parts. The name is that in files or of a part."""
 
     @property
     def fate_labels(self) -> Sequence[str]:
-        """Labels of the fates from 1 on, which explain `codes`; empty if they are not known."""
+        """Labels of fates 1, 2 and so on, which explain `codes`; empty if unknown."""
         return ()
 
     def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
@@ -99,7 +99,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         options
             ``palette``: ``"paper"`` or ``"safe"`` for all results; ``picture`` of a map: ``"basins"``, ``"times"``,
             ``"crossings"``, ``"characters"`` or ``"curves"``; ``show`` of an orbit: ``"path"``, ``"sali"``,
-            ``"exponent"`` or ``"r2"``; ``measure`` of a sweep: a name of `MEASURES`, by default the first one that is drawn.
+            ``"exponent"`` or ``"r2"``; ``measure`` of a sweep: a name of `MEASURES`, by default the first measure with a picture.
 
         Returns
         -------
@@ -115,7 +115,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return load_pictures().plot_result(self, ax, **options)
 
     def to_holoviews(self) -> Any:
-        """Return the result as an interactive HoloViews element of the loaded extension: an image for a map, otherwise curves."""
+        """Return an interactive HoloViews element for the loaded extension: an image for a map, otherwise curves."""
         return load_pictures().to_holoviews(self)
 
     def _repr_html_(self) -> str:
@@ -126,7 +126,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
 
     @classmethod
     def kinds(cls) -> dict[str, type[Any]]:
-        """Return all classes of results by name; files contain the name."""
+        """Return all subclasses, by the name that files contain."""
         return {name: kind for each in cls.__subclasses__() for name, kind in {each.__name__: each, **each.kinds()}.items()}
 
     @classmethod
@@ -148,7 +148,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return {name: value for name, value in self._attributes().items() if isinstance(value, bool | int | float | str)}
 
     def columns(self) -> Mapping[str, np.ndarray]:
-        """Return the one-dimensional arrays of the same length as the first of them, by name; empty if there are none."""
+        """Return the first one-dimensional array and all others of its length, by name; empty without such arrays."""
         arrays = {name: a for name, a in self._attributes().items() if isinstance(a, np.ndarray) and a.ndim == 1}
         length = next(iter(arrays.values())).size if arrays else 0
         return {name: array for name, array in arrays.items() if array.size == length}
@@ -168,18 +168,18 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
-        # Without what is cached: a potential in units of its well is its own.
+        # Only the fields count: a cached value can be the object itself, as `in_well_units` of a potential whose units are 1.
         values = (getattr(self, each.name) for each in fields(cast("Any", self)))
         return sum(int(getattr(value, "nbytes", 0)) for value in values)
 
     def provenance(self) -> dict[str, Any]:
-        """Return how the result was made, in plain values, as far as it is known: the version, the potential, the request."""
+        """Return how the result was made, as plain values: the version and, where known, the potential and the request."""
         return {"version": metadata.version("escape-explorer")}
 
     def to_xarray(self) -> xr.Dataset:
-        """Return the columns along one dimension, with the scalars and the provenance as attributes; without columns the scalars.
+        """Return a dataset of the columns along one dimension, or of the scalars for a result without columns.
 
-        The dataset can be written as NetCDF and Zarr.
+        Its attributes contain the provenance, and the scalars if they are not variables. NetCDF and Zarr can store the dataset.
         """
         import xarray as xr
 
@@ -199,7 +199,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         return xr.Dataset(rows | entries, attrs=attributes | scalars)
 
     def _remaining_fields(self, stored: set[str]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-        """Return the other fields as arrays and attributes: neither columns, nor shown numbers, nor potentials."""
+        """Return the fields that are not in `stored`, as arrays and as attributes, without nested results and mappings."""
         fields_left = {name: value for name, value in self._attributes().items() if name not in stored}
         arrays = {name: value for name, value in fields_left.items() if isinstance(value, np.ndarray)}
         others = {
@@ -220,7 +220,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
         Raises
         ------
         ValueError
-            If the name has another ending.
+            If the name does not end in ".nc".
         OSError
             If the file cannot be written.
         """
@@ -236,7 +236,7 @@ class Result(ReadOnlyArrays, metaclass=_NamesForUsers):
             part.unlink(missing_ok=True)
 
     def _meaning(self, name: str, values: Any) -> dict[str, str]:
-        """Return the attributes of a variable: the meaning of its codes, or that its numbers are dimensionless."""
+        """Return the attributes of a variable: the meanings of codes, or the unit 1 for other numbers."""
         if name in self.codes:
             return describe_codes(self.codes[name], self.fate_labels)
         return {"units": "1"} if np.asarray(values).dtype.kind in "iuf" else {}
@@ -249,13 +249,13 @@ class RecordedResult(Result):
     Attributes
     ----------
     made_by
-        How the result was made, in plain values, for `provenance`; empty if it is not known.
+        How the result was made, as plain values for `provenance`; empty if unknown.
     """
 
     made_by: Mapping[str, Any] = field(default_factory=dict, kw_only=True, repr=False, compare=False)
 
     def provenance(self) -> dict[str, Any]:
-        """How the result was made, in plain values, as far as it is known: the version, the potential, the request."""
+        """Return how the result was made, as plain values: the version and, where known, the potential and the request."""
         return {**super().provenance(), **self.made_by}
 
 

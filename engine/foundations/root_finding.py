@@ -26,7 +26,7 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
 
     Returns
     -------
-    The root; after 100 steps, which a continuous function does not need, the last point.
+    The root. After 100 steps, more than a continuous function needs, the last point.
 
     Raises
     ------
@@ -75,7 +75,8 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
 def _interpolate(before: tuple[float, float], here: tuple[float, float], across: tuple[float, float]) -> float:
     """Return the step from `here` by linear interpolation, or by inverse quadratic interpolation if all three points differ.
 
-    Infinite if it is undefined."""
+    An undefined step is infinite.
+    """
     (x0, f0), (x, f), (x1, f1) = before, here, across
     if x0 == x1:
         return -f * (x - x0) / (f - f0)

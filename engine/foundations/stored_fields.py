@@ -1,4 +1,4 @@
-"""Fields of results in files: numbers and texts unchanged, tuples and dataclasses as JSON; and their former names."""
+"""Fields of results in files, and their former names. Numbers and texts are unchanged, tuples and dataclasses become JSON."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def write_field(value: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """Convert a value that JSON does not support to one that it does."""
+    """Convert a dataclass or an enumeration value to a value that JSON supports."""
     if is_dataclass(value):
         return {each.name: getattr(value, each.name) for each in fields(value)}
     if isinstance(value, Enum):
@@ -46,26 +46,26 @@ def _plain(value: Any) -> Any:
 
 
 def read_field(hint: Any, found: Any) -> Any:
-    """Restore the value of a field of a type from the content of a file: an array, a number, a text, or JSON."""
+    """Restore a value of type `hint` from the content of a file: an array, a number, a text, or JSON."""
     if hint is np.ndarray:
         return read_only(np.array(found))
-    hint = _present(hint)
+    hint = _without_none(hint)
     plain = np.asarray(found).item() if not isinstance(found, str) else found
     return _build(hint, json.loads(plain) if get_origin(hint) is tuple or is_dataclass(hint) else plain)
 
 
-def _present(hint: Any) -> Any:
-    """Return the type of a value that may be None, without None."""
+def _without_none(hint: Any) -> Any:
+    """Return a type without the alternative None."""
     if get_origin(hint) not in (Union, UnionType):
         return hint
     return next(kind for kind in get_args(hint) if kind is not NoneType)
 
 
 def _build(hint: Any, plain: Any) -> Any:
-    """Build a value of a type from numbers, texts, lists and mappings."""
+    """Build a value of type `hint` from numbers, texts, lists and mappings."""
     if plain is None:
         return None
-    hint = _present(hint)
+    hint = _without_none(hint)
     if get_origin(hint) is tuple:
         kinds = get_args(hint)
         each_kind = kinds[:1] * len(plain) if kinds[-1] is Ellipsis else kinds
@@ -77,7 +77,7 @@ def _build(hint: Any, plain: Any) -> Any:
 
 
 def plain_attributes(attributes: Mapping[Any, Any]) -> dict[str, Any]:
-    """Convert attributes read from a file to numbers of Python, and to tuples where files have arrays or lists."""
+    """Convert attributes read from a file: NumPy numbers to Python numbers, arrays and lists to tuples."""
     return {str(name): _plain_attribute(value) for name, value in attributes.items()}
 
 

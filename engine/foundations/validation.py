@@ -24,7 +24,7 @@ LARGEST_COEFFICIENT = 1e90
 """Largest magnitude of a coefficient. With a unit of length of 1e-6, terms of degree 12 have a factor of 1e72."""
 
 LONGEST_TIME = 1e8
-"""Largest t_max, in units of the well if these are longer than 1; at this time the rounding error of t itself reaches 1e-8."""
+"""Largest t_max, in the time unit of the well if that exceeds 1. At this time the rounding error of t itself reaches 1e-8."""
 
 
 _LINE_BREAK = re.compile(r"\s*\n\s*")
@@ -44,7 +44,7 @@ def short_repr(value: Any) -> str:
 
 
 def checks_types[**P, T](**kinds: Any) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """Decorate a function so that an argument of a wrong type raises a ValueError; `kinds` gives a type, or several, by name."""
+    """Decorate a function to raise a ValueError for arguments of wrong types. `kinds` gives the legal types of parameters."""
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         places = [(place, name) for place, name in enumerate(inspect.signature(function).parameters) if name in kinds]
@@ -71,7 +71,7 @@ def check_type(name: str, value: Any, kind: Any) -> None:
 
 
 def checked_items[T](name: str, values: Iterable[T], kind: type[T]) -> tuple[T, ...]:
-    """Return values as a tuple; ValueError unless they are a sequence of values of one type."""
+    """Return a sequence of values of type `kind` as a tuple; ValueError otherwise."""
     check_type(name, values, Iterable)
     items = tuple(values)
     for item in items:
@@ -100,7 +100,7 @@ def checked_flag(name: str, value: Any) -> bool:
 
 
 def checked_number(name: str, value: Any, requirement: str = "", largest: float = LARGEST_NUMBER) -> float:
-    """Return a real number of at most `largest` in magnitude as a float; the error says "must be <requirement>", or this."""
+    """Return a real number of at most `largest` in magnitude as a float; the error says "must be <requirement>"."""
     is_real = isinstance(value, numbers.Real) and not isinstance(value, bool)
     # The comparison precedes the conversion, because an integer may be too large for a float.
     if not is_real or not -largest <= value <= largest:
@@ -121,7 +121,7 @@ def checked_count(name: str, value: Any, least: int, most: int) -> int:
 
 
 def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarray:
-    """Return an array of floats, or of its own type with `keep_type`; shape and range are not checked."""
+    """Return an array of floats, or with `keep_type` of the type of the value. Shape and range are not checked."""
     try:
         array: np.ndarray = np.asarray(value, dtype=None if keep_type else float)
     except (TypeError, ValueError, OverflowError):
@@ -130,7 +130,7 @@ def checked_array(name: str, value: Any, *, keep_type: bool = False) -> np.ndarr
 
 
 def checked_finite(name: str, value: Any) -> Any:
-    """Return a finite number as a float, or finite numbers as an array; ValueError for others."""
+    """Return a finite number as a float, or finite numbers as an array; ValueError otherwise."""
     if isinstance(value, numbers.Real):
         return checked_number(name, value)
     array = checked_array(name, value)
@@ -150,7 +150,7 @@ def checked_integers(name: str, value: Any) -> np.ndarray:
 def checked_t_max(
     t_max: float, longest: float = LONGEST_TIME, unit: Callable[[], float] = lambda: 1.0, *, name: str = "t_max"
 ) -> float:
-    """Return `t_max` as a float, 0 < t_max ≤ longest, where the limit is in units of `unit.time` if that is longer than 1."""
+    """Return `t_max`, above 0 and at most `longest`, as a float; a `unit()` above 1 multiplies the limit."""
     given: Any = t_max
     is_number = isinstance(given, int | float | np.number) and not isinstance(given, bool)
     if is_number and given > longest:
@@ -162,7 +162,7 @@ def checked_t_max(
 
 
 def checked_state(name: str, state: Any) -> np.ndarray:
-    """Return (4,) floats x, y, px, py of at most `LARGEST_NUMBER` in magnitude."""
+    """Return an array of x, y, px and py, each of at most `LARGEST_NUMBER` in magnitude."""
     array = checked_array(name, state)
     if array.shape != (4,) or not np.all(np.abs(array) <= LARGEST_NUMBER):
         limit = f"at most {LARGEST_NUMBER:g} in magnitude"

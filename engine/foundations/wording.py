@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 
-# Largest width of the text of a result.
-_WIDTH, _MOST_LINES = 100, 3
-# A space at which lines are not broken.
+# Largest width of the text of a result, in characters.
+_WIDTH = 100
+# Largest number of lines for each part of the text of a result.
+_MOST_LINES = 3
+# No-break space.
 _UNBROKEN = "\u00a0"
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -23,7 +25,7 @@ def format_count(count: int, singular: str, plural: str = "") -> str:
 
 
 def format_whole(value: float) -> str:
-    """Return a number rounded to a whole one, with spaces between groups of three digits, such as "100 000"."""
+    """Return a number rounded to an integer, with spaces between groups of three digits, such as "100 000"."""
     return f"{round(value):,}".replace(",", " ")
 
 
@@ -56,8 +58,8 @@ def _typeset(text: str) -> str:
 def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str, str]:
     """Return the dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``.
 
-    `labels` name the codes from 1 on that are not members of the enumeration, such as the outcomes of a `Fate`. The attribute
-    leaves them out if they are the default ones, "exit 1" and so on.
+    `labels` name codes 1, 2 and so on that are not members of the enumeration, such as the outcomes of a `Fate`. The attribute
+    omits default labels, "exit 1" and so on.
     """
     known = [f"{code.value}: {code.name.lower()}" for code in codes]
     are_default = all(label == _exit(code) for code, label in enumerate(labels, 1))
@@ -65,7 +67,7 @@ def describe_codes(codes: type[IntEnum], labels: Sequence[str] = ()) -> dict[str
 
 
 def name_code(codes: type[IntEnum], code: int, labels: Sequence[str] = ()) -> str:
-    """Return a code in words; `labels` name the codes from 1 on that are not members, which are exits by default."""
+    """Return a code in words; `labels` name codes 1, 2 and so on that are not members, by default "exit 1" and so on."""
     if code in codes:
         return codes(code).name.lower().replace("_", " ")
     return labels[code - 1] if 1 <= code <= len(labels) else _exit(code)
@@ -76,7 +78,7 @@ def _exit(code: int) -> str:
 
 
 def show_numbers(numbers: Mapping[str, Any], codes: Mapping[str, type[IntEnum]], labels: Sequence[str] = ()) -> dict[str, str]:
-    """Return scalars as text, by name: codes in words, with `labels` for the fates from 1 on, other numbers to four digits."""
+    """Return scalars as text, by name: codes in words, other numbers to four digits. `labels` name fates 1, 2 and so on."""
     return {name: _show(value, codes.get(name), labels) for name, value in numbers.items()}
 
 
@@ -89,7 +91,7 @@ def _show(value: Any, codes: type[IntEnum] | None, labels: Sequence[str]) -> str
 
 
 def summarize(title: str, sentence: str, shown: Mapping[str, str], arrays: Mapping[str, np.ndarray]) -> str:
-    """Return a title with a sentence, then the scalars and the arrays, each in at most three lines."""
+    """Return a text of a title with a sentence, the scalars, and the arrays, each part in at most three lines."""
     lines = _wrap(f"{title}: {sentence}" if sentence else title, indent="")
     lines += _wrap_items(f"{name} {value}" for name, value in shown.items())
     return "\n".join(lines + _wrap_items(_name_arrays(arrays)))

@@ -32,12 +32,12 @@ from engine.integrator.source.recurrence import Definition, GeneratedCode, find_
 from engine.integrator.source.series import REACH, Setting, Structure
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
-# Number of cached potentials; binding the coefficients of another one with a known structure takes milliseconds.
+# Number of cached potentials; binding the coefficients of another potential of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()
-# The code of each structure, the name of its module and its kernels. Machine code is never unloaded, and neither are these.
-_defined: dict[Structure, tuple[GeneratedCode, str, dict[str, GeneratedKernel]]] = {}
-# What potentials with known functions have in common, see `_outline`.
+# Code, name of the module and kernels of each structure. Entries stay, because machine code is never unloaded.
+_code_by_structure: dict[Structure, tuple[GeneratedCode, str, dict[str, GeneratedKernel]]] = {}
+# Outlines (see `_outline`) and settings of all potentials for which functions were generated.
 _outlines: set[tuple[Hashable, Setting]] = set()
 
 
@@ -75,8 +75,8 @@ def load_kernels(
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
     """Return whether functions were generated for a potential of the same structure; generating them takes up to 0.3 s."""
-    # Finding the structure of another formula takes up to 0.2 s.
-    return (_outline(definition), setting) in _outlines and find_structure(definition, setting, REACH) in _defined
+    # Outlines are compared first, because finding the structure of a new formula takes up to 0.2 s.
+    return (_outline(definition), setting) in _outlines and find_structure(definition, setting, REACH) in _code_by_structure
 
 
 class GeneratedKernel:
@@ -111,7 +111,7 @@ class GeneratedKernel:
 
     @property
     def py_func(self) -> Any:
-        """The Python function; compiled from it, a function can be inspected, unlike code from the cache."""
+        """The Python function; code compiled from this function can be inspected, unlike code from the cache."""
         return self._dispatcher.py_func
 
     def __call__(self, *arguments: Any) -> Any:
@@ -125,7 +125,7 @@ class _BoundKernel:
 
     def __init__(self, function: Any, needed: tuple[GeneratedKernel, ...], coefficients: np.ndarray) -> None:
         self.function = function
-        self._needed = needed
+        self._generated = needed
         self._coefficients = coefficients
 
     @property
@@ -134,7 +134,7 @@ class _BoundKernel:
         return list(self.function.signatures)
 
     def __call__(self, *arguments: Any) -> Any:
-        return self.function(*(generated.address for generated in self._needed), self._coefficients, *arguments)
+        return self.function(*(generated.address for generated in self._generated), self._coefficients, *arguments)
 
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)
@@ -157,17 +157,17 @@ def _load(definition: Definition, setting: Setting, rotation: float, reach: floa
 
 
 def _define(structure: Structure) -> tuple[GeneratedCode, str, dict[str, GeneratedKernel]]:
-    """Return the entry of `_defined`; a thread that needs a known one does not wait for others that generate code."""
-    if structure not in _defined:
+    """Return an entry of `_code_by_structure`; for a known structure, a thread never waits for other threads."""
+    if structure not in _code_by_structure:
         with _lock:
-            if structure not in _defined:
+            if structure not in _code_by_structure:
                 code = generate(structure)
-                _defined[structure] = code, *_define_module(code)
-    return _defined[structure]
+                _code_by_structure[structure] = code, *_define_module(code)
+    return _code_by_structure[structure]
 
 
 def _outline(definition: Definition) -> Hashable:
-    """Return the powers of x and y, or the graph of an expression."""
+    """Return the powers of x and y of a polynomial, or the graph of an expression."""
     return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 

@@ -1,7 +1,7 @@
 """A WebAssembly module with the kernels that a visitor's browser runs, for all potentials.
 
-The module depends only on this version of the program and on the versions of Numba and LLVM. This module builds it once, in a
-separate process, and stores it with the compiled kernels.
+The module depends only on this version of the program and on the versions of Numba and LLVM. It is built once, in a separate
+process, and stored with the compiled kernels.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from types import ModuleType
 from engine.integrator.bound_kernels import load_kernels
 from engine.systems.potential import Potential
 
-# Step for a frequency of 1. At the order of the Taylor kernels it conserves energy as well as adaptive steps do.
+# Time step for a frequency of 1. At the order of the Taylor kernels, energy is conserved as well as by adaptive steps.
 _FIXED_STEP = 1.0 / 3.0
 
 

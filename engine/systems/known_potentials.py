@@ -1,4 +1,4 @@
-"""Potentials by name, and a family of them."""
+"""The potentials of the catalogue by name, and the C_n family."""
 
 from __future__ import annotations
 

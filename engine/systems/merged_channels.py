@@ -1,6 +1,6 @@
 """Exits of several channels: above a maximum of V between channels there is no wall between them, and they form one exit.
 
-The number of such an exit is the lowest number of its channels; its name contains all of them: "1+3".
+The number of such an exit is the lowest number of its channels. Its name contains all numbers: "1+3".
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 
 class ChannelMerger(NamedTuple):
-    """A maximum (x, y) between exits; above V = `energy` there, the `channels` around it form one exit."""
+    """A maximum (x, y) of V with the value `energy`, above which the `channels` around it form one exit."""
 
     energy: float
     x: float
@@ -21,19 +21,19 @@ class ChannelMerger(NamedTuple):
 
 
 class MergedExit(NamedTuple):
-    """The increasing numbers of two or more channels that form one exit, and whether it leads all around the well."""
+    """The increasing numbers of two or more channels that form one exit, and whether the exit leads all around the well."""
 
     channels: tuple[int, ...]
     closes_ring: bool
 
     @property
     def name(self) -> str:
-        """Its name, such as "1+3"."""
+        """Name of the exit, such as "1+3"."""
         return name_channels(self.channels)
 
 
 def name_channels(channels: Sequence[int], names: Sequence[str] = ()) -> str:
-    """Return the name of an exit from the names, by default the numbers, of all channels: "1", or "1+3" for several channels."""
+    """Return the name of an exit, made of the names of its channels, by default their numbers: "1" or "1+3"."""
     return "+".join(names[channel - 1] if names else str(channel) for channel in channels)
 
 
@@ -44,7 +44,7 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
     for channels in merged:
         joined = [group for group in groups if not group.isdisjoint(channels)]
         groups = [group for group in groups if group not in joined] + [set(channels).union(*joined)]
-    # The maxima surround the well if there are at least as many maxima as channels.
+    # The channels close a ring around the well if maxima connect them at least as often as there are channels.
     connections = [sum(len(channels) - 1 for channels in merged if group.issuperset(channels)) for group in groups]
     return tuple(
         sorted(MergedExit(tuple(sorted(group)), count >= len(group)) for group, count in zip(groups, connections, strict=True))
@@ -52,7 +52,10 @@ def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[Merge
 
 
 def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
-    """Return (mergers + 1, outcomes + 1) the number of the exit of each outcome above the first k of sorted mergers."""
+    """Return the exit numbers of outcomes, of shape (mergers + 1, outcomes + 1).
+
+    Row k is for energies above the first k of the sorted mergers.
+    """
     numbers = np.tile(np.arange(outcomes + 1, dtype=np.int8), (len(mergers) + 1, 1))
     for k in range(len(mergers)):
         for merged in merged_exits(mergers[: k + 1], np.inf):
@@ -63,8 +66,8 @@ def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
 def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float, names: Sequence[str] = ()) -> str:
     """Return the name of the exit to which a channel belongs at the energies from `low` to `high`.
 
-    By default the channels have their numbers as names: "1"; "1+3" for the lowest of the numbers and "3 in 1+3" for another one;
-    "1, 1+3 above h = 0.3" for a range of energies.
+    With numbers as names, a separate channel is "1". Of an exit of several channels, the lowest is "1+3" and another "3 in 1+3".
+    For a range of energies: "1, 1+3 above h = 0.3".
     """
     changes = [(low, _name_at(channel, mergers, low, names))]
     for energy in sorted(merger.energy for merger in mergers if low <= merger.energy < high):

@@ -1,4 +1,4 @@
-"""What V and the rotation of its frame determine without the ends of orbits: H, the Jacobi constant, and related motions."""
+"""Motions, which V and the rotation of the frame determine without the ends of orbits: H, Jacobi constant, related motions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SQUARES = tuple(multiply(axis, axis) for axis in (X, Y))
 _MIXED = multiply(X, Y)
 
 MASS_RANGE = 1e-6, 1e6
-"""Legal masses."""
+"""Smallest and largest legal mass, dimensionless."""
 
 
 class Motion(Result):
@@ -43,13 +43,13 @@ class Motion(Result):
     rotation: float
     mass: float
 
-    def _changed(self, **values: Any) -> Self:
-        """Return another motion, with other values of some attributes."""
+    def _copy_with(self, **values: Any) -> Self:
+        """Return a copy with other values of some attributes."""
         raise NotImplementedError
 
     @property
     def terms(self) -> Terms:
-        """((i, j, c), …) of a polynomial; ValueError for other formulas."""
+        """The terms ((i, j, c), …) of a polynomial; ValueError for other formulas."""
         if not isinstance(self.form, PolynomialForm):
             raise ValueError(f"{self.name} is not a polynomial")
         return self.form.terms
@@ -67,20 +67,20 @@ class Motion(Result):
         return self.form.hessian(x, y)
 
     def hessian_matrix(self, x: float, y: float) -> np.ndarray:
-        """Return (2, 2) the Hessian matrix of V at one point."""
+        """Return the Hessian matrix of V at one point, of shape (2, 2)."""
         return hessian_matrix(self.form, x, y)
 
     def energy(self, states: Any) -> Any:
-        """Return H of states (…, 4) = x, y, px, py."""
+        """Return H of states x, y, px, py, of shape (…, 4)."""
         x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
         return 0.5 * (px * px + py * py) / self.mass + self.value(x, y)
 
     def jacobi_constant(self, energy: Any) -> Any:
-        """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays have the same shape.
+        """Return the Jacobi constant C = 2U − ẋ² − ẏ² of energies H in a rotating frame; arrays keep their shape.
 
         C = −2H about the axis of the frame, which is the barycentre in the three-body problem, where U = Σ m/r + ½ (x² + y²). In
         the Earth–Moon system, seen from the Moon, C = (1 − m)² − 2H. Some authors add μ(1 − μ) to C, so that their values are
-        larger by this amount. For a mass other than 1, H is divided by it.
+        larger by this amount. For a mass other than 1, H is divided by the mass.
 
         Raises
         ------
@@ -97,7 +97,7 @@ class Motion(Result):
         return self._squared_speed_of_origin - 2.0 * checked_finite("energy", energy) / self.mass
 
     def jacobi_energy(self, constant: Any) -> Any:
-        """Return the energy H of Jacobi constants, see `jacobi_constant`."""
+        """Return the energy H for given Jacobi constants, see `jacobi_constant`."""
         return 0.5 * self.mass * (self._squared_speed_of_origin - checked_finite("constant", constant))
 
     @property
@@ -113,7 +113,7 @@ class Motion(Result):
         terms: dict[Expression, float] = dict(definition.terms) if isinstance(definition, Sum) else {}
         divisor = (self.mass * self.rotation) ** 2
         is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * self.mass * self.rotation**2) for square in _SQUARES)
-        # The square of a very small number is 0.
+        # The square of a very small rate underflows to 0.
         if not is_centrifugal or _MIXED in terms or not divisor:
             return 0.0
         return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / divisor
@@ -134,20 +134,20 @@ class Motion(Result):
         if self.rotation:
             raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
         half = -0.5 * self.mass * checked_number("rotation", rotation) ** 2
-        return self._changed(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
+        return self._copy_with(form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
 
     @cached_property
     def reversed_in_time(self) -> Self:
-        """Return the potential whose orbits are those of this one backward in time, with reversed velocities and Ω."""
-        return self._changed(rotation=-self.rotation) if self.rotation else self
+        """Return the potential with −Ω, whose orbits are those of this potential backward in time with reversed velocities."""
+        return self._copy_with(rotation=-self.rotation) if self.rotation else self
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Self:
         """Return this potential with other frequencies of its well and another strength of its perturbation.
 
         V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 consists of the terms of degree 3 and higher.
-        In general V1 is V without the constant, linear and quadratic terms of its expansion about the origin. The term with x² is
-        multiplied by ω1², that with y² by ω2² and that with x y by ω1 ω2, also if the quadratic terms are not ½ (x² + y²), so
-        that the default values give the potential itself. Constant and linear terms are unchanged.
+        In general V1 is V without the constant, linear and quadratic terms of its expansion about the origin. The terms with x²,
+        y² and x y are multiplied by ω1², ω2² and ω1 ω2, even if the quadratic terms are not ½ (x² + y²), so that the default
+        values give the potential itself. Constant and linear terms are unchanged.
 
         Parameters
         ----------
@@ -171,7 +171,7 @@ class Motion(Result):
             raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
         changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
-        return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)
+        return self._copy_with(name=f"{self.name} ({changed})" if changed else self.name, form=form)
 
     def check_at_rest(self, what: str) -> None:
         """Raise ValueError in a rotating frame, for computations that rely on time-reversal symmetry."""

@@ -20,8 +20,11 @@ from engine.foundations.validation import check_type, checked_number, replace_un
 from engine.foundations.wording import format_number
 from engine.integrator.kernels import events
 
-SMALLEST_RADIUS, LARGEST_RADIUS = 1e-6, 1e6
-"""Legal radii of centres and of escape, dimensionless; near the singularity of a smaller disc, steps would not change t."""
+SMALLEST_RADIUS = 1e-6
+"""Smallest radius of a centre or of escape, dimensionless. Near the singularity of a smaller disc, steps would not change t."""
+
+LARGEST_RADIUS = 1e6
+"""Largest radius of a centre or of escape, dimensionless."""
 
 
 class Kind:
@@ -34,11 +37,11 @@ class Kind:
     word
         The word for the place where orbits end: "exit", "centre".
     label, action
-        Label and action of its outcomes, where {} stands for the name of one; the verb of the action ends with e.
+        Label and action of an outcome, with {} for its name. The verb of the action ends in e, for the past tense in "ed".
     event
         The event that ends an orbit, in a word: "escape", "collision".
     origin
-        The beginning of an orbit that ends so backward in time, with {label} and {present} of the outcome.
+        Text on the beginning of an orbit that ends in this way backward in time, with {label} and {present} of the outcome.
     """
 
     key: ClassVar[str]
@@ -50,13 +53,13 @@ class Kind:
 
     @classmethod
     def outcome(cls, number: int, name: str = "", *, occurs: bool = True) -> Outcome:
-        """Return the outcome of orbits that end at the exit, centre, … of a number, by default with a name such as "exit 1"."""
+        """Return the outcome with a number among the outcomes of this kind; its default name is "exit 1", "centre 1" …"""
         name = name or f"{cls.word} {number}"
         return Outcome(cls, cls.label.format(name), cls.action.format(name), occurs, number)
 
 
 class Exit(Kind):
-    """An exit over a saddle, the curve or line across a channel; see `engine.exits`."""
+    """An exit over a saddle: a curve or line across a channel, see `engine.exits`."""
 
     key = word = "exit"
     label, action = "{}", "escape through {}"
@@ -72,13 +75,13 @@ class End(Kind):
     side
         The side of the circle on which orbits have ended: −1 inside, 1 outside.
     clause, syntax, spellings
-        Its clause after a formula: the pattern of its parameters, their description in errors, and other spellings of its word.
+        For its clause after a formula: pattern of the parameters, their description in errors, and other spellings of `word`.
     most
         Largest number of such ends of a formula.
     attribute
         Its attribute in files.
     x, y, radius, name
-        As in `Centre`.
+        See `Centre`.
     """
 
     side: ClassVar[int] = -1
@@ -113,7 +116,7 @@ class End(Kind):
 
     @property
     def text(self) -> str:
-        """Its clause as text that can be read exactly."""
+        """Its clause, with all digits of the numbers."""
         return f"{self.word} {self.name + ' ' if self.name else ''}({self.x!r}, {self.y!r}) {self.radius!r}"
 
     @property
@@ -133,15 +136,15 @@ class End(Kind):
 
     @property
     def row(self) -> np.ndarray:
-        """(columns,) the circle as an exit for the kernels, see `engine.integrator.kernels.events`."""
+        """The circle as a row of the table of exits in `engine.integrator.kernels.events`."""
         row = np.zeros(events.CURVE_COLUMNS)
         shape = events.DISC if self.side < 0 else events.CIRCLE
         row[[events.ORIGIN_X, events.ORIGIN_Y, events.HALF_WIDTH, events.SHAPE]] = self.x, self.y, self.radius, shape
         return row
 
     def scaled(self, factor: float) -> Self:
-        """Return the end in other units of length; a factor that is a power of 2 is exact."""
-        # Legal radii apply to the units of the system.
+        """Return the end with lengths multiplied by a factor, exactly for powers of 2."""
+        # Legal radii apply only in the units of the potential.
         return replace_unchecked(self, x=self.x * factor, y=self.y * factor, radius=self.radius * factor)
 
     def moved(self, x: float, y: float) -> Self:
@@ -149,14 +152,14 @@ class End(Kind):
         return replace(self, x=self.x - x, y=self.y - y)
 
     def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Return whether points of any shape lie where orbits have ended."""
+        """Return whether points, in arrays of any shape, lie where orbits have ended."""
         distance = np.hypot(x - self.x, y - self.y)
         ended: np.ndarray = distance < self.radius if self.side < 0 else distance > self.radius
         return ended
 
 
 class Centre(End):
-    """A body; an orbit that enters the disc around it has collided with it.
+    """A body; an orbit that enters the disc around the body has collided with it.
 
     Parameters
     ----------
@@ -180,7 +183,7 @@ class Centre(End):
 
 @dataclass(frozen=True)
 class EscapeCircle(End):
-    """The circle around the origin beyond which orbits have escaped; with it, saddles are not exits."""
+    """The circle around the origin beyond which orbits have escaped; with such a circle, saddles are not exits."""
 
     key, word, attribute = "escape", "escape", "escape_radius"
     label, action = "escape", "escape beyond the escape radius"
@@ -204,7 +207,7 @@ class EscapeCircle(End):
         return f"escape radius {format_number(self.radius)}"
 
     def moved(self, x: float, y: float) -> Self:
-        """Return the circle itself, because it is around any origin."""
+        """Return the circle itself, which is around the origin before and after."""
         return self
 
     @classmethod
@@ -214,7 +217,7 @@ class EscapeCircle(End):
 
     @classmethod
     def read(cls, attribute: Any) -> list[Self]:
-        """See `write`."""
+        """Return the circle of a radius; no end for 0."""
         return [cls(float(attribute))] if float(attribute) else []
 
 
@@ -240,9 +243,9 @@ class Outcome:
     action
         The action of orbits: "escape through exit 1", "collide with the Moon", "escape beyond the escape radius".
     occurs
-        Whether orbits can have it; False for a channel that belongs to an exit of a lower number.
+        Whether orbits can have this outcome; False for a channel that belongs to an exit of a lower number.
     number
-        Its number among the outcomes of its kind, from 1 on, which determines its colour.
+        Its number, from 1, among the outcomes of its kind, which determines its colour.
     """
 
     kind: type[Kind]
@@ -259,7 +262,7 @@ class Outcome:
 
     @property
     def past(self) -> str:
-        """The action of an orbit in the past, as the beginning of a sentence: "Escaped through exit 1"."""
+        """The action of an orbit in the past tense, as the beginning of a sentence: "Escaped through exit 1"."""
         verb, rest = self.action.split(" ", 1)
         return f"{verb.capitalize()}d {rest}"
 
@@ -270,7 +273,7 @@ class Outcome:
 
     @property
     def origin(self) -> str:
-        """The beginning of an orbit that ends so backward in time: "entered through exit 1"."""
+        """The beginning of an orbit that ends in this way backward in time: "entered through exit 1"."""
         return self.kind.origin.format(label=self.label, present=self.present)
 
     @property

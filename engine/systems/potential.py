@@ -29,10 +29,11 @@ from engine.systems.well_units import WellUnits
 if TYPE_CHECKING:
     from engine.systems.system import System
 
-# Marks centres or an escape radius that are given in `ends`.
-_OF_ENDS: Any = ...
+# Default of `centres` and `escape_radius`, which leaves `ends` unchanged.
+_AS_IN_ENDS: Any = ...
 
-_SHORT_TIME = 1000.0  # in units of 1/Ω
+# Default t_max if bounded orbits are integrated to the end, in units of 1/Ω.
+_SHORT_TIME = 1000.0
 
 
 @with_former_fields
@@ -44,7 +45,7 @@ class Potential(Motion):
     integral m(ẋ² + ẏ²)/2 + Φ: mẍ = 2mΩẏ − Φ_x, mÿ = −2mΩẋ − Φ_y. See `in_rotating_frame`.
 
     Orbits with a mass m are those with a mass of 1 at the same energy, with momenta and times multiplied by √m. They are computed
-    so; the factor rounds unless it is a power of 2.
+    in this way; multiplying by √m rounds unless √m is a power of 2.
 
     Without an escape radius, orbits leave a well, or a centre, at the origin through the exits over its saddles. With an escape
     radius, saddles are not exits, and orbits end beyond this radius. See `with_outcomes`.
@@ -54,8 +55,8 @@ class Potential(Motion):
     name
         Display name, which has no influence on any result; potentials with different names can be equal.
     form
-        The function V. For a polynomial Σ c x^i y^j, its terms ((i, j, c), …): exponents i, j from 0 to 12 and coefficient c, at
-        most 1e90 in magnitude, of each term, each (i, j) only once. `parse_formula` makes the forms of other formulas.
+        The function V. For a polynomial Σ c x^i y^j, its terms ((i, j, c), …), with exponents from 0 to 12, coefficients of at
+        most 1e90 in magnitude, and each (i, j) only once. `parse_formula` makes the forms of other formulas.
     rotation
         Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
     centres
@@ -112,8 +113,8 @@ class Potential(Motion):
         name: str,
         form: Form | Terms | Expression,
         rotation: float = 0.0,
-        centres: Sequence[Centre] = _OF_ENDS,
-        escape_radius: float | None = _OF_ENDS,
+        centres: Sequence[Centre] = _AS_IN_ENDS,
+        escape_radius: float | None = _AS_IN_ENDS,
         origin: tuple[float, float] = (0.0, 0.0),
         lineage: Lineage = SEARCHED,
         *,
@@ -123,9 +124,9 @@ class Potential(Motion):
         mass: float = 1.0,
     ) -> None:
         check_type("name", name, str)
-        if centres is not _OF_ENDS:
+        if centres is not _AS_IN_ENDS:
             ends = [*(end for end in ends if not isinstance(end, Centre)), *checked_items("centres", centres, Centre)]
-        if escape_radius is not _OF_ENDS:
+        if escape_radius is not _AS_IN_ENDS:
             circles = [] if escape_radius is None else [EscapeCircle(escape_radius)]
             ends = [*(end for end in ends if not isinstance(end, EscapeCircle)), *circles]
         values = {
@@ -164,12 +165,12 @@ class Potential(Motion):
 
     @property
     def critical_points(self) -> np.ndarray:
-        """(n, 2) all points with ∇V = 0; a critical point at the origin is exactly (0, 0). ValueError if they form a curve."""
+        """All points (n, 2) with ∇V = 0; a point at the origin is exactly (0, 0). ValueError if the points form a curve."""
         return self.well.critical_points
 
     @property
     def saddles(self) -> np.ndarray:
-        """(n, 2) the saddles that lead out of the well at the origin, in channel order; none with an escape radius."""
+        """The saddles (n, 2) that lead out of the well at the origin, in channel order; none with an escape radius."""
         return self.well.saddles
 
     @property
@@ -201,9 +202,9 @@ class Potential(Motion):
 
     @cached_property
     def in_well_units(self) -> Potential:
-        """Return the system in units of the well: V(L x, L y) / E with a mass of 1, with units L of length and E of energy.
+        """Return the potential in units L of length and E of energy of the well: V(L x, L y) / E with a mass of 1.
 
-        If all units are 1, it is the potential itself.
+        If all units are 1, the result is the potential itself.
         """
         return self if self.units == WellUnits() else scaled_to_well(self)
 
@@ -211,8 +212,8 @@ class Potential(Motion):
         """Return the potential as a member of a family, with known exits; the parameters are those of `ContinuedWell`."""
         return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
 
-    def _changed(self, **values: Any) -> Potential:
-        """Return another potential, whose well is searched."""
+    def _copy_with(self, **values: Any) -> Potential:
+        """Return a copy with other values of some attributes, whose well is searched anew."""
         return replace(self, lineage=SEARCHED, system=None, **values)
 
     def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
@@ -228,7 +229,7 @@ class Potential(Motion):
         Raises
         ------
         ValueError
-            If V has no minimum, or it was not found.
+            If V has no minimum, or none is found.
 
         Examples
         --------
@@ -246,14 +247,14 @@ class Potential(Motion):
         nearest = minima[np.argmin(np.hypot(*(minima - place).T))].tolist()
         ends = tuple(end.moved(*nearest) for end in self.ends)
         origin = self.origin[0] + nearest[0], self.origin[1] + nearest[1]
-        return self._changed(form=self.form.moved(*nearest), ends=ends, origin=origin, exit_names=())
+        return self._copy_with(form=self.form.moved(*nearest), ends=ends, origin=origin, exit_names=())
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
         """Return the potential with other centres and another escape radius; the parameters are those of `Potential`."""
-        return self._changed(centres=centres, escape_radius=escape_radius)
+        return self._copy_with(centres=centres, escape_radius=escape_radius)
 
     def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
-        """Return `t_max` as a float, 0 < t_max ≤ longest, in units of the well if its unit of time is longer than 1.
+        """Return `t_max`, above 0, as a float. The limit `longest` is in the time unit of the well if that exceeds 1.
 
         None stands for 1e5, or for a shorter time if bounded orbits are integrated to the end.
         """
@@ -271,7 +272,7 @@ class Potential(Motion):
 
     @property
     def tori_are_evidence(self) -> bool:
-        """Whether an invariant torus counts as evidence that its orbits are bounded for ever, which holds only in a well at rest.
+        """Whether an invariant torus counts as evidence that its orbits are bounded for ever: only in a well at rest.
 
         In a rotating frame, and with ends besides the exits, this evidence has not been tested.
         """

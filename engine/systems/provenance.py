@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def describe_potential(potential: Potential) -> dict[str, Any]:
-    """Return name, formula with all digits, rotation, mass, an attribute for each kind of end, and origin of the axes."""
+    """Return attributes of a potential: name, formula with all digits, rotation, mass, ends by kind, origin, and exit names."""
     return {
         "potential": potential.name,
         "terms": potential.form.text,

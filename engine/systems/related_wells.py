@@ -1,4 +1,4 @@
-"""Wells whose exits follow from those of another potential, without a search, and potentials in units of their wells."""
+"""Wells whose exits follow from another potential without a search, and potentials in units of their wells."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ScaledWell(Well):
-    """The well of a potential in units of its well.
+    """The well of a potential that has been converted to units of this well.
 
     Attributes
     ----------
     stated
-        The same well in the units of the original potential; exits are those of this well, divided by powers of 2.
+        The same well in the units of the original potential. Its exits, divided by powers of 2, are the exits.
     """
 
     stated: Well
@@ -63,7 +63,7 @@ class ScaledWell(Well):
 
 @dataclass(frozen=True, eq=False)
 class ContinuedWell(Well):
-    """A well whose exits were continued from those of a nearby potential.
+    """A well whose exits were continued from the exits of a nearby potential.
 
     Attributes
     ----------
@@ -99,9 +99,9 @@ class Lineage:
     ----------
     family
         Name of the family from which the exits were continued (`ParameterFamily`), or empty. Continued exits may differ in the
-        last bit from exits found from the critical points, so that caches keep the results of both apart.
+        last bit from exits found from the critical points, so that caches keep their results apart.
     make_well
-        Makes the well from form, rotation and ends; it has no influence on any result.
+        Makes the well from form, rotation, ends and mass; it has no influence on any result.
     """
 
     family: str = ""
@@ -115,7 +115,7 @@ SEARCHED = Lineage()
 def scaled_to_well(potential: Potential) -> Potential:
     """Return a potential in units of its well, see `Potential.in_well_units`."""
     units = potential.units
-    # Legal ranges apply to the units of the potential.
+    # Legal ranges apply only in the original units.
     return replace_unchecked(
         potential,
         form=potential.form.scaled(units.length, units.energy),

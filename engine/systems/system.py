@@ -19,14 +19,14 @@ TYPED = "typed"
 """The case of a potential that is given by a formula."""
 
 SHOWN_DIGITS = 12
-"""Significant digits of the coefficients in formulas; with these, 1.46²/2 is 1.0658 without the rounding error of the product."""
+"""Significant digits of the coefficients in formulas. With 12 digits, 1.46²/2 is 1.0658, without a rounding error."""
 
 
 @dataclass(frozen=True)
 class System:
     """A potential with its parameters: ω1, ω2 and ε of Zotos (2014), the rotation Ω of the frame, and the letters of a formula.
 
-    V = ½(ω1² x² + ω2² y²) + ε V1 − ½ Ω² (x² + y²). Systems of the catalogue with bodies have letters of their own instead.
+    V = ½(ω1² x² + ω2² y²) + ε V1 − ½ Ω² (x² + y²). Systems of the catalogue that are not wells have letters of their own.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class System:
     Raises
     ------
     ValueError
-        If the catalogue has no such name, or an argument is of another type.
+        If the catalogue has no entry `case`, or an argument has a wrong type.
     """
 
     case: str
@@ -88,7 +88,7 @@ class System:
 
     @property
     def letters(self) -> dict[str, float]:
-        """The values of the letters of the formula; ValueError if a character of it is not understood."""
+        """The values of the letters of the formula; ValueError if a character of the formula is not understood."""
         return {name: self.value_of(name) for name in formula_letters(self.formula)}
 
     @property
@@ -114,7 +114,7 @@ class System:
 
     @property
     def as_typed(self) -> System:
-        """Return the same system given by a formula: a well with its coefficients, any other system with its letters."""
+        """The same system given by a formula, in which wells have coefficients and other systems have letters."""
         if self.case == TYPED:
             return self
         if self.entry.is_well:
@@ -129,7 +129,7 @@ class System:
 
     @property
     def letter_parameters(self) -> dict[str, float]:
-        """The values of letters that are not the default ones."""
+        """The values of letters that differ from their defaults."""
         return {name: value for name, value in self.parameters.items() if name not in WELL_PARAMETERS}
 
     @property
@@ -140,7 +140,7 @@ class System:
 
     @property
     def formula_shown(self) -> str:
-        """V(x, y) as text, with the values of the parameters, and of letters, and with any shift of the axes."""
+        """V(x, y) as text, with the values of parameters and letters, and with any shift of the axes."""
         if self.case != TYPED and not (self.parameters and self.entry.is_well):
             return self.entry.formula
         if self.value_of(ROTATION):

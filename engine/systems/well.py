@@ -22,12 +22,14 @@ from engine.systems.well_units import WellUnits, nearest_power_of_two
 EQUAL_ENERGY_TOLERANCE = 1e-12
 """Saddles whose energies differ by less than this, in units of the energy of the well, count as equally high."""
 
-# Coordinates below this share of the distance are rounding errors of zero, whose sign would change the channel numbers on the +x
-# axis.
+# Coordinates below this share of the distance from the origin are rounding errors of zero, whose sign would change the channel
+# numbers on the +x axis.
 _ROUNDING = 1e-13
 
-# Radius of a circle of typical size, in units of the escape radius, and number of points on it.
-_TYPICAL_SHARE, _CIRCLE_POINTS = 0.1, 64
+# Typical radius of orbits in units of the escape radius.
+_TYPICAL_SHARE = 0.1
+# Number of points on a circle of typical radius.
+_CIRCLE_POINTS = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,15 +56,15 @@ class Well(ReadOnlyArrays):
 
     @property
     def critical_points(self) -> np.ndarray:
-        """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve.
+        """All points (n, 2) with ∇V = 0; a point at the origin is exactly (0, 0). ValueError if the points form a curve.
 
-        For a formula that is not a polynomial these are all points of a region, see `engine.systems.forms.stationary_points`.
+        For a formula that is not a polynomial, these are all points of a region, see `engine.systems.forms.stationary_points`.
         """
         return self._points_and_indices[:, :2]
 
     @property
     def critical_indices(self) -> np.ndarray:
-        """(n,) the index of each critical point: 1 for a minimum or a maximum, −1 for a saddle, 0 for a degenerate one."""
+        """The index (n,) of each critical point: 1 for a minimum or a maximum, −1 for a saddle, 0 for a degenerate point."""
         return self._points_and_indices[:, 2]
 
     @cached_property
@@ -71,11 +73,11 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def saddles(self) -> np.ndarray:
-        """(n, 2) saddle points (∇V = 0, V_xx V_yy − V_xy² < 0) that lead out of the well at the origin.
+        """Saddle points (n, 2), ∇V = 0 and V_xx V_yy − V_xy² < 0, that lead out of the well at the origin.
 
-        They are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from which
-        exactly one of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test without
-        the square of V_xy, which is a misprint. With an escape radius there are no exit saddles.
+        The saddles are in counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from
+        which exactly one of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test
+        without the square of V_xy, which is a misprint. With an escape radius there are no exit saddles.
         """
         if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
@@ -86,7 +88,7 @@ class Well(ReadOnlyArrays):
         return self._in_channel_order(points[leads_out])
 
     def _in_channel_order(self, points: np.ndarray) -> np.ndarray:
-        """Return exit saddles (n, 2) counterclockwise from the +x axis, without rounding errors of zero, exactly symmetric."""
+        """Sort exit saddles (n, 2) counterclockwise from the +x axis, and make zeros and mirror symmetry exact."""
         points = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
         angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
         points = points[np.argsort(angle, kind="stable")]
@@ -101,7 +103,7 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def saddle_energies(self) -> np.ndarray:
-        """(channels,) V at each exit saddle, in channel order."""
+        """V at each exit saddle, in channel order, of shape (channels,)."""
         return read_only(np.asarray(self.form.value(self.saddles[:, 0], self.saddles[:, 1]), dtype=float))
 
     @cached_property
@@ -121,16 +123,16 @@ class Well(ReadOnlyArrays):
         )
 
     def is_closed_at(self, energy: Any) -> Any:
-        """Return whether no orbit of the well ends at these energies: they are below all saddles and there are no other ends.
+        """Return whether no orbit of the well ends at an energy: the energy is below all saddles, and there are no other ends.
 
-        With an escape radius the result is always False. The statement also holds in a rotating frame, where orbits cannot pass
-        the zero-velocity curve V = h.
+        With an escape radius, the result is always False. In a rotating frame the same holds, because orbits cannot pass the
+        zero-velocity curve V = h.
         """
         return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.ends)
 
     @cached_property
     def outward_directions(self) -> np.ndarray:
-        """(channels, 2) unit vectors along the unstable direction of each exit saddle, pointing away from the well."""
+        """Unit vectors (channels, 2) along the unstable direction of each exit saddle, pointing away from the well."""
         directions = np.array([self._unstable_direction(saddle) for saddle in self.saddles]).reshape(-1, 2)
         if self.mirror_in_x:
             for k in np.flatnonzero(self.saddles[:, 0] < 0.0):
@@ -156,7 +158,7 @@ class Well(ReadOnlyArrays):
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
         """The maxima that separate exits from each other, the lowest first.
 
-        A maximum lies between two exits if a line of steepest ascent from the saddle of each ends at it.
+        A maximum lies between two exits if lines of steepest ascent from both saddles end at the maximum.
         """
         if not self.channels:
             return ()
@@ -174,11 +176,11 @@ class Well(ReadOnlyArrays):
         )
 
     def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
-        """Return the exits of several channels above the maxima between them; each has the lowest number of its channels."""
+        """Return the exits of several channels above the maxima between them. Each has the lowest number of its channels."""
         return merged_exits(self.channel_mergers, energy)
 
     def exit_numbers(self, energy: Any) -> np.ndarray:
-        """Return (…, outcomes + 1) the number of the exit to which each fate belongs at energies (…); entry 0 is 0."""
+        """Return the number of the exit to which each fate belongs, of shape (…, outcomes + 1) at energies (…); entry 0 is 0."""
         below = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
         numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[below]
         return numbers
@@ -201,12 +203,12 @@ class Well(ReadOnlyArrays):
 
     @property
     def mirror_in_x(self) -> bool:
-        """Whether (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point: V is even in x in a frame at rest."""
+        """Whether (x, px) → (−x, −px) maps orbits to orbits exactly: V and the ends are even in x, and the frame is at rest."""
         return self.form.mirror_in_x and self._mirrors_ends([-1.0, 1.0])
 
     @property
     def mirror_in_y(self) -> bool:
-        """Whether (y, py) → (−y, −py) maps orbits to orbits, exactly in floating point: V is even in y in a frame at rest."""
+        """Whether (y, py) → (−y, −py) maps orbits to orbits exactly: V and the ends are even in y, and the frame is at rest."""
         return self.form.mirror_in_y and self._mirrors_ends([1.0, -1.0])
 
     def _mirrors_ends(self, signs: Sequence[float]) -> bool:
@@ -216,7 +218,7 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def mirror_channels(self) -> np.ndarray:
-        """(outcomes + 1,) the image of each fate under x → −x; entry 0 is 0. Only valid if `mirror_in_x`."""
+        """The image of each fate under x → −x, of shape (outcomes + 1,); entry 0 is 0. Only valid if `mirror_in_x`."""
         of_kinds = [np.array([(end.x, end.y) for end in group]) for _, group in groupby(self.ends, type)]
         images = [np.arange(1)]
         for points in (self.saddles, *of_kinds):
@@ -226,7 +228,7 @@ class Well(ReadOnlyArrays):
         return read_only(np.concatenate(images).astype(np.int8))
 
     def mirror_numbers(self, energy: Any) -> np.ndarray:
-        """Return (…, outcomes + 1) the image of each fate under x → −x at energies (…); entry 0 is 0. Requires `mirror_in_x`."""
+        """Return the image of each fate under x → −x, of shape (…, outcomes + 1) at energies (…). Requires `mirror_in_x`."""
         numbers: np.ndarray = self.exit_numbers(energy)[..., self.mirror_channels]
         return numbers
 
@@ -253,8 +255,8 @@ class Well(ReadOnlyArrays):
     def fastest_frequency(self) -> float:
         """The higher frequency of small oscillations in the well at the origin; NaN if there is neither well nor centre.
 
-        Without a well it is the frequency of a circular orbit of typical radius, whose square is the mean slope of V over the
-        radius.
+        Without a well, this is the frequency of a circular orbit of typical radius. Its square is the mean slope of V divided by
+        the radius.
         """
         return self._fastest_light_frequency / float(np.sqrt(self.mass))
 
@@ -276,7 +278,7 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def units(self) -> WellUnits:
-        """The units of the well, for a mass of 1 rounded to powers of 2; all are 1 for the three cases of Zotos (2014).
+        """The units of the well, rounded to powers of 2 for a mass of 1; all are 1 for the three cases of Zotos (2014).
 
         The unit of length is the distance of the nearest exit saddle, and the unit of time is 1/ω of the fastest small
         oscillation in the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of this radius;
@@ -303,7 +305,7 @@ class Well(ReadOnlyArrays):
     def bottom(self) -> float:
         """V at the origin, the zero of `energy_at`.
 
-        Without a well it is the mean of V on a circle of the typical radius, see `typical_radius`.
+        Without a well, this is the mean of V on a circle of `typical_radius`.
         """
         if self.is_minimum or not self.typical_radius:
             return float(self.form.value(0.0, 0.0))

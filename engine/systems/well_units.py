@@ -1,9 +1,9 @@
 """Units of length, time and mass of a well.
 
-Those of length and energy are powers of 2, so that they are converted without rounding, as times and momenta are if √mass is one.
-Under x → L x, V → E V and m → M m, times scale as L √(M/E) and momenta as √(M E), and systems that differ only by such a scaling
-are equal in units of the well. All tolerances and all constants of time and length of the engine are in these units; for the
-three cases of Zotos (2014) the units are 1.
+The units of length and energy are powers of 2, so that conversion does not round. The same holds for times and momenta if √mass
+is a power of 2. Under x → L x, V → E V and m → M m, times scale as L √(M/E) and momenta as √(M E). Systems that differ only by
+such a scaling are equal in units of the well. All tolerances and all constants of time and length of the engine are in these
+units; for the three cases of Zotos (2014) the units are 1.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ def _quantity(length: int, time: int, mass: int = 0) -> dict[str, tuple[int, int
     return {_UNIT: (length, time, mass)}
 
 
+# Key of the metadata of fields whose values have a unit.
 _UNIT = "unit"
 LENGTH, TIME, AREA = _quantity(1, 0), _quantity(0, 1), _quantity(2, 0)
 RATE, MOMENTUM, ENERGY = _quantity(0, -1), _quantity(1, -1, 1), _quantity(2, -2, 1)
@@ -59,7 +60,7 @@ class WellUnits:
 
     @property
     def state(self) -> np.ndarray:
-        """(4,) units of x, y, px, py."""
+        """Units of x, y, px, py, of shape (4,)."""
         return np.array([self.length, self.length, self.momentum, self.momentum])
 
     @property
@@ -89,6 +90,6 @@ class WellUnits:
 
 
 def nearest_power_of_two(value: float) -> float:
-    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale; it scales exactly with powers of 2."""
+    """Return the power of 2 nearest to a finite value above 0 on a logarithmic scale; a factor of 2^k carries over exactly."""
     mantissa, exponent = math.frexp(value)
     return math.ldexp(1.0, exponent if mantissa * mantissa >= 0.5 else exponent - 1)

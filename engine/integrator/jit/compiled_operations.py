@@ -1,4 +1,4 @@
-"""The amount of compiled code in a process. Numba cannot unload code, so that a server has to limit it."""
+"""A limit on the compiled code of a process, for servers, because Numba cannot unload code."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 LARGEST_CODE = 40_000
-"""Largest number of operations of one code if there is a limit; the largest code of the catalogue has about as many."""
+"""Largest number of operations of one code if there is a limit. The largest code of the catalogue has about as many."""
 
 SHARES = 4
-"""Share of the limit that one account may use."""
+"""Number of equal shares of the limit, of which one account may use one."""
 
 _account: ContextVar[Hashable] = ContextVar("account", default=None)
 
@@ -21,7 +21,7 @@ class CompiledCodeLimitError(ValueError):
 
 
 class CompiledOperations:
-    """Number of operations of all generated functions, each about 0.4 kB of memory, or 1 kB if compiled in this process.
+    """Counts the operations of all generated functions, which take 0.4 kB each, or 1 kB if compiled in this process.
 
     Reserved code is always compiled and does not count.
 
@@ -34,21 +34,21 @@ class CompiledOperations:
     def __init__(self) -> None:
         self.most: int | None = None
         # The operations and the account of each code.
-        self._compiled: dict[str, tuple[int, Hashable]] = {}
+        self._entries: dict[str, tuple[int, Hashable]] = {}
         self._reserved: set[str] = set()
         self._lock = threading.Lock()
 
     @property
     def used(self) -> int:
-        """Number of operations so far that count."""
+        """Number of operations that count so far."""
         with self._lock:
-            return sum(count for count, _ in self._counted())
+            return sum(count for count, _ in self._counted_codes())
 
     @property
     def codes(self) -> frozenset[str]:
         """The digests of all codes so far."""
         with self._lock:
-            return frozenset(self._compiled)
+            return frozenset(self._entries)
 
     def is_nearly_full(self) -> bool:
         """Return whether less is left than the share of one account."""
@@ -65,7 +65,7 @@ class CompiledOperations:
         with self._lock:
             if self.most is not None and code not in self._reserved:
                 self._check(count, account, self.most)
-            self._compiled[code] = count, account
+            self._entries[code] = count, account
 
     def _check(self, count: int, account: Hashable, most: int) -> None:
         if count > LARGEST_CODE:
@@ -73,18 +73,18 @@ class CompiledOperations:
                 f"the integrator of this potential has {count} operations, and at most {LARGEST_CODE} are compiled here; "
                 "choose a potential with fewer terms"
             )
-        if sum(used for used, _ in self._counted()) + count > most:
+        if sum(used for used, _ in self._counted_codes()) + count > most:
             raise CompiledCodeLimitError(
                 "the integrators of as many different potentials are compiled as this program may keep until its next start; "
                 f"{_SAME_POWERS}"
             )
-        if account is not None and sum(used for used, whose in self._counted() if whose == account) + count > most // SHARES:
+        if account is not None and sum(used for used, each in self._counted_codes() if each == account) + count > most // SHARES:
             raise CompiledCodeLimitError(
                 f"your address has compiled the integrators of as many different potentials as it may; {_SAME_POWERS}"
             )
 
-    def _counted(self) -> Iterator[tuple[int, Hashable]]:
-        return (counted for code, counted in self._compiled.items() if code not in self._reserved)
+    def _counted_codes(self) -> Iterator[tuple[int, Hashable]]:
+        return (counted for code, counted in self._entries.items() if code not in self._reserved)
 
 
 _SAME_POWERS = "choose a potential with the same powers of x and y as an earlier one, or one of the catalogue"
@@ -95,7 +95,7 @@ compiled_operations = CompiledOperations()
 
 @contextmanager
 def charged_to(account: Hashable) -> Iterator[None]:
-    """Charge what is compiled within this context to an account; None charges no account."""
+    """Charge code compiled within this context to an account; None charges no account."""
     token = _account.set(account)
     try:
         yield

@@ -16,7 +16,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"
 """Options of Numba for all kernels."""
 
 
-# Code for another machine is inlined when it is optimised there, see `engine.integrator.jit.kernel_module`.
+# Code for another machine is inlined later, when it is optimised for that machine, see `engine.integrator.jit.kernel_module`.
 _INLINES = bool(config.OPT)  # type: ignore[attr-defined]
 
 
@@ -29,10 +29,10 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def subroutine(function: Callable[..., Any]) -> Any:
-    """Return the function as a part of the kernels that call it; when Python calls it, it runs uncompiled.
+    """Return the function as a part of the kernels that call it; called by Python, the function runs uncompiled.
 
-    It compiles in less time than a kernel, because it has no interface to Python, no file in the cache, and no second version for
-    literal arguments. It is always inlined: otherwise functions of the same name in several kernels would share the code of the
-    kernel that is loaded first, where the compiler may have rounded differently.
+    A subroutine compiles in less time than a kernel, because it has no interface to Python, no file in the cache, and no second
+    version for literal arguments. It is always inlined: otherwise functions of the same name in several kernels would share the
+    code of the kernel that is loaded first, where the compiler may have rounded differently.
     """
     return register_jitable(**OPTIONS, forceinline=_INLINES)(function)

@@ -11,7 +11,7 @@ Numba has no public interface for caches, so this module uses internal names of 
 - ``CompileResult._reduce`` and ``CompileResult._rebuild``: compiled code to and from objects that can be pickled;
 - ``numba.core.serialize.dumps``: Numba's pickling of these objects;
 - ``library.has_dynamic_globals``: whether code contains addresses that are valid in this process only;
-- ``codegen.magic_tuple()``: the target, processor and its features that code was compiled for;
+- ``codegen.magic_tuple()``: the target, the processor and its features for which code was compiled;
 - ``rtsys.initialize()``: prepares the memory management that the loaded code needs.
 """
 
@@ -47,13 +47,13 @@ _other_process: Callable[[Callable[[], None]], None] | None = None
 
 
 def compile_in(process: Callable[[Callable[[], None]], None] | None) -> None:
-    """Compile in another process that shares the cache, so that the memory used by Numba's compiler is not held by this process.
+    """Let another process that shares the cache compile, so that this process does not hold the memory of Numba's compiler.
 
     Parameters
     ----------
     process
-        Calls a function in the other process, to which cloudpickle can send it, and raises ValueError if it cannot; None to
-        compile in this process.
+        Calls a function, which cloudpickle can send, in the other process, and raises a ValueError if that fails; None to compile
+        in this process.
     """
     global _other_process
     _other_process = process
@@ -139,7 +139,7 @@ def _hash_source(file: str) -> str:
 
 @functools.cache
 def _hash_package(folder: Path) -> str:
-    """Return the hashes of all source files of a package and its subpackages: kernels contain code and constants of others."""
+    """Return the hashes of all source files in a package: kernels contain code and constants of other modules."""
     return "".join(_hash_source(str(path)) for path in sorted(folder.rglob("*.py")))
 
 

@@ -1,7 +1,7 @@
 """Calls of generated functions by address, from kernels that are compiled once for all potentials.
 
-A kernel that calls a function by name contains a copy of it, and would have to be compiled again for every structure of a
-potential. Kernels therefore take the addresses of `step`, `fixed_step`, `jets`, `tangent`, `potential_value` and
+A kernel that calls a function by name contains a copy of this function, and would have to be compiled again for every structure
+of a potential. Kernels therefore take the addresses of `step`, `fixed_step`, `jets`, `tangent`, `potential_value` and
 `potential_slopes` as arguments, and contain only the types of these functions.
 """
 
@@ -32,7 +32,7 @@ SIGNATURES: dict[str, Signature] = {
 
 
 def _caller(name: str) -> Any:
-    """Return a function for use in kernels that takes the address of a generated function and then its arguments."""
+    """Return a function for use in kernels that calls a generated function, given its address and its arguments."""
     callee = SIGNATURES[name]
 
     @intrinsic

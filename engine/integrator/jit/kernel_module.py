@@ -1,12 +1,11 @@
 """The kernels as a WebAssembly module that runs in the browser of a visitor; Numba compiles the same functions for Python.
 
 Numba lowers a kernel to LLVM instructions that hardly depend on the machine: only the data layout contains the size of an
-address, and it is replaced. Numba must not optimise the code for this machine. Only environment variables can tell it so, and
-`lower_kernels` is therefore called in a separate process.
+address, and this layout is replaced. Numba must not optimise the code for this machine. Only environment variables prevent this,
+and `lower_kernels` is therefore called in a separate process.
 
-This is the only module that uses parts of Numba, version 0.68, that are not public: the context of the target, for its calling
-convention and the layout of arrays (`populate_array`), and the functions of its memory management to which code refers
-(`_RUNTIME`).
+This module uses parts of Numba 0.68 that are not public: the context of the target, for its calling convention and the layout of
+arrays (`populate_array`), and the functions of its memory management to which code refers (`_RUNTIME`).
 """
 
 from __future__ import annotations
@@ -33,15 +32,15 @@ SETTINGS = {
     "NUMBA_CPU_FEATURES": "",
     "NUMBA_DISABLE_INTEL_SVML": "1",
 }
-"""Environment of the process that calls `lower_kernels`; Numba reads it when it is imported."""
+"""Environment of the process that calls `lower_kernels`, which Numba reads when it is imported."""
 
 _SIZE, _DOUBLE, _LONG = ir.IntType(32), ir.DoubleType(), ir.IntType(64)
 
 HEAP_CELL = 16
-"""Address of the cell that contains the start of the free memory. The caller of a kernel restores its value."""
+"""Address of the cell that contains the start of the free memory. The caller of a kernel restores the value of the cell."""
 
 # Arrays are allocated at the start of the free memory, without reference counts. An array of Numba begins with the address of its
-# metadata, which contains the address of its numbers; here the two are equal.
+# metadata, which contains the address of its numbers; here both addresses are equal.
 _RUNTIME = f"""
 define void @NRT_incref(ptr %info) alwaysinline {{ ret void }}
 define void @NRT_decref(ptr %info) alwaysinline {{ ret void }}
@@ -63,11 +62,11 @@ _RUNTIME_NAMES = "|".join(re.findall(r"@(NRT_\w+)", _RUNTIME))
 
 
 def lower_kernels(kernels: Mapping[Any, Signature]) -> bytes:
-    """Return a module with kernels for arguments of some types; its functions have the names of the kernels.
+    """Return a WebAssembly module of kernels for given types of arguments; its functions have the names of the kernels.
 
     Each array is passed as its address and its shape, a tuple as its elements, and an integer or a boolean as 32 bits. The module
     imports ``env.__linear_memory``, ``env.__stack_pointer`` and ``env.__indirect_function_table``, and functions such as
-    ``env.cos``. The addresses of functions that kernels take are indices into this table.
+    ``env.cos``. The addresses of functions that kernels take are indices into the function table.
     """
     machine = target_machine()
     module = _parse(_RUNTIME, machine)

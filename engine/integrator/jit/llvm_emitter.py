@@ -21,8 +21,8 @@ _FLOAT, _INT = ir.DoubleType(), ir.IntType(64)
 _NUMBA_TYPES = {_FLOAT: types.float64, _INT: types.int64}
 # As in `engine.integrator.jit.decorator`, a·b + c may become one multiply-add; nothing else is permitted.
 _FLAGS = ("contract",)
-# On Intel processors with AVX-512, LLVM uses half of the vector width, with which programs take 1.2 to 1.4 times as long. The
-# width does not change the results. llvmlite does not support attributes of functions with values, but writes them unchanged.
+# On Intel processors with AVX-512, LLVM by default uses half of the vector width, so that programs take 1.2 to 1.4 times as long.
+# The width does not change the results. llvmlite does not support attributes of functions with values, but writes them unchanged.
 _WIDE_VECTORS = '"prefer-vector-width"="512"'
 _FLOAT_OPERATIONS = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 _INTRINSICS = {"abs": "llvm.fabs", "sqrt": "llvm.sqrt"}
@@ -32,8 +32,8 @@ _INT_OPERATIONS = {"+": "add", "-": "sub", "*": "mul", ">>": "ashr"}
 def straight_line(program: StraightLine) -> Any:
     """Return the program as a function for use in kernels.
 
-    It takes the parameters of the program in order: doubles, 64-bit integers, and the table as returned by `table_reader`. It
-    returns a tuple of doubles and integers.
+    The function takes the parameters of the program in order: doubles, 64-bit integers, and the table as returned by
+    `table_reader`. It returns a tuple of doubles and integers.
     """
 
     @functools.cache
@@ -105,7 +105,7 @@ def _constant(kind: Any, number: float) -> Any:
 
 
 def _find_intrinsic(name: str, module: ir.Module, floats: Any) -> Any:
-    """Return an intrinsic on doubles or vectors that `declare_intrinsic` does not support; it is one instruction, not a call."""
+    """Return an intrinsic, which is one instruction, not a call; `declare_intrinsic` does not support vectors of doubles."""
     if not isinstance(floats, ir.VectorType):
         return module.declare_intrinsic(name, [floats])
     name = f"{name}.v{floats.count}f64"

@@ -24,11 +24,12 @@ from engine.integrator.source.recurrence import GeneratedCode
 from engine.integrator.source.straight_line import TABLE
 
 FUNCTIONS = ("step", "jets", "potential_value", "potential_slopes")
-"""Functions of a module, as far as the structure defines them."""
+"""Names of the functions of a module; not all structures define `potential_slopes`."""
 
 PAIR = 2
-"""Number of elements of a vector."""
+"""Number of doubles in a vector."""
 
+# Alignment of vectors in memory, in bytes.
 _BYTES = 8
 _INT = ir.IntType(64)
 # Number of cached modules, of some kB each.
@@ -39,8 +40,8 @@ _MODULES = 32
 def webassembly_module(code: GeneratedCode) -> bytes:
     """Return the functions of the potentials of one structure (`FUNCTIONS`) as a WebAssembly module, which imports its memory.
 
-    Their arguments are those of Numba's calling convention. The number of lanes is rounded up to an even one; rows must be long
-    enough.
+    Their arguments are those of Numba's calling convention. The number of lanes is rounded up to an even number, for which
+    rows must be long enough.
     """
     machine = target_machine()
     module = ir.Module("engine")
@@ -52,7 +53,7 @@ def webassembly_module(code: GeneratedCode) -> bytes:
 
 
 class _Writer:
-    """Writer of a generated function into a module.
+    """Writes a generated function into a module.
 
     entries: number of entries of the table.
     """

@@ -106,7 +106,7 @@ def _number(value: int) -> bytes:
 
 
 def _read_number(data: bytes, begin: int) -> tuple[int, int]:
-    """Decode a number in the format LEB128; return it and the position at which it ends."""
+    """Decode a number in the format LEB128; return the number and the position at which it ends."""
     value = length = 0
     while True:
         byte = data[begin + length]

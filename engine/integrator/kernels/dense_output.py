@@ -1,4 +1,4 @@
-"""Paths from dense output, for single orbits and other machines, and deviation vectors from the linearised recurrence."""
+"""Paths from dense output, for single orbits and for browsers, and deviation vectors from the linearised recurrence."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from engine.integrator.kernels.propagate import VECTOR, Exits, Orbits
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
 
+# Number of steps or samples that are processed together.
 _CHUNK = 8192
 
 
@@ -29,8 +30,8 @@ def trace_orbit(
     """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of limited length.
 
     orbits: arrays of length 1, changed in place. Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time
-    at which the piece ends. This time can be before `t_max` also for a bounded orbit, at rest on the saddle of a closed channel,
-    that rounding carries over the saddle. Raises CancelledError when cancelled.
+    at which the piece ends. This time can be before `t_max` even for a bounded orbit: an orbit at rest on the saddle of a closed
+    channel, which rounding carries over the saddle. Raises CancelledError when cancelled.
     """
     while orbits.pending[0]:
         execution.raise_if_cancelled()
@@ -67,14 +68,14 @@ def trace_steps(
     execution: Execution = DEFAULT_EXECUTION,
     tolerance: float = TOLERANCE,
 ) -> np.ndarray:
-    """Return (m, 5) x, y, px, py, t at the start of every step up to `t_end`, exits ignored."""
+    """Return x, y, px, py, t at the start of every step up to `t_end`, of shape (m, 5), without exits."""
     return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, execution, tolerance)])
 
 
 def sample_path(
     kernels: ModuleType, steps: np.ndarray, times: np.ndarray, execution: Execution = DEFAULT_EXECUTION
 ) -> np.ndarray:
-    """Return (4, n) x, y, px, py at increasing `times`, from the series of the steps (m, 5) that contain them."""
+    """Return x, y, px, py at increasing `times`, of shape (4, n), from the series of the `steps` (m, 5) around these times."""
     row = np.searchsorted(steps[:, 4], times, side="right") - 1
     path = np.empty((4, times.size))
     for begin in range(0, len(steps), _CHUNK):
@@ -89,7 +90,7 @@ def sample_path(
 
 
 def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarray) -> np.ndarray:
-    """Return (n, 4) states at `durations` (n,) of at most one integrator step after `states` (n, 4), from one series each."""
+    """Advance `states` (n, 4) by `durations` (n,) of at most one integrator step, with one series each."""
     jets = np.empty((2, ORDER + 1, len(states)))
     kernels.jets(len(states), *(np.ascontiguousarray(column) for column in states.T), *jets)
     later: np.ndarray = _evaluate(jets, np.arange(len(states)), durations).T
@@ -97,7 +98,7 @@ def advance_states(kernels: ModuleType, states: np.ndarray, durations: np.ndarra
 
 
 def _evaluate(jets: np.ndarray, row: np.ndarray, tau: np.ndarray) -> np.ndarray:
-    """Return (4, n) the result of `evaluate_series`."""
+    """Return the states (4, n) that `evaluate_series` sets."""
     states = np.empty((4, row.size))
     evaluate_series(jets, row, tau, states)
     return states
@@ -119,7 +120,7 @@ def evaluate_series(jets, row, tau, states):
 
 
 def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """Return (m, 2) x and px of the upward crossings of y = 0 between the samples of a path (4, n), at most one step apart."""
+    """Return x and px (m, 2) at upward crossings of y = 0 between samples of a path (4, n), which are at most one step apart."""
     y, py = path[1], path[3]
     rises = (y[:-1] < 0.0) & (y[1:] >= 0.0)
     turns = (y[:-1] * y[1:] > 0.0) & (y[:-1] * py[:-1] < 0.0) & (y[1:] * py[1:] > 0.0)
@@ -132,7 +133,7 @@ def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> 
 
 @kernel
 def _crossings(jets, durations):
-    """Return (m, 2) x and px of the upward crossings within `durations` (n,) of the starts of n series."""
+    """Return x and px (m, 2) at upward crossings within `durations` (n,) of the starts of n series."""
     x_jet, y_jet = jets[0], jets[1]
     # Two crossings in one interval are rare, and three do not occur.
     points = np.empty((1, 2 * durations.size, 3))
@@ -145,7 +146,7 @@ def _crossings(jets, durations):
 def sample_deviations(
     kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, execution: Execution = DEFAULT_EXECUTION
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return SALI (n,) and the growth ln(|w1(t)|/|w1(0)|) (n,) of deviation vectors at `times` along a path (4, n).
+    """Return SALI and the growth ln(|w1(t)|/|w1(0)|) of deviation vectors at `times` (n,) along a path (4, n).
 
     vectors (2, 4): δx, δy, δpx, δpy of both vectors at the start of the path. The transition matrices of all intervals are
     computed together, then applied in turn; the vectors are normalised after each. `times` must be at most one step of the
@@ -164,7 +165,7 @@ def sample_deviations(
 
 
 def transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
-    """Return (4, 4, n): row, column and interval of the linearised flow over each interval."""
+    """Return the matrices of the linearised flow over n intervals, of shape (4, 4, n): row, column, interval."""
     n = durations.size
     state = [np.ascontiguousarray(row) for row in path]
     matrices = np.zeros((4, 4, n))
@@ -178,7 +179,7 @@ def transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.nda
 
 @kernel
 def _apply(matrices, w, sali, stretch):
-    """Apply the matrices in turn to w (2, 4), normalised after each.
+    """Apply the matrices in turn to the vectors w (2, 4), and normalise these after each.
 
     sali (n,): SALI after each matrix; stretch (n,): squared growth of the first vector by each matrix.
     """
@@ -204,7 +205,7 @@ def _apply(matrices, w, sali, stretch):
         sali[n] = np.sqrt(min(difference, sum_))
 
 
-# Kernels for machines that cannot call the generated functions otherwise.
+# Kernels for browsers, which call generated functions only through kernels.
 
 
 @kernel
@@ -215,9 +216,9 @@ def compute_series(jets, coefficients, start, series):
 
 @kernel
 def sample_steps(jets, coefficients, steps, count, end, path):
-    """Set `path` (2, count · m) to x and y at m equally spaced times in each of the first steps, their ends included.
+    """Set `path` (2, count · m) to x and y at m equally spaced times in each of the first `count` steps, with its end.
 
-    steps (n, 5): x, y, px, py, t at the start of each; end: the time at which the last one ends.
+    steps (n, 5): x, y, px, py, t at the start of each; end: the time at which the last of the `count` steps ends.
     """
     points = path.shape[1] // count
     # WebAssembly computes the series of pairs, so that two steps are processed at a time.

@@ -1,6 +1,7 @@
-"""Propagation of many orbits at the same time, with the series of the current step of each, for an animation.
+"""Propagation of many orbits at the same time, for an animation.
 
-The position of an orbit within its step is given by two polynomials. Steps are computed for full vectors of lanes.
+The series of the current step, two polynomials, give the position of an orbit within this step. Steps are computed for full
+vectors of lanes.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from engine.integrator.kernels.events import (
     series_value,
 )
 from engine.integrator.kernels.propagate import VECTOR
-from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW
+from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import NEAR
 
@@ -39,7 +40,7 @@ class Ensemble(NamedTuple):
     jets
         (2, ORDER + 1, n) series of x and y in the current step.
     leaving
-        (n,) int8: number of the exit through which this step, or an earlier one, leaves the interior; 0 for none.
+        (n,) int8: number of the exit through which the current step, or an earlier step, leaves the interior; 0 for none.
     escape_time
         (n,) time of the escape, or infinite.
     last
@@ -129,7 +130,7 @@ def begin_ensemble(starts, ensemble, places, channels):
 
 @kernel
 def reverse_ensemble(time, ensemble, channels, states):
-    """Set `states` (n, 4) to those of the orbits inside at a time, with reversed momenta, and return their number."""
+    """Set `states` (n, 4) to the states of orbits inside at a time, with reversed momenta, and return their number."""
     count = 0
     for orbit in range(channels.shape[0]):
         if channels[orbit] != 0:
@@ -157,7 +158,7 @@ def _variance(values, channels):
     for orbit in range(channels.shape[0]):
         if channels[orbit] != 0:
             continue
-        # The values are taken relative to the first, because those of a small disc differ only in their last digits.
+        # The values are taken relative to the first, because the values of a small disc differ only in their last digits.
         if count == 0:
             origin = values[orbit]
         difference = values[orbit] - origin
@@ -171,7 +172,7 @@ def _variance(values, channels):
 @subroutine
 def _is_late(ensemble, orbit, time):
     """Return whether the step of a followed orbit ends before a time; the time of a failed orbit is NaN."""
-    end = ensemble.ends[4, orbit]
+    end = ensemble.ends[TIME_ROW, orbit]
     return end < time and end < ensemble.last[orbit]
 
 
@@ -184,9 +185,9 @@ def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble
     for row in range(ROWS):
         ensemble.ends[row, orbit] = new[row, i]
     size = new[SIZE_ROW, i]
-    ensemble.begin[orbit] = now[4, i]
+    ensemble.begin[orbit] = now[TIME_ROW, i]
     if not size > 0.0:
-        ensemble.ends[4, orbit] = np.nan
+        ensemble.ends[TIME_ROW, orbit] = np.nan
     if ensemble.escape_time[orbit] < np.inf:
         return
     channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
@@ -194,7 +195,7 @@ def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble
         channel = passed_exit(x_jet, y_jet, i, size, curves)
     ensemble.leaving[orbit] = channel
     if channel > 0:
-        ensemble.escape_time[orbit] = now[4, i] + find_exit_time(x_jet, y_jet, i, size, curves[channel - 1])
+        ensemble.escape_time[orbit] = now[TIME_ROW, i] + find_exit_time(x_jet, y_jet, i, size, curves[channel - 1])
         follows = 0.0 if curves[channel - 1, SHAPE] == DISC else beyond
         ensemble.last[orbit] = ensemble.escape_time[orbit] + follows
     if now[1, i] < 0.0 and new[1, i] >= 0.0:

@@ -1,15 +1,15 @@
 """Events within one step, located in its dense output: exits and crossings of the section y = 0.
 
 An exit is a place where orbits end: a curve or line across a channel, the edge of a disc around a centre, or the escape circle.
-It is a row of numbers, the first of which are the same for all shapes. A disc has its centre as origin and its radius as half
-width, the escape circle its radius as half width.
+It is a row of numbers, of which the first have the same meaning for all shapes. A disc has its centre as origin and its radius as
+half width; the escape circle has its radius as half width.
 
-In a well that does not rotate an exit is the path of a Lyapunov orbit. In coordinates u outward and q across (90°
-counterclockwise from u), from the saddle along its unstable direction or from the chord of the orbit along its normal, it is
-the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond its ends, which lie on the zero-velocity
-curve, it is continued by straight lines through the forbidden region, up to |s| = reach. A closed channel is a short straight
-line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame an exit is a line u = c + a q²,
-parallel to the ridge of V at the saddle.
+In a well that does not rotate, an exit is the path of a Lyapunov orbit. The coordinates are u outward and q across, 90°
+counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit along its
+normal. The exit is the graph u = f(s) of a polynomial f, with s = (q − middle)/half_width ∈ [−1, 1]. Beyond its ends, which lie
+on the zero-velocity curve, straight lines continue the exit through the forbidden region, up to |s| = reach. A closed channel is
+a short straight line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame, an exit is a
+line u = c + a q², parallel to the ridge of V at the saddle.
 
 An orbit that has crossed the path of a Lyapunov orbit does not return. Any other exit can be crossed and recrossed within a step,
 so that the whole step is examined.
@@ -28,7 +28,7 @@ MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 # Values of the column SHAPE; orbits cannot return from a CURVE.
 CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
 
-# Fates of an orbit or a start, besides the number, 1 or more, of the channel through which it escaped.
+# Fates of an orbit or a start, besides the number, 1 or more, of the channel through which an orbit escaped.
 BOUNDED, FORBIDDEN, OUTSIDE, NOT_COMPUTED, FAILED = 0, -1, -2, -3, -4
 
 # Degree of the polynomial f, a sum of Chebyshev polynomials.
@@ -37,13 +37,15 @@ CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
 # Number of parts of a step that are examined in turn; within a part, ẏ is assumed to change its sign at most once.
 _PARTS = 8
+# Largest number of iterations for a root.
 _ROOT_ITERATIONS = 80
+# Accuracy of a root, in units of time or length of the well.
 _ROOT_ACCURACY = 1e-15
 
 
 @subroutine
 def position_across(x, y, curve):
-    """Return s of a point; −1 and 1 are the ends of the exit."""
+    """Return the coordinate s of a point; −1 and 1 are the ends of the exit."""
     q = curve[OUTWARD_X] * (y - curve[ORIGIN_Y]) - curve[OUTWARD_Y] * (x - curve[ORIGIN_X])
     return (q - curve[MIDDLE]) / curve[HALF_WIDTH]
 
@@ -158,7 +160,7 @@ def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slo
     jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for crossings from y > 0 to y ≤ 0; low, high: the ends of
     the part; y_…, slope_…: y and ẏ there, times `direction`.
     """
-    # An orbit that starts on the section and moves against the direction counts as before the section from then on.
+    # An orbit that starts on the section and moves against the direction counts as being before the section.
     before = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
     if before and y_high >= 0.0:
         return low, high
@@ -192,8 +194,8 @@ def count_upward_crossings(y_jet, i, duration):
 def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, found, orbit):
     """Append x, px and the time of each crossing of y = 0 within `duration` of the start of a step.
 
-    direction: as in `crossing_between`; begin: time at the start of the step; crossings (n, m, 3), of which those of `orbit` are
-    filled from index found[orbit] on, until there are m.
+    direction: as in `crossing_between`; begin: time at the start of the step; crossings (n, m, 3): the row of `orbit` is filled
+    from index found[orbit], until it has m crossings.
     """
     low = 0.0
     y_low, slope_low = direction * series_value(y_jet, i, low), direction * series_slope(y_jet, i, low)

@@ -1,4 +1,4 @@
-"""Exits at any energy, interpolated in a table, and points on them."""
+"""Exits at any energy, interpolated in a table, and points on exits."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from engine.integrator.kernels.events import (
     exit_height,
 )
 
-# Columns of a table: gate, reach, the columns of an exit that describe its axes, and its columns from `MIDDLE` on.
+# Columns of a table: the gate, the reach, the first column for the axes of an exit, and the first of its columns from `MIDDLE`.
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 
@@ -27,8 +27,8 @@ GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
     """Set an exit (columns,) and its gate (3,), both zeros initially, from a table.
 
-    place: the position between the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen
-    2004, SIAM Review 46, 501), except for the reach, which is not smooth: it is the smaller one of two neighbours.
+    place: the position among the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen
+    2004, SIAM Review 46, 501), except for the reach, which is not smooth: the smaller reach of two neighbours is used.
     """
     count = nodes.shape[0]
     exit_curve[OUTWARD_X] = 1.0
@@ -100,8 +100,8 @@ def interpolate_exit(nodes, rows, saddle, shape, energies, number, curves, gates
     """Set exit `number` in `curves` (n, exits, columns) at energies (n,) and its gate in `gates` (exits, 3), zeros initially.
 
     nodes (m,): √(h − saddle), rising Chebyshev nodes of the first kind, where `saddle` is the energy at which the channel opens;
-    rows (m, columns): the exit there; shape: CURVE or LINE. Of the gates at these energies the lowest is chosen, which lies
-    inside all of these exits.
+    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, which
+    lies inside all of these exits.
     """
     gate = np.zeros(3)
     for i in range(energies.shape[0]):

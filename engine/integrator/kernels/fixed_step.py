@@ -16,13 +16,15 @@ from engine.integrator.kernels.events import append_crossings
 from engine.integrator.source.recurrence import LANES
 from engine.integrator.source.series import ORDER
 
+# Number of steps after which deviation vectors are normalised.
 _STEPS_TO_RENORMALISATION = 8
+# Number of steps between checks whether all section points are found.
 _STEPS_BETWEEN_CHECKS = 16
 
 
 @kernel
 def birkhoff_averages(fixed_step, coefficients, h, weights, state, averages):
-    """Compute weighted averages of x² and y² over two consecutive windows, and over a third one that overlaps half of each.
+    """Compute weighted averages of x² and y² over two consecutive windows, and over a third window that overlaps half of each.
 
     weights (m,): weights of the samples of a window, h apart; state (4, lanes), changed in place; averages (3, 2, lanes),
     written.
@@ -67,8 +69,8 @@ def _store_lanes(current, state):
 def find_section_points(fixed_step, jets, coefficients, h, steps, state, points, found):
     """Find the next points (x, px) at which orbits cross y = 0 upward, until each has m points or `steps` are taken.
 
-    state (4, lanes), changed in place; points (lanes, m, 3), filled from index found (lanes,) on: x, px and the time since the
-    start of the step.
+    state (4, lanes), changed in place; points (lanes, m, 3): x, px and the time since the start of the step, filled from
+    index found (lanes,).
     """
     lanes = state.shape[1]
     current = _load_lanes(state)

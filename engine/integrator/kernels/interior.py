@@ -1,12 +1,12 @@
-"""Which points of the Hill region lie inside the exits: connected to the origin below the energy without crossing an exit.
+"""Tests which points of the Hill region lie inside the exits: connected to the origin below the energy without crossing an exit.
 
-A path leads downhill from the point. It is complete as soon as V on the straight line to the origin is below the energy. The
-point is then inside if the path crosses the exits an even number of times. If the path leads to another minimum, or to a value of
-V below that at the origin, it ends outside, and the point is inside if the path crosses the exits an odd number of times.
+A path leads downhill from the point until V on the straight line to the origin is below the energy. The path ends with this line,
+and the point is inside if the whole path crosses the exits an even number of times. If the path leads to another minimum, or to a
+value of V below that at the origin, it ends outside, and the point is inside if it crosses the exits an odd number of times.
 
-The two kernels differ in how they evaluate V. For polynomials they use the terms, with a proof that V on a line is below a level.
-For expressions they use a generated function, and replace V on a line between neighbouring points by the cubic with its values
-and slopes.
+The two kernels evaluate V in different ways. That for polynomials uses the terms, with a proof that V on a line is below a level.
+That for expressions uses a generated function, and replaces V on a line between neighbouring points by the cubic with the same
+values and slopes.
 """
 
 from __future__ import annotations
@@ -27,8 +27,11 @@ from engine.integrator.kernels.events import (
     position_across,
 )
 
-# Lengths and energies are in units of the well. When the step reaches its smallest length, the path has reached a minimum.
-_LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
+# All lengths and energies are in units of the well. Longest step of a path near the origin.
+_LONGEST_STEP = 1.0 / 32.0
+# When a step would be shorter than this, the path has reached a minimum.
+_SHORTEST_STEP = 1e-6
+# Limit on the steps of a path.
 _MOST_STEPS = 10_000
 # Far from the origin the longest step is this share of |x| + |y|.
 _FAR_SHARE = 0.25
@@ -36,8 +39,8 @@ _FAR_SHARE = 0.25
 _COS, _SIN = np.cos(0.1), np.sin(0.1)
 # Smallest decrease of V in a step, relative to that along the gradient.
 _DECREASE = 0.25
-# V on lines to the origin must be lower than the energy by this, so that they do not pass over a saddle of the same energy;
-# points may lie above the energy by as much.
+# V on a line to the origin must be lower than the energy by this, so that the line does not pass over a saddle of the same
+# energy; points may lie above the energy by as much.
 _ENERGY_MARGIN = 1e-12
 # A point with a smaller slope counts as critical.
 _NO_SLOPE = 1e-9
@@ -77,7 +80,7 @@ def _polynomial_slopes(polynomial, x, y):
 
 @subroutine
 def _polynomial_is_below(polynomial, x, y, level):
-    """Return whether all Bernstein coefficients on [0, 1] of the series at (x, y), expanded last, are at most a level."""
+    """Return whether all Bernstein coefficients on [0, 1] of the series in row 2 of `work` are at most a level."""
     _, _, bernstein, work = polynomial
     for i in range(bernstein.shape[0]):
         b = 0.0
@@ -180,7 +183,7 @@ def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
 def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, bottom, outside):
     """Set `outside` (n,) int8 to the number of an exit for each point outside; other and forbidden points keep 0.
 
-    Outside a circle it is the number of the circle, otherwise that of the exit whose saddle is nearest in direction.
+    Beyond a circle, this is the number of the circle; elsewhere that of the exit whose saddle is nearest in direction.
     """
     for i in range(x.shape[0]):
         row = curves[curve_row[i]]
@@ -204,7 +207,7 @@ def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, 
 
 @subroutine
 def _find_circle(x, y, curves):
-    """Return the number of the circle beyond which a point lies, 0 for none; a disc in which orbits end may be beyond one."""
+    """Return the number of the circle beyond which a point lies, 0 for none; a disc takes precedence over an escape circle."""
     found = 0
     for shape in (CIRCLE, DISC):
         for k in range(curves.shape[0]):

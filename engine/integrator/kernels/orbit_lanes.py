@@ -13,7 +13,7 @@ from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import append_crossings, crossed_exit, find_exit_time, passed_exit, series_slope
 from engine.integrator.kernels.propagate import VECTOR
-from engine.integrator.source.recurrence import LANES, ROWS, TIME_ROW
+from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 
@@ -27,9 +27,9 @@ _WEIGHTS = (
     0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915,
 )  # fmt: skip
 # Parts of a step are halved until the results of the rule on a part and on its halves differ by less than this share of the
-# integral over the step. Near a point of rest, a power of the speed below 1 is almost singular, so that the number of halvings is
-# limited.
+# integral over the step.
 _ACCURACY = 1e-13
+# Limit on the halvings, because near a point of rest a power of the speed below 1 is almost singular.
 _MOST_HALVINGS = 40
 
 
@@ -90,7 +90,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
             if not late and not full and (down or channel > 0 or flag[i] & HIDDEN != 0):
                 for c in range(5):
                     buffer.start[c, buffered] = now[c, i]
-                buffer.start[5, buffered] = new[5, i]
+                buffer.start[SIZE_ROW, buffered] = new[SIZE_ROW, i]
                 buffer.orbit[buffered] = j
                 buffer.channel[buffered] = channel
                 buffered += 1
@@ -114,19 +114,19 @@ def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
     y_jet = np.empty((ORDER + 1, start.shape[1]))
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
-        duration = start[5, i]
+        duration = start[SIZE_ROW, i]
         if buffer.channel[i] > 0:
             duration = find_exit_time(x_jet, y_jet, i, duration, curves[buffer.channel[i] - 1])
-        append_crossings(x_jet, y_jet, i, -1.0, start[4, i], duration, passages, found, buffer.orbit[i])
+        append_crossings(x_jet, y_jet, i, -1.0, start[TIME_ROW, i], duration, passages, found, buffer.orbit[i])
 
 
 @kernel
 def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget, gates, curves, curve_row, orbits, integral):
-    """Continue the integral of |v|^power over `duration`, or until an orbit crosses an exit, by at most `budget` steps.
+    """Continue the integrals of |v|^power to `duration`, or until an orbit crosses an exit, by at most `budget` steps.
 
     gates (exits, 3); curves (energies, exits, columns); curve_row (lanes,): the row of `curves` of each orbit; orbits (ROWS,
     lanes), lanes a multiple of `VECTOR` up to `LANES`: see `ROWS`; the time is infinite where the integral is complete;
-    integral (lanes,): so far, NaN for an orbit whose steps become too short.
+    integral (lanes,): the integrals so far, NaN for an orbit whose steps become too short.
     """
     now, new, flag, crossed, lane_orbit = fill_lanes(orbits)
     active = orbits.shape[1]
@@ -142,7 +142,7 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
         for i in range(active - 1, -1, -1):
             j = lane_orbit[i]
-            failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[5, i] > 0.0)
+            failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
             within, ends = _time_inside(now, new, i, flag[i], duration, x_jet, y_jet, curves[curve_row[j]], gates)
             if failed:
                 integral[j] = np.nan
@@ -164,22 +164,22 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
 
 @subroutine
 def _time_inside(now, new, i, flags, duration, x_jet, y_jet, curves, gates):
-    """Return how long, within its step and the duration, the orbit of lane i is inside, and whether it ends in the step."""
+    """Return how long, within its step and `duration`, the orbit of lane i is inside, and whether the orbit ends."""
     late = flags & OVERSHOOT != 0
-    within = min(new[5, i], duration - now[4, i])
+    within = min(new[SIZE_ROW, i], duration - now[TIME_ROW, i])
     channel = 0
     if late or flags & (GATE | NEAR) != 0:
         channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
         if channel == 0:
-            channel = passed_exit(x_jet, y_jet, i, new[5, i], curves)
+            channel = passed_exit(x_jet, y_jet, i, new[SIZE_ROW, i], curves)
     if channel > 0:
-        within = min(within, find_exit_time(x_jet, y_jet, i, new[5, i], curves[channel - 1]))
+        within = min(within, find_exit_time(x_jet, y_jet, i, new[SIZE_ROW, i], curves[channel - 1]))
     return within, late or channel > 0
 
 
 @subroutine
 def _integrate_step(x_jet, y_jet, i, duration, power):
-    """Integrate over a step, in parts from its start on."""
+    """Integrate |v|^power over the first `duration` of a step, in successive parts."""
     total = 0.0
     low = 0.0
     width = duration

@@ -10,22 +10,25 @@ import numpy as np
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_potential_value, call_step
 from engine.integrator.kernels.events import series_slope
-from engine.integrator.source.recurrence import LANES, ROWS
+from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 
+# Distance between points at which a wall is searched, in units of the well.
 _WALL_STRIDE = 0.02
+# Largest distance of a wall from the line through the saddle, in units of the well.
 _FURTHEST_WALL = 20.0
 _BISECTIONS = 80
+# Limit on the steps of half a period.
 _MOST_STEPS = 400
-# This is at least the number of saddles of any potential of the highest supported degree.
+# At least the number of saddles of any potential of the highest supported degree.
 _MOST_CHANNELS = 128
 
 
 @subroutine
 def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
-    """Return the q < 0 at which V = energy on the line across the channel at u, on the zero-velocity curve; NaN if there is none.
+    """Return the q < 0 at which the line across the channel at u meets the zero-velocity curve V = energy; NaN if nowhere.
 
-    (u, q) are coordinates from the saddle along `outward` and 90° counterclockwise from it.
+    The coordinates (u, q) are measured from the saddle along `outward` and along the direction 90° counterclockwise from it.
     """
     x = saddle_x + u * outward_x
     y = saddle_y + u * outward_y
@@ -54,7 +57,7 @@ def shoot(
 ):
     """Start at rest on the zero-velocity curve at u, q < 0, and follow the orbit until its motion across the channel turns back.
 
-    Returns (u̇ at the turning point, its time, number of steps): u̇ < 0 for a start too close to the well, > 0 for a start too
+    Returns (u̇ and the time at the turning point, number of steps): u̇ < 0 for a start too close to the well, > 0 for a start too
     far out, 0 for the Lyapunov orbit. If an orbit moves further than `reach` along the channel before it turns, returns ∓1 and
     NaN.
     steps (m, 5): x, y, px, py, t at the start of each step, written in place.
@@ -76,7 +79,7 @@ def shoot(
             steps[count, c] = now[c, 0]
         call_step(step, coefficients, 1, tolerance, np.inf, gates, now, new, flag, crossed)
         if outward_x * new[3, 0] - outward_y * new[2, 0] <= 0.0:
-            return _turning_point(jets, coefficients, now, new[5, 0], outward_x, outward_y, count)
+            return _turning_point(jets, coefficients, now, new[SIZE_ROW, 0], outward_x, outward_y, count)
         moved = outward_x * (new[0, 0] - saddle_x) + outward_y * (new[1, 0] - saddle_y) - u
         if not abs(moved) < reach:
             return (1.0 if moved > 0.0 else -1.0), np.nan, count + 1
@@ -101,4 +104,4 @@ def _turning_point(jets, coefficients, now, h, outward_x, outward_y, count):
             high = tau
     tau = 0.5 * (low + high)
     along = outward_x * series_slope(x_jet, 0, tau) + outward_y * series_slope(y_jet, 0, tau)
-    return along, now[4, 0] + tau, count + 1
+    return along, now[TIME_ROW, 0] + tau, count + 1

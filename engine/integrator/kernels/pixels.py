@@ -8,6 +8,7 @@ from engine.integrator.jit.decorator import kernel
 from engine.integrator.kernels.events import BOUNDED, FORBIDDEN, NOT_COMPUTED, OUTSIDE
 from engine.integrator.kernels.slice_starts import interval_centre
 
+# Largest reported number of crossings, that of 16 bits.
 _MOST_CROSSINGS = 65535.0
 
 
@@ -15,8 +16,8 @@ _MOST_CROSSINGS = 65535.0
 def place_pixels(window, columns, rows, part_rows, part_columns, energy_axis, points, energy_rows):
     """Set `points` (2, n) to the centres of the pixels in some rows (m,) of a picture and in its first columns, row by row.
 
-    window (4,): lowest and highest abscissa and ordinate; columns, rows: of the whole picture; energy_axis: 0, 1, or −1 for none.
-    energy_rows (n,) is set to the position of each pixel along the axis of the energy; 0 without such an axis.
+    window (4,): lowest and highest abscissa and ordinate; columns, rows: size of the whole picture; energy_axis: 0, 1, or −1 for
+    none. energy_rows (n,) is set to the position of each pixel along the axis of the energy; 0 without such an axis.
     """
     for place in range(part_rows.shape[0]):
         ordinate = interval_centre(window[2], window[3], part_rows[place], rows)

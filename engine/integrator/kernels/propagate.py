@@ -28,7 +28,7 @@ from engine.integrator.kernels.events import (
     series_slope,
     series_value,
 )
-from engine.integrator.source.recurrence import LANES, ROWS
+from engine.integrator.source.recurrence import LANES, REMAINDER_ROW, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 
@@ -118,7 +118,7 @@ def _make_buffer(lanes):
 def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits, trace):
     """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
 
-    It also ends when fewer than `least` orbits are left, because these would not fill the lanes. exits: `Exits`; orbits:
+    The kernel also ends when fewer than `least` orbits are left, because these would not fill the lanes. exits: `Exits`; orbits:
     `Orbits`. With `final` the horizon is t_max: events of the last, partial step are located, and an orbit still inside is
     BOUNDED; otherwise it stays NOT_COMPUTED. trace (m, 5): x, y, px, py, t at the start of each step of the first lane, written
     until it is full; `NO_TRACE` for more than one orbit. Returns the total number of steps of all orbits.
@@ -170,7 +170,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
 def _begin_lanes(orbits, todo, active, lanes, lane_orbit, crossed):
     """Load the first `active` orbits; lanes without an orbit take harmless steps that never reach the horizon."""
     lanes[0] = 0.01
-    lanes[4] = -np.inf
+    lanes[TIME_ROW] = -np.inf
     for i in range(active):
         _load_orbit(orbits, todo[i], lanes, i, lane_orbit, crossed)
 
@@ -202,18 +202,18 @@ def _refill_lane(orbits, todo, next_orbit, active, lanes, i, lane_orbit, crossed
 
 @subroutine
 def _judge_step(jets, coefficients, flags, now, new, i, final, exits, orbit, single):
-    """Return what happens in a flagged step: (the orbit ends, exit that it crosses or 0, it fails, events are to be located).
+    """Return what happens in a flagged step: (orbit ends, exit that it crosses or 0, orbit fails, events are to be located).
 
     now, new: lanes at the start and the end of the step; i: lane of the orbit; single: buffer for one step.
     """
-    failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[5, i] > 0.0)
+    failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[SIZE_ROW, i] > 0.0)
     late = flags & OVERSHOOT != 0
     curves = exits.curves[exits.curve_row[orbit]]
     channel = 0
     if not late and flags & (GATE | NEAR) != 0:
         channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, exits.gates)
     if flags & NEAR != 0 and not late and channel == 0 and not failed:
-        channel = _passes_exit(jets, coefficients, now, i, new[5, i], curves, single)
+        channel = _passes_exit(jets, coefficients, now, i, new[SIZE_ROW, i], curves, single)
     ends = late or channel > 0 or failed
     has_events = channel > 0 or (late and final) or (not late and flags & HIDDEN != 0)
     return ends, channel, failed, has_events and not failed
@@ -234,9 +234,9 @@ def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
     """Load an orbit into lane i of the (ROWS, LANES) array `lanes`."""
     for c in range(4):
         lanes[c, i] = orbits.state[orbit, c]
-    lanes[4, i] = orbits.t[orbit]
+    lanes[TIME_ROW, i] = orbits.t[orbit]
     for c in range(2):
-        lanes[6 + c, i] = orbits.remainder[orbit, c]
+        lanes[REMAINDER_ROW + c, i] = orbits.remainder[orbit, c]
     lane_orbit[i] = orbit
     crossed[i] = 0
 
@@ -246,9 +246,9 @@ def _store_orbit(lanes, i, crossed, orbits, orbit):
     """Store lane i of the (ROWS, LANES) array `lanes` in its orbit."""
     for c in range(4):
         orbits.state[orbit, c] = lanes[c, i]
-    orbits.t[orbit] = lanes[4, i]
+    orbits.t[orbit] = lanes[TIME_ROW, i]
     for c in range(2):
-        orbits.remainder[orbit, c] = lanes[6 + c, i]
+        orbits.remainder[orbit, c] = lanes[REMAINDER_ROW + c, i]
     orbits.crossings[orbit] += crossed[i]
 
 
@@ -265,7 +265,7 @@ def _buffer_step(now, new, i, orbit, channel, buffer, k):
     """Store the step of lane i in place k of the buffer."""
     for c in range(4):
         buffer.start[c, k] = now[c, i]
-    buffer.h[k] = new[5, i]
+    buffer.h[k] = new[SIZE_ROW, i]
     buffer.orbit[k] = orbit
     buffer.channel[k] = channel
 

@@ -16,12 +16,13 @@ from engine.integrator.kernels.exit_curves import exit_point
 BEFORE_EXIT = 9.0
 """Orbits near the edge of a tube start this long before they reach the exit, in units of the well."""
 
+# Mask of 32 bits.
 _WORD = 0xFFFFFFFF
 # Number of parts of an exit, for each of which the flux is computed.
 _PARTS = 200
-# Distance of entering orbits from the exit, as a share of its half width; on the exit, rounding would decide what is inside.
+# Distance of entering orbits from the exit, as a share of its half width. On the exit, rounding would decide which are inside.
 _SHIFT = 1e-7
-# Distance of these orbits from the edge of the tube, measured at the exit, as a share of half its width.
+# Distance of orbits near a tube from its edge, measured at the exit, as a share of the half width of the exit.
 _FROM_EDGE = 3e-3
 
 
@@ -57,8 +58,8 @@ def scatter_points(seed, window, is_round, points):
 def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed, states):
     """Set `states` (n, 4) to random states on the open exits over saddles (exits, columns); return their number.
 
-    The states move into the well, with the distribution of the flux, as those of `engine.sample_entrances`. With `of_tubes`, they
-    lie near the edge of the tubes of orbits that, in backward time, approach the Lyapunov orbits: half of them inside, where
+    The states move into the well, with the distribution of the flux, like those of `engine.sample_entrances`. With `of_tubes`,
+    they lie near the edge of the tubes of orbits that, in backward time, approach the Lyapunov orbits: half of them inside, where
     orbits pass the exit, and half outside, where they turn back. In a rotating frame the exits are lines, not Lyapunov orbits,
     and have no tubes.
     """
@@ -69,7 +70,7 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
         is_used = shape == CURVE if of_tubes else CURVE <= shape < DISC
         for part in range(_PARTS):
             if is_used:
-                x, y, along_x, along_y = _look(curves[exit], _middle(part))
+                x, y, along_x, along_y = _point_and_slope(curves[exit], _middle(part))
                 speed = _speed(potential_value, coefficients, energy, x, y)
                 total += speed * np.sqrt(along_x * along_x + along_y * along_y)
             flux[exit * _PARTS + part] = total
@@ -90,7 +91,7 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
 
 @subroutine
 def _find_above(values, limit):
-    """Return the index of the first of rising values (n,) above a limit; the last value must be above it."""
+    """Return the index of the first of rising values (n,) above a limit; the last value must be above the limit."""
     low, high = 0, values.shape[0] - 1
     while low < high:
         middle = (low + high) // 2
@@ -110,7 +111,7 @@ def _middle(part):
 @subroutine
 def _launch(potential_value, coefficients, energy, curve, s, share, shift, state):
     """Set a state at s of an exit, shifted inward; `share` is the component of its direction along the exit."""
-    x, y, along_x, along_y = _look(curve, s)
+    x, y, along_x, along_y = _point_and_slope(curve, s)
     length = np.sqrt(along_x * along_x + along_y * along_y)
     along_x, along_y = along_x / length, along_y / length
     side = -1.0 if along_y * curve[OUTWARD_X] - along_x * curve[OUTWARD_Y] > 0.0 else 1.0
@@ -124,7 +125,7 @@ def _launch(potential_value, coefficients, energy, curve, s, share, shift, state
 
 
 @subroutine
-def _look(curve, s):
+def _point_and_slope(curve, s):
     """Return x and y of a point of an exit, and their derivatives with respect to s."""
     half = 0.5 / _PARTS
     x, y = exit_point(curve, s)

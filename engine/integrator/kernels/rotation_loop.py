@@ -1,4 +1,4 @@
-"""The closed curve through successive points of a rotation: their order along it, and its distance from their polygon."""
+"""The closed curve through points of a rotation: the order of the points, and the distance of the curve from their polygon."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ LAUNCHED, LAUNCHED_FROM_RADIUS = 6, 7
 
 @subroutine
 def interval_centre(low, high, place, count):
-    """Return the centre of one of `count` equal parts of an interval; all are exactly symmetric if the interval is."""
+    """Return the centre of one of `count` equal parts of an interval; the centres are exactly symmetric if the interval is."""
     return 0.5 * (low + high) + (high - low) * ((2 * place + 1 - count) / (2 * count))
 
 
@@ -32,7 +32,7 @@ def rest_energy(momentum, value):
 
 @subroutine
 def decided_momentum(energy, value, momentum, sign):
-    """Return the momentum determined by the energy, with a sign, given the other momentum; NaN where the start is forbidden."""
+    """Return the momentum that the energy and the other momentum determine, with a sign; NaN where the start is forbidden."""
     return sign * np.sqrt(2.0 * (energy - value) - momentum * momentum)
 
 
@@ -57,7 +57,7 @@ def launch_from_radius(x, y, speed, angle):
 
 @subroutine
 def _place(motion, points, i, start):
-    """Set the coordinates of a start (COORDINATES,); for the momentum determined by the energy, set that of `motion`."""
+    """Set the coordinates of a start (COORDINATES,); the momentum that the energy determines is set from `motion`."""
     for column in range(COORDINATES):
         start[column] = motion[0, column]
         for axis in range(points.shape[0]):
@@ -102,8 +102,8 @@ def find_starts(potential_value, coefficients, motion, decided, sign, points, st
 def find_required_energies(potential_value, coefficients, motion, decided, window, required):
     """Set `required` (rows, columns) to the lowest energies at which starts exist, on a lattice that includes the edges.
 
-    window (4,): lowest and highest abscissa and ordinate; motion, decided: as in `find_starts`. If the energy is an axis, the
-    value is instead the energy that is missing.
+    window (4,): lowest and highest abscissa and ordinate; motion, decided: as in `find_starts`. If the energy is an axis, values
+    are relative to the energy of each point.
     """
     rows, columns = required.shape
     start = np.zeros(COORDINATES)

@@ -14,9 +14,9 @@ Polynomial = Mapping[Monomial, float]
 
 X, Y = (1, 0), (0, 1)
 
-# Coefficients count as equal up to this relative difference; those of terms like −x³ ε/3 have a few rounding errors.
+# Coefficients count as equal up to this relative difference; coefficients such as that of −x³ ε/3 have a few rounding errors.
 _ROUNDING = 1e-15
-# Number of cached products, of 1 kB each; a potential of degree 8 needs about 4 000.
+# Number of cached results of `_cheapest`, of 1 kB each; a potential of degree 8 needs about 4 000.
 _CHEAPEST_PRODUCTS = 4096
 
 
@@ -83,7 +83,7 @@ def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, li
 
 
 def find_scales(plan: Sequence[Product]) -> dict[Monomial, float]:
-    """Return {monomial: scale}: the computed series is the series of the monomial times its scale."""
+    """Return {monomial: scale}; a computed series is the series of the monomial times this scale."""
     scales = {X: 1.0, Y: 1.0, (0, 0): 1.0}
     for p in plan:
         scales[p.monomial] = scales[p.left] * scales[p.right] * (0.5 if p.left == p.right else 1.0)

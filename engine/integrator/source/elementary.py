@@ -22,6 +22,7 @@ _LN_2 = Fraction("0.69314718055994530941723212145817656807550013436025525412068"
 # When this number is added to a number below 2^51 in magnitude, the sum is rounded to an integer, which its bits contain.
 _ROUND = 1.5 * 2.0**52
 _ROUND_BITS = 0x4338000000000000
+# Bits of doubles, as integers: a unit of the exponent, the number 1, and √½.
 _EXPONENT = 1 << 52
 _ONE_BITS = 1023 << 52
 _ROOT_HALF_BITS = 0x3FE6A09E667F3BCD
@@ -31,6 +32,7 @@ _LARGEST_EXPONENT = 700.0
 _SMALLEST_NORMAL = 2.0**-1022
 # Larger multiples of π/2 have too many bits to be exact.
 _LARGEST_ANGLE = 1e6
+# Bits of each part of a number but the last.
 _HIGH_BITS = 30
 
 
@@ -47,11 +49,13 @@ def _parts(value: Fraction, count: int) -> list[float]:
 
 _LN_2_PARTS, _HALF_PI_PARTS = _parts(_LN_2, 2), _parts(_PI / 2, 3)
 
-# Coefficients, the highest first: of exp r for |r| ≤ log 2 / 2, of sin r / r and cos r in r² for |r| ≤ π/4, and of
-# (atanh s / s − 1) / s² in s² for |s| ≤ (√2 − 1)/(√2 + 1).
+# Coefficients of polynomials, the highest first: exp r for |r| ≤ log 2 / 2.
 _EXP = [1.0 / math.factorial(k) for k in range(14, -1, -1)]
+# sin r / r in r² for |r| ≤ π/4.
 _SIN = [(-1.0) ** k / math.factorial(2 * k + 1) for k in range(8, -1, -1)]
+# cos r in r² for |r| ≤ π/4.
 _COS = [(-1.0) ** k / math.factorial(2 * k) for k in range(9, -1, -1)]
+# (atanh s / s − 1) / s² in s² for |s| ≤ (√2 − 1)/(√2 + 1).
 _ATANH = [1.0 / (2 * k + 3) for k in range(10, -1, -1)]
 
 
@@ -60,12 +64,12 @@ def exp_of(u: Value) -> Value:
     u = where(u < _LARGEST_EXPONENT, u, _LARGEST_EXPONENT)
     u = where(u > -_LARGEST_EXPONENT, u, -_LARGEST_EXPONENT)
     n, bits = _nearest_integer(u * (1.0 / math.log(2.0)))
-    r = _reduced(u, n, _LN_2_PARTS)
+    r = _reduce(u, n, _LN_2_PARTS)
     return u.program.apply("double_of", u.program.apply("bits_of", _polynomial(_EXP, r)) + bits * _EXPONENT)
 
 
 def log_of(u: Value) -> Value:
-    """log u = n log 2 + 2 atanh s with s = (m − 1)/(m + 1) and u = 2^n m, √½ ≤ m < √2; NaN below the smallest normal number."""
+    """Return log u = n log 2 + 2 atanh s, s = (m − 1)/(m + 1), u = 2^n m, √½ ≤ m < √2; NaN below the smallest normal number."""
     program = u.program
     bits = program.apply("bits_of", u)
     exponent = ((bits + (_ONE_BITS - _ROOT_HALF_BITS)) >> 52) - 1023
@@ -80,18 +84,18 @@ def log_of(u: Value) -> Value:
 
 def sin_of(u: Value) -> Value:
     """Return sin u; NaN for |u| > 1e6."""
-    return _turned(u, 0)
+    return _sine_of_sum(u, 0)
 
 
 def cos_of(u: Value) -> Value:
     """Return cos u; NaN for |u| > 1e6."""
-    return _turned(u, 1)
+    return _sine_of_sum(u, 1)
 
 
-def _turned(u: Value, quarters: int) -> Value:
+def _sine_of_sum(u: Value, quarters: int) -> Value:
     """Return sin(u + quarters π/2)."""
     n, bits = _nearest_integer(u * (2.0 / math.pi))
-    r = _reduced(u, n, _HALF_PI_PARTS)
+    r = _reduce(u, n, _HALF_PI_PARTS)
     square = r * r
     quarter = bits + quarters
     half = quarter >> 1
@@ -129,13 +133,15 @@ def _nearest_integer(u: Value) -> tuple[Value, Value]:
     return shifted - _ROUND, u.program.apply("bits_of", shifted) - _ROUND_BITS
 
 
-def _reduced(u: Value, n: Value, parts: list[float]) -> Value:
+def _reduce(u: Value, n: Value, parts: list[float]) -> Value:
+    """Return u minus n times the number that is the sum of `parts`."""
     for part in parts:
         u = u - n * part
     return u
 
 
 def _polynomial(coefficients: list[float], u: Value) -> Value:
+    """Return a polynomial in u with two or more coefficients, the highest first."""
     result = coefficients[1] + u * coefficients[0]
     for c in coefficients[2:]:
         result = c + u * result

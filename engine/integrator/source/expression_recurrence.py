@@ -47,7 +47,7 @@ Entry = tuple[str, int]
 
 
 class ExpressionStructure(NamedTuple):
-    """The graphs of V, of its gradient, of gradient and Hessian, and of V and its gradient."""
+    """The graphs of V, of its gradient, of gradient and Hessian, and of V and gradient; and the zeros of the Hessian."""
 
     setting: Setting
     value: Graph
@@ -146,11 +146,14 @@ class _Recurrence:
         self.x, self.y = ([program.input(f"{axis}{k}") for k in (0, 1)] for axis in "xy")
         self.series: list[list[Value]] = [{"x": self.x, "y": self.y}.get(node.kind, []) for node in graph.nodes]
         self._plan = plan_series(graph)
-        # k u_k of the arguments of functions, 1 / u_0 of those of powers and logarithms, sums of products, and sums of series.
+        # k u_k of arguments of functions.
         self._slopes: dict[int, list[Value]] = {}
+        # 1 / u_0 of arguments of powers and logarithms.
         self._reciprocals: dict[int, Value] = {}
+        # Sums of products, see `_inner_sum`.
         self._inner_sums: dict[tuple[int, int, bool, int], Value] = {}
-        self._combined: dict[tuple[int, int], list[Value]] = {}
+        # Sums of series, see `_common_product`.
+        self._common_sums: dict[tuple[int, int], list[Value]] = {}
         self._orders = 0
 
     def advance_to(self, k: int) -> None:
@@ -178,7 +181,10 @@ class _Recurrence:
         return reduce(add, self._remainders(node), value)
 
     def _remainders(self, node: Node) -> Iterator[Value]:
-        """Yield what the remainders add to a sum with x or y, such as the distance from a body; elsewhere they do not matter."""
+        """Yield the terms that remainders add to a sum with x or y, such as the distance from a body.
+
+        Elsewhere remainders do not matter.
+        """
         for operand, place in zip(node.operands, node.numbers, strict=False):
             remainder = self.remainders.get(self.graph.nodes[operand].kind)
             if remainder is not None and node.kind in ("sum", "shift"):
@@ -206,9 +212,12 @@ class _Recurrence:
         return total(self.program, chain(single, common))
 
     def _common_product(self, index: int, root: int, entries: Mapping[int, Value], k: int) -> Value:
-        """Return (Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k; x + d is almost 0 near a body."""
+        """Return (Σ c f (x + d))_k = Σ (x + d)_0 c f_k + Σ x_j (Σ c f)_(k − j) over j = 1 … k.
+
+        The factor x + d is almost 0 near a body.
+        """
         factors = {product: self.graph.nodes[product].operands for product in entries}
-        combined = self._combined.setdefault((index, root), [])
+        combined = self._common_sums.setdefault((index, root), [])
         for j in range(len(combined), k + 1):
             combined.append(reduce(add, (entries[each] * self.series[f][j] for each, (f, _) in factors.items())))
         pairs = [(self.series[root][j], combined[k - j]) for j in range(1, k + 1)]
@@ -220,7 +229,10 @@ class _Recurrence:
         return self.series[node.operands[0]][k]
 
     def product(self, _index: int, node: Node, k: int) -> Value:
-        """Return (u v)_k = Σ u_j v_(k − j); products of u + c and v + d differ only in the first and the last term."""
+        """Return (u v)_k = Σ u_j v_(k − j).
+
+        Products of u + c and v + d for all c and d differ only in the first and the last term.
+        """
         one, other = node.operands
         u, v = self.series[one], self.series[other]
         if one == other:
@@ -239,12 +251,12 @@ class _Recurrence:
         return [self._inner_sums[key]]
 
     def quotient(self, index: int, node: Node, k: int) -> Value:
-        """u_0 (v/u)_k = v_k − Σ u_(k − j) w_j over j = 0 … k − 1."""
+        """Return w_k of w = v/u from u_0 w_k = v_k − Σ u_(k − j) w_j over j = 0 … k − 1."""
         numerator, argument = node.operands
         return self._quotient(index, [numerator], argument, k)
 
     def power(self, index: int, node: Node, k: int) -> Value:
-        """k u_0 (u^a)_k = Σ (a (k − j) − j) u_(k − j) w_j over j = 0 … k − 1, from u w' = a u' w."""
+        """Return w_k of w = u^a from k u_0 w_k = Σ (a (k − j) − j) u_(k − j) w_j over j = 0 … k − 1, because u w' = a u' w."""
         (argument, *higher), a = node.operands, node.exponent
         if a == _ROOT:
             return self._root(index, argument, k)
@@ -255,22 +267,22 @@ class _Recurrence:
         return total(self.program, iter([sum_of_products(pairs)] if pairs else [])) * (1.0 / k) * self.reciprocal(argument)
 
     def _root(self, index: int, argument: int, k: int) -> Value:
-        """2 w_0 w_k = u_k − Σ w_j w_(k − j) over j = 1 … k − 1, from w² = u, with a quarter of the work of other powers."""
+        """Return w_k of w = √u from 2 w_0 w_k = u_k − Σ w_j w_(k − j) over 0 < j < k, a quarter of the work of other powers."""
         half, lower = 0.5 * self.series[argument][k], list(islice(half_square(self.series[index], k), k // 2))
         return (half - sum_of_products(lower) if lower else half) * self.reciprocal(index)
 
     def _quotient(self, index: int, numerator: list[int], argument: int, k: int) -> Value:
-        """u_0 w_k = v_k − Σ u_(k − j) w_j over j = 0 … k − 1, from u w = v, by default 1, with half the work."""
+        """Return w_k of w = v/u, with v = 1 if there is no numerator, in half the work of other powers."""
         u, w = self.series[argument], self.series[index]
         lower = sum_of_products((u[k - j], w[j]) for j in range(k))
         return (self.series[numerator[0]][k] - lower if numerator else -1.0 * lower) * self.reciprocal(argument)
 
     def exponential(self, index: int, node: Node, k: int) -> Value:
-        """k (exp u)_k = Σ j u_j w_(k − j) over j = 1 … k."""
-        return _weighted(self.slopes(node.operands[0], k), self.series[index], k) * (1.0 / k)
+        """Return w_k of w = exp u from k w_k = Σ j u_j w_(k − j) over j = 1 … k."""
+        return _weighted_sum(self.slopes(node.operands[0], k), self.series[index], k) * (1.0 / k)
 
     def logarithm(self, index: int, node: Node, k: int) -> Value:
-        """u_0 (log u)_k = u_k − (1/k) Σ j w_j u_(k − j) over j = 1 … k − 1."""
+        """Return w_k of w = log u from u_0 w_k = u_k − (1/k) Σ j w_j u_(k − j) over j = 1 … k − 1."""
         (argument,) = node.operands
         u = self.series[argument]
         if k == 1:
@@ -279,14 +291,14 @@ class _Recurrence:
         return (u[k] - lower * (1.0 / k)) * self.reciprocal(argument)
 
     def sine(self, _index: int, node: Node, k: int) -> Value:
-        """k (sin u)_k = Σ j u_j (cos u)_(k − j) over j = 1 … k."""
+        """Return (sin u)_k from k (sin u)_k = Σ j u_j (cos u)_(k − j) over j = 1 … k."""
         argument, cosine = node.operands
-        return _weighted(self.slopes(argument, k), self.series[cosine], k) * (1.0 / k)
+        return _weighted_sum(self.slopes(argument, k), self.series[cosine], k) * (1.0 / k)
 
     def cosine(self, _index: int, node: Node, k: int) -> Value:
-        """k (cos u)_k = −Σ j u_j (sin u)_(k − j) over j = 1 … k."""
+        """Return (cos u)_k from k (cos u)_k = −Σ j u_j (sin u)_(k − j) over j = 1 … k."""
         argument, sine = node.operands
-        return _weighted(self.slopes(argument, k), self.series[sine], k) * (-1.0 / k)
+        return _weighted_sum(self.slopes(argument, k), self.series[sine], k) * (-1.0 / k)
 
 
 _RULES: Mapping[str, Callable[[_Recurrence, int, Node, int], Value]] = {
@@ -302,8 +314,8 @@ _RULES: Mapping[str, Callable[[_Recurrence, int, Node, int], Value]] = {
 }
 
 
-def _weighted(slopes: Series, other: Series, k: int) -> Value:
-    """Σ j u_j v_(k − j) over j = 1 … k, the newest last."""
+def _weighted_sum(slopes: Series, other: Series, k: int) -> Value:
+    """Return Σ j u_j v_(k − j) over j = 1 … k, the newest products last."""
     pairs: Iterable[tuple[Value, Value]] = ((slopes[j], other[k - j]) for j in range(1, k + 1))
     return sum_of_products(pairs)
 

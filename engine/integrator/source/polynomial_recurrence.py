@@ -53,15 +53,20 @@ Entry = tuple[Monomial, float, int]
 # A derivative of V: for each of its monomials, the term of V from which it arises and the factor of its differentiation.
 _Derivative = Mapping[Monomial, tuple[Monomial, float]]
 
-# Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and also those in the variational equations.
-_GRADIENT, _HESSIAN = ((0,), (1,)), ((0, 0), (0, 1), (1, 1))
+# Derivatives of V with respect to x (0) and y (1) in the equations of motion.
+_GRADIENT = (0,), (1,)
+# The same for the variational equations.
+_HESSIAN = (0, 0), (0, 1), (1, 1)
 _GRADIENT_AND_HESSIAN = (*_GRADIENT, *_HESSIAN)
 
 _Difference = tuple[Product, Product] | None
 
 
 class PolynomialStructure(NamedTuple):
-    """The facts on which generated code depends; the differences are those of `_find_difference` without and with the Hessian."""
+    """The facts on which generated code depends.
+
+    `_find_difference` returns `difference` for the gradient alone, and `tangent_difference` for the gradient and the Hessian.
+    """
 
     monomials: tuple[Monomial, ...]
     setting: Setting
@@ -113,7 +118,7 @@ class PolynomialStructure(NamedTuple):
 
     def tabulate(self, terms: Any, entries: Sequence[Entry]) -> list[float]:
         """Return multiples of the coefficients."""
-        polynomial = _sorted(terms)
+        polynomial = _sort_terms(terms)
         return [-1.0 / divisor * (polynomial[term] * multiple) for term, multiple, divisor in entries]
 
 
@@ -139,7 +144,7 @@ def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...],
 
 
 def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
-    """Write a derivative of V as a sum over the series formed; the series of a difference replaces those of both squares."""
+    """Write a derivative of V as a sum over computed series. The series of a difference replaces the series of both squares."""
     contained = difference[1].monomial if difference is not None else None
     return {m: origin for m, origin in _derivative(monomials, axes).items() if m != contained}
 
@@ -172,7 +177,7 @@ def _recurrence(
     difference: _Difference,
     rotates: bool,
 ) -> dict[Monomial, list[Value]]:
-    """Return the series of x and y and of `products`; a difference of two squares is stored as the first of them."""
+    """Return the series of x, y and `products`. A difference of two squares is stored in place of the first square."""
     series: dict[Monomial, list[Value]] = {
         X: [program.input("x0"), program.input("x1")],
         Y: [program.input("y0"), program.input("y1")],
@@ -199,17 +204,17 @@ def _recurrence(
 
 def structure_of_polynomial(terms: Terms, setting: Setting, reach: float = REACH) -> PolynomialStructure:
     """Return the structure of a potential that is a polynomial."""
-    polynomial = _sorted(terms)
+    polynomial = _sort_terms(terms)
     differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
     can_hide = setting.rotates or crossings_can_hide(polynomial, reach)
     return PolynomialStructure(tuple(polynomial), setting, can_hide, *differences)
 
 
 def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
-    """Return whether, without rotation, the signs of y at the ends of a step can miss two crossings of y = 0 in it.
+    """Return whether, without rotation, the signs of y at the ends of a step can miss two crossings of y = 0 in the step.
 
     If V is even in y, ÿ = −g(x, y) y. With g below (π/h)², two zeros of y are further than h apart, by Sturm's comparison with
-    the oscillator of that frequency. Terms of g that are nowhere positive cannot raise it.
+    the oscillator of that frequency. Terms of g that are nowhere positive cannot raise g.
     """
     force = derivative(terms, 1)
     if any(j % 2 == 0 for _, j in force):
@@ -218,6 +223,6 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
     return bound >= (math.pi / LONGEST_STEP) ** 2
 
 
-def _sorted(terms: Terms) -> dict[Monomial, float]:
-    """Sort the terms by degree, so that the order in which they are given does not matter."""
+def _sort_terms(terms: Terms) -> dict[Monomial, float]:
+    """Sort the terms by degree, so that their given order does not matter."""
     return {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}

@@ -55,23 +55,31 @@ TOLERANCE = 3e-15
 
 # Weight of the third coefficient from the end in the step size, found together with ORDER and TOLERANCE by `benchmarks/steps.py`.
 _EARLIER_WEIGHT = 0.3
-# Size of the steps for which it was found, and factor of the norm where frequencies differ, because coefficients of functions
-# with singularities decrease more slowly than those of polynomials: the largest power of 10 with which energies are conserved to
-# 1e-11.
-_USUAL_STEP, _CAUTION = 0.35, 10.0
-# This is added to the speed that limits a step.
+# Size of the steps for which this weight was found.
+_USUAL_STEP = 0.35
+# Factor of the norm where frequencies differ, because coefficients of functions with singularities decrease more slowly than
+# those of polynomials: a power of 10 with which energies are conserved to 1e-11.
+_CAUTION = 10.0
+# Added to the speed that limits a step, so that no step is longer than 16.
 _LEAST_SPEED = 1.0 / 16.0
+# Number of orders of the last coefficients in the norm.
 _ORDERS_OF_NORM = 3
 
 LANES = 64
-"""Length of the rows of arrays with one column per orbit, of which a step computes the first ones."""
+"""Length of the rows of arrays with one column per orbit; a step computes the first columns."""
 
 ROWS = 8
 """Rows of the arrays of lanes ``now`` and ``new``: x, y, px, py, t, the size of the last step, and the remainders of x and y,
 which are their rounding errors; the remainders are 0 for structures whose steps do not carry them."""
 
-TIME_ROW, SIZE_ROW = 4, 5
-"""The rows with the time, and with the size of the last step."""
+TIME_ROW = 4
+"""The row with the time."""
+
+SIZE_ROW = 5
+"""The row with the size of the last step."""
+
+REMAINDER_ROW = 6
+"""The first of the two rows with the remainders of x and y."""
 
 # Number of cached structures, of 3 MB each with eight terms of degree 8.
 _STRUCTURES = 32
@@ -117,7 +125,7 @@ class GeneratedCode:
         return hash(self.digest)
 
     def tabulate(self, definition: Definition, rotation: float = 0.0) -> np.ndarray:
-        """Return (m,) the table of a potential, which every function takes as its first argument; read-only."""
+        """Return the table of a potential, of shape (m,) and read-only, which every function takes as its first argument."""
         own = [entry for entry in self.entries if entry != ROTATION]
         values = {**dict(zip(own, self.structure.tabulate(definition, own), strict=True)), ROTATION: 2.0 * rotation}
         return read_only(np.array([values[entry] for entry in self.entries], dtype=float))
@@ -149,7 +157,7 @@ def _root_of_tolerance(program: StraightLine, norm: Value) -> Value:
     """Return (tolerance / norm)^(1/16), up to 6 % too large, the same on every machine.
 
     The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa; a shift by four bits
-    divides it by 16.
+    divides this logarithm by 16.
     """
     one = 1023 << 52
     bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
@@ -169,7 +177,7 @@ def _horner(series: Series, h: Value) -> tuple[Value, Value]:
 def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
     """Evaluate like `_horner`, with a remainder added to the first coefficient; also return the remainder of the value.
 
-    This is the rounding error of the last sum, which is computed exactly (Knuth's TwoSum).
+    The remainder is the rounding error of the last sum, computed exactly (Knuth's TwoSum).
     """
     if remainder is None:
         return *_horner(series, h), []
@@ -205,9 +213,9 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
         **{Place("new", row): value for row, value in enumerate((*end, t_end, h, *x_remainder, *y_remainder))},
     }
     arguments = "tolerance, horizon, gates, now, new, flag, crossed"
-    reads = {**_start_in("now"), "t0": Place("now", 4)}
+    reads = {**_start_in("now"), "t0": Place("now", TIME_ROW)}
     if remainders:
-        reads |= {"x_remainder": Place("now", 6), "y_remainder": Place("now", 7)}
+        reads |= {"x_remainder": Place("now", REMAINDER_ROW), "y_remainder": Place("now", REMAINDER_ROW + 1)}
     constants = {name: Place("gates", *place) for name, place in gates.items()}
     return lane_loop(program, arguments, reads, writes, constants, rows=dict.fromkeys(("now", "new"), LANES))
 
@@ -218,7 +226,7 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
     h = program.input("h")
     x_end, px_end = _horner(x, h)
     y_end, py_end = _horner(y, h)
-    # The sums are computed in the loop, because within the program they make it up to a sixth slower.
+    # The sums are computed in the loop, because within the program they would make it up to a sixth slower.
     writes: dict[Place, Value | str] = {
         Place("sums", 0): "weight*(x0*x0)",
         Place("sums", 1): "weight*(y0*y0)",

@@ -14,7 +14,7 @@ ORDER = 19
 """Order of the series; with `TOLERANCE` it is the fastest choice with an energy error well below 1e-11 over 1e5 time units."""
 
 LONGEST_STEP = 1.0
-"""Upper limit of a step, for motion near rest or nearly linear in time; well within the convergence of the series."""
+"""Upper limit of a step in units of the well, for motion near rest or nearly linear in time; well within the convergence."""
 
 REACH = 3.0
 """Radius of a disc that contains all steps of orbits inside the exits of a well of size 1."""
@@ -30,7 +30,7 @@ series of this second derivative of −V, to be called for each k in turn, and w
 
 
 PointFunctions = Mapping[str, Callable[[StraightLine], Mapping[str, Value]]]
-"""{name: function} where the function appends to a program with the inputs x and y, and returns its results by name."""
+"""{name: function}; each function appends operations to a program with inputs x and y, and returns the results by name."""
 
 NO_REMAINDERS: Mapping[str, Value] = MappingProxyType({})
 
@@ -54,16 +54,16 @@ class Setting(NamedTuple):
 
     @property
     def needs_whole_steps(self) -> bool:
-        """Whether an orbit can cross and recross an exit within a step; it cannot at exits over saddles in a frame at rest."""
+        """Whether an orbit can cross and recross an exit within a step, which exits over saddles in a frame at rest exclude."""
         return bool(self.sides) or self.rotates
 
 
 class Structure(Hashable, Protocol):
-    """The facts on which the generated code of a potential depends; hashable. Polynomials and expressions have one class each."""
+    """The hashable facts on which the generated code of a potential depends. Polynomials and expressions have one class each."""
 
     @property
     def setting(self) -> Setting:
-        """The facts besides V on which it depends."""
+        """The facts besides V on which the code depends."""
 
     @property
     def carries_remainders(self) -> bool:
@@ -71,7 +71,7 @@ class Structure(Hashable, Protocol):
 
     @property
     def can_hide(self) -> bool:
-        """Whether the signs of y at the ends of a step can miss two crossings of y = 0 in it."""
+        """Whether the signs of y at the ends of a step can miss two crossings of y = 0 in the step."""
 
     @property
     def has_many_scales(self) -> bool:
@@ -79,13 +79,13 @@ class Structure(Hashable, Protocol):
 
     @property
     def largest_norm(self) -> float:
-        """Norm of the last coefficients above which steps would be too short to change t; such an orbit fails, as with NaN."""
+        """Norm of the last coefficients above which steps would be too short to change t. Such an orbit fails, as with NaN."""
 
     def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
-        """Return the series of x and y to `ORDER` from the inputs x0, x1, y0 and y1; remainders: to be added to x0 and y0."""
+        """Return the series of x and y to `ORDER` from the inputs x0, x1, y0 and y1; `remainders` are added to x0 and y0."""
 
     def hessian(self, program: StraightLine) -> Hessian:
-        """Return the second derivatives of −V along the orbit from these inputs."""
+        """Return the second derivatives of −V along the orbit from the same inputs."""
 
     def point_functions(self) -> PointFunctions:
         """Return functions of one point."""
@@ -113,7 +113,7 @@ def sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:
 
 
 def cauchy(left: Series, right: Series, k: int) -> Value:
-    """Return coefficient k of the product of two series, or of half a square, the newest terms last: others start earlier."""
+    """Return coefficient k of the product of two series, or of half a square; the newest terms come last."""
     if left is right:
         return sum_of_products(half_square(left, k))
     return sum_of_products([*inner_pairs(left, right, k), (left[0], right[k]), *([(left[k], right[0])] if k else [])])

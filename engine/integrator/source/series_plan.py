@@ -25,7 +25,7 @@ class SeriesPlan:
     groups
         For each node its `Groups` of two or more products that no other node uses.
     needed
-        The nodes whose higher coefficients are needed, not only the first one.
+        The nodes whose higher coefficients are needed, not only coefficient 0.
     """
 
     nodes: tuple[Node, ...]

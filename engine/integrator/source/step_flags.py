@@ -5,9 +5,17 @@ from __future__ import annotations
 from engine.integrator.source.series import ORDER, Series, Setting
 from engine.integrator.source.straight_line import StraightLine, Value, where
 
-HIDDEN, GATE, OVERSHOOT, NEAR = 1, 2, 4, 8
-"""Flags of a step: it may hide crossings of y = 0; it ends beyond the gate of an exit; it ends after the horizon; it may cross
-and recross an exit although its end is not beyond the gate."""
+HIDDEN = 1
+"""Flag of a step that may hide crossings of y = 0."""
+
+GATE = 2
+"""Flag of a step that ends beyond the gate of an exit."""
+
+OVERSHOOT = 4
+"""Flag of a step that ends after the horizon."""
+
+NEAR = 8
+"""Flag of a step that may cross and recross an exit although its end is not beyond the gate."""
 
 # Maxima of σ − σ^k for 0 ≤ σ ≤ 1, rounded up; 1 for larger k.
 _LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
@@ -31,7 +39,7 @@ def _sag(series: Series, h: Value) -> Value:
 
 
 def flag_hidden_crossings(y: Series, end: Value, h: Value) -> Value:
-    """Return the test of a step for hidden crossings of y = 0, for potentials where they are possible: HIDDEN or 0.
+    """Return the test of a step for hidden crossings of y = 0, for potentials where these are possible: HIDDEN or 0.
 
     The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. So there are no hidden crossings if ẏ keeps its sign (|ẏ(0)| h > bound),
     or if both ends lie on one side, further away than bound/2.

@@ -74,7 +74,7 @@ def _binary(symbol: str, *, swapped: bool = False) -> Callable[[Value, Value | f
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A result within a program; its operators and comparisons append operations to the program and return new values."""
+    """A result within a program. Its operators and comparisons append operations to the program and return new values."""
 
     program: StraightLine
     index: int

@@ -8,12 +8,12 @@ from types import MappingProxyType
 
 from engine.systems.parameters import WELL_PARAMETERS
 
-_OF_WELLS = MappingProxyType({name: parameter.default for name, parameter in WELL_PARAMETERS.items()})
+_WELL_DEFAULTS = MappingProxyType({name: parameter.default for name, parameter in WELL_PARAMETERS.items()})
 
 
 @dataclass(frozen=True)
 class EnergyRange:
-    """Energies of a potential, dimensionless.
+    """Energies at which a potential is explored, dimensionless.
 
     Attributes
     ----------
@@ -51,11 +51,11 @@ class CatalogueEntry:
     reference
         Source in the literature.
     parameters
-        Values of the letters of the formula and of the rotation, by name; for wells also those of `Potential.with_parameters`.
+        Values by name: letters of the formula, the rotation and, for wells, the parameters of `Potential.with_parameters`.
     adjustable
         The names of the parameters that users can choose.
     energies
-        Energies to explore at these values; None for the range derived from the potential.
+        Energies to explore at the values of `parameters`; None for the range derived from the potential.
     """
 
     name: str
@@ -63,11 +63,11 @@ class CatalogueEntry:
     formula: str
     description: str = ""
     reference: str = ""
-    parameters: Mapping[str, float] = field(default_factory=lambda: _OF_WELLS)
-    adjustable: tuple[str, ...] = tuple(_OF_WELLS)
+    parameters: Mapping[str, float] = field(default_factory=lambda: _WELL_DEFAULTS)
+    adjustable: tuple[str, ...] = tuple(_WELL_DEFAULTS)
     energies: EnergyRange | None = None
 
     @property
     def is_well(self) -> bool:
-        """Whether it has the parameters ω1, ω2 and ε."""
+        """Whether the entry has the parameters ω1, ω2 and ε."""
         return "epsilon" in self.parameters

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from engine.foundations.validation import short_repr
 
+# Smallest similarity, from 0 to 1, of a name that an error suggests.
 _LEAST_LIKENESS = 0.6
 
 
@@ -30,7 +31,7 @@ class ByName[Value](Mapping[str, Value]):
     make
         Returns the value of a name; it is called at each look-up.
     titles
-        Alternative titles by name. For an unknown name that resembles a title, the error suggests its name.
+        Alternative titles by name. For an unknown name that resembles a title, the error suggests the name with this title.
     """
 
     def __init__(
@@ -39,7 +40,7 @@ class ByName[Value](Mapping[str, Value]):
         self._kind, self._names, self._make, self._titles = kind, tuple(names), make, dict(titles or {})
 
     def __getitem__(self, name: str) -> Value:
-        """Return the value of a name; raise `UnknownNameError`, a KeyError and a ValueError, which suggests similar names."""
+        """Return the value of a name; for an unknown name, raise an `UnknownNameError` that suggests similar ones."""
         given: object = name
         if isinstance(given, str) and given in self._names:
             return self._make(given)
@@ -64,6 +65,6 @@ class ByName[Value](Mapping[str, Value]):
 
 
 def _plain(name: str) -> str:
-    """Return the letters in lower case and the digits, without accents."""
+    """Return the letters and digits of a name in lower case, without accents."""
     decomposed = unicodedata.normalize("NFKD", name.casefold())
     return "".join(letter for letter in decomposed if letter.isalnum())

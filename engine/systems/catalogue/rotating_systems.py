@@ -1,13 +1,13 @@
-"""Entries of the catalogue in rotating frames, and with bodies."""
+"""Entries of the catalogue with rotating frames or bodies."""
 
 from __future__ import annotations
 
 from engine.systems.catalogue.entry import CatalogueEntry, EnergyRange
 from engine.systems.parameters import ROTATION
 
-# Mass of the Moon as a share of that of Earth and Moon. The radius of the Moon over its distance is 1737.4 / 384 400.
+# Mass of the Moon as a share of the mass of Earth and Moon. The formula contains the radius and the distance of the Moon in km.
 _MOON_MASS = 0.0121505856
-# Systems whose unit of time is that of the rotation.
+# Parameter of systems whose unit of time is 1/Ω.
 _UNIT_ROTATION = {ROTATION: 1.0}
 
 

@@ -3,9 +3,9 @@
 The resultant of two polynomials p and q with respect to y is a polynomial in x that vanishes at the x of each common root. The
 resultant with respect to x gives the values of y. In sheared axes, s = x + k y, the resultant gives the values of s. FLINT
 encloses the real roots of these polynomials by intervals, with proof (Johansson 2017, IEEE Trans. Comput. 66, 1281). If k is such
-that different common roots have different s, each real s belongs to exactly one real root (x, y), the only one with x + k y = s.
-It is found when the intervals are so short that only one pair (x, y) is left for each s. The multiplicity of s is that of the
-common root.
+that different common roots have different s, each real s belongs to exactly one real root (x, y), the only root with x + k y = s.
+The roots are known when the intervals are so short that only one pair (x, y) is left for each s. The multiplicity of s is that of
+the common root.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _NEAR = 1e-9
 
 @dataclass(frozen=True)
 class CommonRoot:
-    """A common root (x, y), with an interval for each coordinate, and its multiplicity, which is 1 where the two curves cross."""
+    """A common root (x, y), with an interval for each coordinate. The multiplicity is 1 where the two curves cross."""
 
     x: arb
     y: arb
@@ -47,7 +47,7 @@ def exact_polynomial(terms: ExactTerms) -> fmpq_mpoly:
 def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
     """Find all real common roots of two polynomials without a common factor, each once.
 
-    Meanwhile the precision of `flint.ctx`, which all threads share, is changed.
+    The search changes the precision of `flint.ctx`, which all threads share, until it ends.
 
     Raises
     ------
@@ -58,14 +58,14 @@ def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
         return []
     along_x, along_y = (_univariate(p.resultant(q, name), axis) for axis, name in enumerate(("y", "x")))
     for shear in _SHEARS:
-        sheared = [_sheared(each, shear) for each in (p, q)]
+        sheared = [_shear(each, shear) for each in (p, q)]
         if any(each.degrees()[1] < each.total_degree() for each in sheared):
             # A leading coefficient vanishes, so that roots at infinity would count.
             continue
         along_s = _univariate(sheared[0].resultant(sheared[1], "y"), 0)
         for precision in _PRECISIONS:
             with ctx.workprec(precision):
-                found = _paired(_real_roots(along_x), _real_roots(along_y), _real_roots(along_s), shear)
+                found = _pair_coordinates(_real_roots(along_x), _real_roots(along_y), _real_roots(along_s), shear)
             if found is not None:
                 return found
     raise UndecidedError(
@@ -74,13 +74,13 @@ def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:
 
 
 def _univariate(polynomial: fmpq_mpoly, axis: int) -> fmpq_poly:
-    """Return a polynomial of one coordinate."""
+    """Convert a polynomial that contains only one coordinate."""
     coefficients = {powers[axis]: c for powers, c in polynomial.to_dict().items()}
     return fmpq_poly([coefficients.get(n, 0) for n in range(max(coefficients, default=0) + 1)])
 
 
-def _sheared(polynomial: fmpq_mpoly, shear: fmpq) -> fmpq_mpoly:
-    """Return the polynomial in s = x + k y, instead of x, and y."""
+def _shear(polynomial: fmpq_mpoly, shear: fmpq) -> fmpq_mpoly:
+    """Replace x in a polynomial by s − k y; the result has s in place of x."""
     x, y = RING.gens()
     return polynomial.compose(x - shear * y, y)
 
@@ -92,10 +92,10 @@ def _real_roots(polynomial: fmpq_poly) -> list[tuple[arb, int]]:
     return sorted(((root.real, multiplicity) for root, multiplicity in roots if root.imag == 0), key=lambda each: each[0].mid())
 
 
-def _paired(
+def _pair_coordinates(
     along_x: list[tuple[arb, int]], along_y: list[tuple[arb, int]], along_s: list[tuple[arb, int]], shear: fmpq
 ) -> list[CommonRoot] | None:
-    """Return for each s the only x and y with x + k y = s; None if there is not exactly one pair for each s."""
+    """Return the only pair (x, y) with x + k y = s for each s; None if an s has no pair or several."""
     places, k, found = [float(x) for x, _ in along_x], arb(shear), []
     for s, multiplicity in along_s:
         pairs = []

@@ -1,8 +1,9 @@
 """All critical points of a polynomial V, found with proof, in rational arithmetic.
 
-A coefficient represents the decimal that Python prints, or the nearest fraction with a small denominator, so that the result is
-the same on every machine and exact for typed formulas. V_x and V_y are divided by their greatest common divisor. The quotients
-have isolated common roots (`find_common_roots`). Where the divisor vanishes, the force vanishes along curves or at single points.
+A coefficient represents the decimal that Python prints, or a fraction of small denominator that rounds to the same double. The
+result is therefore the same on every machine, and exact for typed formulas. V_x and V_y are divided by their greatest common
+divisor. The quotients have isolated common roots (`find_common_roots`). Where the divisor vanishes, the force vanishes along
+curves or at single points.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from engine.expressions.polynomials import Terms
 from engine.systems.forms.common_roots import RING, CommonRoot, exact_polynomial, find_common_roots
 from engine.systems.forms.form import NotIsolatedError
 
-# Denominators of the fractions that are recognised, such as 1/3.
+# Largest denominator of the fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000
 # An arbitrary point; on each curve of zeros, the point nearest to it is searched for.
 _ARBITRARY = fmpq(577, 1009), fmpq(-733, 1013)
-# Bits of the intervals in which signs are determined; all roots are known with more bits.
+# Bits of the intervals in which signs are determined, no fewer than those of the roots.
 _PRECISION = 1024
-# Relative error of the coefficients within which a Hessian may become singular.
+# Relative error of the coefficients; a Hessian that such errors can make singular counts as degenerate.
 _ROUNDING = 2.0**-44
 # The precision is a global variable of FLINT.
 _LOCK = threading.Lock()
@@ -40,8 +41,8 @@ def find_critical_points(terms: Terms) -> np.ndarray:
 
     Returns
     -------
-    (n, 3) x, y and the index of each point, once: 1 for a minimum or a maximum, −1 for a saddle, 0 if it is degenerate, or can
-    become so by rounding errors of the coefficients.
+    (n, 3) x, y and index of each point. The index is 1 for a minimum or a maximum, −1 for a saddle, and 0 for a point that is
+    degenerate, or can become degenerate by rounding errors of the coefficients.
 
     Raises
     ------
@@ -70,9 +71,9 @@ def _rational(c: float) -> Fraction:
 
 
 def _isolated_zeros(polynomial: fmpq_mpoly) -> list[CommonRoot]:
-    """Return the real zeros of a polynomial, which are isolated points; raise NotIsolatedError if there are curves of zeros.
+    """Return the real zeros of a polynomial if all are isolated points; NotIsolatedError for curves of zeros.
 
-    Each curve of zeros has a point nearest to an arbitrary point; the gradient there is parallel to the line between the two.
+    Each curve of zeros has a point nearest to an arbitrary point; the gradient there is parallel to the line between both points.
     """
     zeros = []
     x, y = RING.gens()
@@ -115,7 +116,7 @@ class _Hessian:
     def is_singular_to_rounding(self) -> bool:
         """Return whether rounding errors of the coefficients can change the sign of the eigenvalue λ of smaller magnitude.
 
-        With its unit vector e, a change δ of the matrix changes λ by eᵀ δ e.
+        With the unit eigenvector e of λ, a change δ of the matrix changes λ by eᵀ δ e.
         """
         with ctx.workprec(_PRECISION):
             mean = (self.xx + self.yy) / 2

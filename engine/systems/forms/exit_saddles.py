@@ -2,7 +2,7 @@
 
 From a saddle two lines of steepest descent start, one on each side along its unstable direction. If one ends at the origin and
 the other elsewhere, at another minimum or at infinity, the saddle is an exit of the well. The two lines of steepest ascent run
-along the walls of the channel; above the energy of a maximum at which one of them ends, the channel has no wall there.
+along the walls of the channel; above the energy of a maximum at which one line ends, the channel has no wall there.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ _END_DISTANCE = 1e-4
 # Distance from the origin at which a descent counts as infinite, in units of that of the outermost critical point.
 _FAR = 10.0
 
-# A descent that moves by less in a step is at rest, in units of the distance of the point nearest to the origin.
+# Length of a step below which a descent is at rest, in units of the distance of the critical point nearest to the origin.
 _AT_REST = 1e-13
 
+# Relative error of a step.
 _RELATIVE_ERROR = 1e-9
 # Length of the first step, in units of the distance of the start from the saddle.
 _FIRST_MOVE = 1e-6
@@ -41,7 +42,7 @@ _MOST_STEPS_ALONG_LINE = 5_000
 def leads_out_of_well(
     downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, poles: np.ndarray = NO_POINTS
 ) -> np.ndarray:
-    """Return (n,) whether each critical point (n, 2) is a saddle that leads out of the well or pole at the origin.
+    """Return whether each critical point is a saddle that leads out of the well or pole at the origin, of shape (n,).
 
     Parameters
     ----------
@@ -50,7 +51,8 @@ def leads_out_of_well(
     hessian
         (V_xx, V_xy, V_yy) as a function of x and y.
     points
-        All critical points, including the origin exactly; if it is neither a minimum nor a pole, no point leads out.
+        (n, 2) all critical points, including the origin exactly. If the origin is neither a minimum nor a pole, no point leads
+        out.
     indices
         (n,) −1 for saddles, 1 for minima and maxima.
     poles
@@ -72,7 +74,7 @@ def leads_out_of_well(
 def find_maxima_beside(
     downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, saddles: np.ndarray
 ) -> np.ndarray:
-    """Return (m, n) whether a line of steepest ascent from each of m saddles ends at each critical point, a maximum.
+    """Return whether a line of steepest ascent from each saddle ends at each critical point, of shape (m, n).
 
     Parameters
     ----------
@@ -114,7 +116,7 @@ class _Descent:
     def find_ends(self, saddle: int, side: float) -> set[int]:
         """Return the indices of the critical points where the descent on one side of a saddle ends, −1 for infinity.
 
-        There is more than one if the line ends at another saddle, as happens in symmetric potentials.
+        There are several if the line ends at another saddle, as happens in symmetric potentials.
         """
         pending, visited, ends = [(saddle, side)], {saddle}, set[int]()
         while pending:
@@ -154,7 +156,7 @@ class _Descent:
         others = np.delete(np.arange(len(self.points)), saddle)
         distance = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
         start = self.points[saddle] + side * distance * self.unstable_directions[saddle]
-        # There is no final time, because the flatter its valley, the longer a descent takes.
+        # There is no final time, because a descent in a flat valley can take arbitrarily long.
         tolerances = {"rtol": _RELATIVE_ERROR, "atol": _RELATIVE_ERROR * self.length}
         # The first step chosen by LSODA can be too long for its corrector to converge.
         first_step = _FIRST_MOVE * distance / np.hypot(*flow(0.0, start))
@@ -170,7 +172,7 @@ class _Descent:
             if distances.min() < _END_DISTANCE * self.length:
                 return int(others[np.argmin(distances)])
             moved = float(np.hypot(*(line.y - before)))
-            # An orbit at rest elsewhere is at a critical point that is not in the list, outside the searched region.
+            # A line at rest elsewhere is at a critical point outside the searched region, which is not in the list.
             if np.hypot(*line.y) > self.far or moved < _AT_REST * self.length:
                 return -1
         return None

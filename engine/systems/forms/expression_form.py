@@ -27,12 +27,19 @@ from engine.systems.well_units import nearest_power_of_two
 MOST_CONVOLUTIONS = 120
 """Largest number of products and functions in the graph of gradient and Hessian, which determines their cost and compile time."""
 
-# Number of cached searches for zeros, of some 0.1 kB each, and the share of the operations that a search may take.
-_ZEROS, _EFFORT_FOR_ZEROS = 1024, 0.1
+# Number of cached searches for zeros, of some 0.1 kB each.
+_ZEROS = 1024
+# Share of the usual operations that a search for zeros may take.
+_EFFORT_FOR_ZEROS = 0.1
 
-# Largest order of the rotations that are searched, and the relative error within which V must agree on the circles below.
-_MOST_ROTATIONS, _ROTATION_ERROR = 12, 1e-11
-_RADII, _ANGLES = 2.0 ** np.arange(-6.0, 3.0)[:, None], np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
+# Largest order of the rotations that are searched.
+_MOST_ROTATIONS = 12
+# Relative error within which V must agree at the points below before and after a rotation.
+_ROTATION_ERROR = 1e-11
+# Radii of circles, dimensionless.
+_RADII = 2.0 ** np.arange(-6.0, 3.0)[:, None]
+# Angles of points on a circle, in radians, without any symmetry.
+_ANGLES = np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
 # Values of an expression below this, relative to its curvature, count as 0.
 _ZERO = 1e-14
 # An angle in radians that is not 2π/n.
@@ -43,8 +50,8 @@ _ANY_ROTATION = 1.0
 class ExpressionForm:
     """V as an expression, with numbers in place of its parameters.
 
-    Polynomials that are divisors or arguments of roots and logarithms are expanded about their zero: (x − 1)² + y² instead of
-    x² − 2x + y² + 1, which would lose digits near the zero.
+    Polynomials that are divisors or arguments of roots and logarithms are expanded about their isolated zero: (x − 1)² + y²
+    instead of x² − 2x + y² + 1, which would lose digits near the zero.
     """
 
     expression: Expression
@@ -52,7 +59,7 @@ class ExpressionForm:
     def __post_init__(self) -> None:
         # An expression that is refused because of its size is not searched for zeros.
         if self.limits_refusal() is None:
-            object.__setattr__(self, "expression", replace_parts(self.expression, _from_zeros(self.expression)))
+            object.__setattr__(self, "expression", replace_parts(self.expression, _expansions_about_zeros(self.expression)))
 
     def __repr__(self) -> str:
         return f"ExpressionForm({self.text})"
@@ -86,11 +93,11 @@ class ExpressionForm:
 
     @property
     def has_constant(self) -> bool:
-        """Whether V contains an added number."""
+        """Whether V has a constant term."""
         return isinstance(self.expression, Sum) and self.expression.constant != 0.0
 
     def value(self, x: Any, y: Any) -> Any:
-        """Return V at (x, y); arrays broadcast; NaN where it is not defined."""
+        """Return V at (x, y); arrays broadcast; NaN where V is not defined."""
         return self._evaluate(x, y, self.expression)[0]
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
@@ -113,7 +120,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(-1.0, derivative(self.expression, axis))]))
 
     def find_critical_points(self) -> np.ndarray:
-        """Find the (n, 3) critical points of a region with their indices, see `engine.systems.forms.stationary_points`."""
+        """Find critical points of a region and their indices, of shape (n, 3); see `engine.systems.forms.stationary_points`."""
         return self._critical_points
 
     @cached_property
@@ -121,7 +128,7 @@ class ExpressionForm:
         return find_stationary_points(Derivatives.of(self.expression))
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """Return −sign ∇V, slowed to at most the slope of the quadratic part at `length`, or the mean slope around a centre."""
+        """Return −sign ∇V, slowed below the slope of its quadratic part at `length`, or below the mean slope around a centre."""
         curvature = np.abs(self.hessian(0.0, 0.0)).max()
         around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
         steep = length * curvature if np.isfinite(curvature) else float(np.hypot(*around).mean())
@@ -137,7 +144,7 @@ class ExpressionForm:
 
     @cached_property
     def singular_points(self) -> np.ndarray:
-        """(n, 2) isolated zeros of divisors and of the arguments of roots and logarithms."""
+        """Isolated zeros (n, 2) of divisors and of the arguments of roots and logarithms."""
         found = [_isolated_zeros(base) for base in singular_bases(self.expression)]
         return read_only(np.concatenate([NO_POINTS, *found]))
 
@@ -172,25 +179,28 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(epsilon, self.expression), (1.0, from_terms(changes))]))
 
     def moved(self, x: float, y: float) -> ExpressionForm:
-        """Return V(x + x₀, y + y₀)."""
+        """Return V with the origin moved to (x, y)."""
         axes = (linear_combination([(1.0, axis), (place, number(1.0))]) for axis, place in ((X, x), (Y, y)))
         return ExpressionForm(substitute(self.expression, *axes))
 
     def count_rotations(self) -> int:
-        """Count the rotations that leave V unchanged, by its values on circles; 0 for all."""
+        """Return the largest n of the rotations 2π/n that leave values of V on circles unchanged; 0 for all rotations."""
         if self._is_turned_by(_ANY_ROTATION):
             return 0
         return next(n for n in range(_MOST_ROTATIONS, 0, -1) if n == 1 or self._is_turned_by(2.0 * math.pi / n))
 
     def _is_turned_by(self, angle: float) -> bool:
-        """Return whether a rotation leaves V unchanged where it is defined."""
+        """Return whether a rotation leaves V unchanged where V is defined."""
         one, other = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
         known = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
         error = np.abs(one[known] - other[known]).max(axis=1)
         return bool(known.any() and np.all(error <= _ROTATION_ERROR * np.abs(one[known]).max(axis=1)))
 
     def limits_refusal(self) -> str | None:
-        """Check the size of V before that of its derivatives, which can be a hundred times as large."""
+        """Return a refusal if V or its derivatives are too large.
+
+        V is checked first, because its derivatives can be a hundred times as large.
+        """
         graphs = (
             ("V has", lambda: (self.expression,)),
             ("The first derivatives of V have", lambda: slopes(self.expression)),
@@ -203,13 +213,13 @@ class ExpressionForm:
         return None
 
 
-def _from_zeros(expression: Expression) -> dict[Expression, Expression]:
+def _expansions_about_zeros(expression: Expression) -> dict[Expression, Expression]:
     """Map each singular base that is a polynomial with one isolated zero, not at the origin, to its expansion about that zero."""
     found = {}
     for base in singular_bases(expression):
         terms, zeros = as_terms(base), _isolated_zeros(base)
         if terms is not None and len(zeros) == 1 and zeros.any():
-            found[base] = _shifted(terms, *zeros[0].tolist())
+            found[base] = _expand_about(terms, *zeros[0].tolist())
     return found
 
 
@@ -220,8 +230,8 @@ def as_form(given: Any) -> Form:
     return ExpressionForm(given) if isinstance(given, Expression) else checked_form(given)
 
 
-def _shifted(terms: Terms, a: float, b: float) -> Expression:
-    """Return a polynomial as Σ c (x − a)^k (y − b)^m, without the rounding errors of zero coefficients."""
+def _expand_about(terms: Terms, a: float, b: float) -> Expression:
+    """Return a polynomial as Σ c (x − a)^k (y − b)^m, without coefficients that are rounding errors of zero."""
     moved: dict[tuple[int, int], float] = {}
     for (i, j), c in terms.items():
         for k, m in np.ndindex(i + 1, j + 1):
@@ -234,7 +244,7 @@ def _shifted(terms: Terms, a: float, b: float) -> Expression:
 
 @lru_cache(maxsize=_ZEROS)
 def _isolated_zeros(expression: Expression) -> np.ndarray:
-    """Return (n, 2) the stationary points at which an expression is 0 up to rounding; none if these form a curve."""
+    """Return the stationary points (n, 2) at which an expression is 0 up to rounding; none if they form a curve."""
     terms = as_terms(expression)
     form = ExpressionForm(expression) if terms is None else PolynomialForm(tuple((i, j, c) for (i, j), c in terms.items()))
     try:

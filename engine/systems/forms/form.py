@@ -12,7 +12,7 @@ from engine.foundations.arrays import read_only
 from engine.integrator.source.recurrence import Definition
 
 NO_POINTS = read_only(np.empty((0, 2)))
-"""(0, 2) an empty list of points."""
+"""An empty array of points, of shape (0, 2)."""
 
 
 class NotIsolatedError(ValueError):
@@ -43,7 +43,7 @@ class Form(Protocol):
 
     @property
     def text(self) -> str:
-        """V in plain values for files, with all digits needed to read it back exactly."""
+        """V as text for files, with all digits needed to read V back exactly."""
 
     @property
     def length(self) -> float:
@@ -74,20 +74,21 @@ class Form(Protocol):
         """Return −∂V/∂x (axis 0) or −∂V/∂y (axis 1)."""
 
     def find_critical_points(self) -> np.ndarray:
-        """Find (n, 3) x, y of the points with ∇V = 0, and 1 for a minimum or maximum, −1 for a saddle, 0 for a degenerate point.
+        """Find x, y and index of the points with ∇V = 0, of shape (n, 3).
 
-        The origin, if it is a critical point, is exactly (0, 0).
+        The index is 1 for a minimum or a maximum, −1 for a saddle and 0 for a degenerate point. A point at the origin is exactly
+        (0, 0).
         """
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """Return the flow along −sign ∇V on lines of steepest descent; it is slower where V is steep at large scales."""
+        """Return the flow along −sign ∇V on lines of steepest descent, slowed where V is steeper than at `length`."""
 
     @property
     def singular_points(self) -> np.ndarray:
-        """(n, 2) isolated points at which V is not defined: poles, zeros of the argument of a logarithm or a root."""
+        """Isolated points (n, 2) at which V is not defined: poles, zeros of the argument of a logarithm or a root."""
 
     def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
-        """Return whether V is not defined along a curve between points of any shape; an example is 1/x."""
+        """Return whether V is not defined along a curve, such as 1/x along x = 0, between points in arrays of any shape."""
 
     def plus(self, terms: Terms) -> Form:
         """Return V plus a polynomial {(i, j): c}."""
@@ -99,16 +100,16 @@ class Form(Protocol):
         """See `Potential.with_parameters`."""
 
     def moved(self, x: float, y: float) -> Form:
-        """Return V with the origin moved to its critical point (x, y), where the slope of a polynomial is exactly 0."""
+        """Return V with the origin moved to its critical point (x, y). The slope of a polynomial there becomes exactly 0."""
 
     def count_rotations(self) -> int:
         """See `PotentialReview.rotations`."""
 
     def limits_refusal(self) -> str | None:
-        """Return the reason why V cannot be used, before anything is searched; None if it can be used."""
+        """Return the reason why V cannot be used, without any search; None for a usable V."""
 
 
 def hessian_matrix(form: Form, x: float, y: float) -> np.ndarray:
-    """Return (2, 2) the Hessian matrix of V at one point."""
+    """Return the Hessian matrix of V at one point, of shape (2, 2)."""
     vxx, vxy, vyy = form.hessian(x, y)
     return np.array([[vxx, vxy], [vxy, vyy]])

@@ -16,14 +16,15 @@ from engine.expressions.singularities import has_central_part, oblique_gradients
 Program = tuple[Graph, tuple[float, ...]]
 """A graph and its numbers."""
 
-# A point is proved in a box larger than the searched one by this factor, because it may lie on an edge.
+# Factor by which the box of a proof is larger than the searched box, on whose edge a point may lie.
 _ENLARGED = 1.3
-# A share of the box that covers the rounding errors of Krawczyk's operator.
+# Share of the box that covers the rounding errors of Krawczyk's operator.
 _MARGIN = 1e-9
+# Steps of Newton's method that refine a point after the proof.
 _REFINING_STEPS = 8
 # Cost of operations on intervals in units of a sum or a product.
 _COSTS = {"sin": 10, "cos": 10, "exp": 4, "log": 4, "power": 4}
-# The points lie slightly outside the edges, because a wall may run along an edge.
+# Points of a box in units of half its side, slightly outside the edges, because a wall may run along an edge.
 _SAMPLES = 1.1 * np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
 
 
@@ -52,8 +53,8 @@ class Derivatives:
     def of(cls, expression: Expression) -> Derivatives:
         """Return the derivatives of an expression.
 
-        Along a straight wall the derivative of V is small while those along x and y are large, so that the second direction is
-        along it.
+        The second direction is along a straight wall, because the derivative of V is small there, while those along x and y are
+        large.
         """
         along_x, along_y = slopes(expression)
         oblique = [linear_combination([(b, along_x), (-a, along_y)]) for a, b in oblique_gradients(expression)]
@@ -74,15 +75,15 @@ class Derivatives:
         return sum(_COSTS.get(node.kind, 1) for graph, _ in (self.slopes, self.jacobian) for node in graph.nodes)
 
     def slopes_at(self, points: np.ndarray) -> np.ndarray:
-        """Return (n, 2) the two derivatives at points (n, 2)."""
+        """Return the first two derivatives at points (n, 2), of the same shape."""
         return np.column_stack(evaluate(*self.slopes, *points.T)[1:3])
 
     def jacobian_at(self, points: np.ndarray) -> np.ndarray:
-        """Return (n, 2, 2) their Jacobian matrix at points (n, 2)."""
+        """Return the Jacobian matrices of these derivatives at points (n, 2), of shape (n, 2, 2)."""
         return np.column_stack(evaluate(*self.jacobian, *points.T)).reshape(-1, 2, 2)
 
     def is_singular_in(self, centres: np.ndarray, half: float) -> np.ndarray:
-        """Return (n,) whether a base has both signs, or is not defined, at nine points of each box (n, 2)."""
+        """Return whether a base has both signs, or is not defined, at nine points of each box, of shape (n,)."""
         x, y = np.moveaxis(centres[:, None] + half * _SAMPLES, -1, 0)
         found = np.zeros(len(centres), bool)
         for base in evaluate(*self.bases, x, y):
@@ -90,29 +91,29 @@ class Derivatives:
         return found
 
     def hessian_at(self, points: np.ndarray) -> np.ndarray:
-        """Return (n, 2, 2) the Hessian matrix of V at points (n, 2)."""
+        """Return the Hessian matrices of V at points (n, 2), of shape (n, 2, 2)."""
         vxx, vxy, vyy = evaluate(*self.curvatures, *points.T)
         return np.column_stack([vxx, vxy, vxy, vyy]).reshape(-1, 2, 2)
 
 
 def box(centres: np.ndarray, half: float) -> tuple[Interval, Interval]:
-    """Return the squares with centres (n, 2) and half a side."""
+    """Return the x and y intervals of squares with given centres (n, 2) and half a side."""
     x, y = (Interval(centre - half, centre + half) for centre in centres.T)
     return x, y
 
 
 def excludes_zero(slopes: Enclosure) -> np.ndarray:
-    """Return (n,) whether a derivative vanishes nowhere in a box."""
+    """Return whether at least one derivative vanishes nowhere in each box, of shape (n,)."""
     excluded: np.ndarray = np.any([each.excludes_zero() for each in slopes.values[1:]], axis=0)
     return excluded
 
 
 def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return (m, 2) the points in boxes with one point each, and (n,) whether it is proved that a box has one point or none.
+    """Return the points (m, 2) of boxes with exactly one point, and flags (n,) of boxes proved to have one point or none.
 
     The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h), with the two derivatives f at c, their Jacobian
-    matrix J on the box and Y its inverse at c. All points of the box lie in K. If K lies inside the box, the box has exactly one
-    point.
+    matrix J on the box and Y its inverse at c. All critical points of the box lie in K. If K lies inside the box, the box has
+    exactly one.
     """
     jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGED * half))
     slopes = enclose(*derivatives.slopes, *box(centres, 0.0))
@@ -131,13 +132,13 @@ def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[n
 
 
 def _middle_and_spread(values: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
-    """Return (n, k) the middles of k intervals, and half their lengths."""
+    """Return the middles of k intervals and half their lengths, each of shape (n, k)."""
     low, high = np.column_stack([each.low for each in values]), np.column_stack([each.high for each in values])
     return 0.5 * (low + high), 0.5 * (high - low)
 
 
 def _inverse(matrices: np.ndarray) -> np.ndarray:
-    """Return (n, 2, 2) inverse matrices; products of small entries do not underflow."""
+    """Return inverse matrices, of shape (n, 2, 2); products of small entries do not underflow."""
     size = np.abs(matrices).max(axis=(1, 2))[:, None, None]
     (a, b), (c, d) = np.moveaxis(matrices / size, 0, -1)
     adjugate = np.moveaxis(np.array([[d, -b], [-c, a]]), -1, 0)
@@ -146,14 +147,14 @@ def _inverse(matrices: np.ndarray) -> np.ndarray:
 
 
 def refined(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """Return (n, 2) the points after some steps of Newton's method."""
+    """Improve points (n, 2) by some steps of Newton's method."""
     for _ in range(_REFINING_STEPS):
         points = points - newton_step(derivatives, points)
     return points
 
 
 def newton_step(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """Return (n, 2) the steps of Newton's method from points (n, 2), to be subtracted."""
+    """Return the steps of Newton's method from points (n, 2), which are to be subtracted."""
     with np.errstate(all="ignore"):
         step: np.ndarray = np.einsum("nij,nj->ni", _inverse(derivatives.jacobian_at(points)), derivatives.slopes_at(points))
     return step

@@ -29,9 +29,9 @@ MOST_TERMS = 60
 """Largest number of terms of a potential after expansion."""
 
 COEFFICIENT_RANGE = (1e-9, 1e9)
-"""Smallest and largest magnitude of a coefficient."""
+"""Smallest and largest magnitude of a coefficient of a formula."""
 
-# Smallest coefficient as a share of the largest; a smaller one would have no effect in double precision.
+# Smallest coefficient as a share of the largest; smaller ones have no effect in double precision.
 _SMALLEST_RATIO = 1e-18
 # Coefficients below this share of the largest, after a shift of the origin or among those of one degree, are rounding errors of
 # 0.
@@ -40,7 +40,7 @@ _ZERO_COEFFICIENT = 1e-12
 
 @dataclass(frozen=True)
 class PolynomialForm:
-    """Σ c x^i y^j with `terms` ((i, j, c), …)."""
+    """V = Σ c x^i y^j, given by its `terms` ((i, j, c), …)."""
 
     terms: tuple[tuple[int, int, float], ...]
 
@@ -63,7 +63,7 @@ class PolynomialForm:
     def length(self) -> float:
         """The unit of length in which the largest coefficients of the lowest and the highest degree are about equal.
 
-        It is a power of 2, so that scaling by it is exact.
+        It is a power of 2, so that conversion to this unit is exact.
         """
         largest = {n: c for n, c in largest_coefficients(self.coefficients).items() if n and c}
         if len(largest) < 2:
@@ -116,7 +116,7 @@ class PolynomialForm:
         return PolynomialForm(tuple((i, j, -c) for (i, j), c in self.slopes[axis].items()))
 
     def find_critical_points(self) -> np.ndarray:
-        """Return (n, 3) all of them, see `engine.systems.forms.critical_points`."""
+        """Find all critical points and their indices, of shape (n, 3); see `engine.systems.forms.critical_points`."""
         return find_critical_points(self.coefficients)
 
     def downhill(self, length: float, sign: float) -> Velocity:
@@ -147,7 +147,7 @@ class PolynomialForm:
         return False
 
     def plus(self, terms: Terms) -> PolynomialForm:
-        """Add terms, leaving out those that cancel."""
+        """Add a polynomial; terms that cancel are left out."""
         added = self.coefficients | {powers: self.coefficients.get(powers, 0.0) + c for powers, c in terms.items()}
         return checked_form(tuple((i, j, c) for (i, j), c in added.items() if c))
 
@@ -157,11 +157,11 @@ class PolynomialForm:
         return PolynomialForm(tuple((i, j, c * length ** (i + j) / energy) for i, j, c in self.terms))
 
     def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> PolynomialForm:
-        """Return the terms, each multiplied by its factor."""
+        """Multiply quadratic terms by ω1 and ω2, and higher terms by ε."""
         return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
 
     def moved(self, x: float, y: float) -> PolynomialForm:
-        """Return the terms of the expansion about (x, y), each rounded once, without the linear terms."""
+        """Expand V about (x, y), without linear terms; each coefficient is rounded once."""
         terms: dict[Powers, Fraction] = {}
         for i, j, c in self.terms:
             for k in range(i + 1):
@@ -175,9 +175,9 @@ class PolynomialForm:
         return checked_form(tuple((k, m, c) for (k, m), c in kept.items()))
 
     def count_rotations(self) -> int:
-        """Count the rotations that leave V unchanged; 0 for all.
+        """Return the largest n of the rotations 2π/n that leave V unchanged; 0 for all rotations.
 
-        In V = Σ c z^a z̄^b with z = x + iy a rotation by φ multiplies each term by exp(i (a − b) φ).
+        In V = Σ c z^a z̄^b with z = x + iy, a rotation by φ multiplies each term by exp(i (a − b) φ).
         """
         return math.gcd(*(a - b for a, b in self._complex_terms() if a != b))
 
@@ -189,13 +189,13 @@ class PolynomialForm:
         return {(a, b): c for (a, b), c in terms.items() if abs(c) > _ZERO_COEFFICIENT * largest[a + b]}
 
     def limits_refusal(self) -> str | None:
-        """Check the degree, the number of terms and the size of the coefficients."""
+        """Return a refusal if the degree, the number of terms or the range of coefficients is too large."""
         highest = degree(self.coefficients)
         if highest > HIGHEST_DEGREE:
             return f"V has degree {highest}; the highest allowed degree is {HIGHEST_DEGREE}."
         if len(self.terms) > MOST_TERMS:
             return f"V has {len(self.terms)} terms; at most {MOST_TERMS} are allowed."
-        # Units of the potential itself are used, so that the user's units do not matter.
+        # Coefficients are compared in units of `length`, so that the user's units do not matter.
         sizes = [abs(c) * self.length ** (i + j) for i, j, c in self.terms]
         if sizes and not min(sizes) >= _SMALLEST_RATIO * max(sizes):
             return f"V has a coefficient below {_SMALLEST_RATIO:g} of the largest one, in units in which its well has the size 1."

@@ -1,10 +1,10 @@
 """Critical points of an expression in a stated region, with proof that there are no others.
 
-The region is the disc of 16.2 times the distance of the nearest point from the origin. Newton's method finds this distance from
-starts on rings, two per octave; if it finds no point, the distance is 1. Then the region is divided into boxes. A box is left out
-if intervals prove that a derivative does not vanish in it. It is solved if the operator of Krawczyk (1969, Computing 4, 187)
-proves that it contains exactly one point. Other boxes are divided. Boxes that contain a wall, where V is not defined, are divided
-down to a small size and then left out; boxes around poles are divided down to the smallest size.
+The region is a disc about the origin, with 16.2 times the distance of the nearest point as its radius. Newton's method finds this
+distance from starts on rings, two per octave; if no point is found, the distance is 1. Then the region is divided into boxes. A
+box is left out if intervals prove that a derivative does not vanish in the box. A box is solved if the operator of Krawczyk
+(1969, Computing 4, 187) proves that the box contains exactly one point. Other boxes are divided. Boxes that contain a wall, where
+V is not defined, are divided down to a small size and then left out; boxes around poles are divided down to the smallest size.
 """
 
 from __future__ import annotations
@@ -18,49 +18,63 @@ from engine.systems.forms.interval_newton import Derivatives, box, excludes_zero
 MOST_POINTS = 60
 """Largest number of critical points in the region."""
 
-# Radius of the region in units of the distance of the nearest critical point, and number of operations on boxes, 6e7 per second.
-# A smaller region is tried if V is not defined in the larger one, or if that has too many points or needs too many operations.
+# Regions, tried in turn: radius in units of the distance of the nearest critical point, and largest number of operations on
+# boxes, of which 6e7 take a second. The next region is tried if V is not defined in the whole region, or if this region has
+# too many points or needs too many operations.
 _REGIONS = ((16.2, 30_000_000), (8.1, 10_000_000), (4.1, 5_000_000), (2.1, 5_000_000))
-_OCTAVES, _PER_OCTAVE, _ANGLES = 24, 2, 32
+# The rings of starts have radii from 2^−24 to 2^24.
+_OCTAVES = 24
+# Rings per octave.
+_PER_OCTAVE = 2
+# Starts on a ring.
+_ANGLES = 32
 # A point within this distance of the origin counts as the origin.
 _ZERO = 2.0**-_OCTAVES
 _NEWTON_STEPS = 60
+# Second derivatives up to this are near the subnormal numbers.
 _SUBNORMAL = 1e-290
+# Length of a step of Newton's method below which it has converged, relative to the distance from the origin.
 _CONVERGED = 1e-12
-# Points closer than this, relative to their distance from the origin and to that of the nearest point, are the same.
-_SAME, _SAME_DEGENERATE = 1e-8, 1e-5
+# Points closer than this, relative to their distance from the origin plus that of the nearest point, are the same.
+_SAME = 1e-8
+# The same for degenerate points, whose places are less accurate.
+_SAME_DEGENERATE = 1e-5
 # A Hessian is singular if the ratio of its eigenvalues is at most this. For polynomials the rounding errors of the coefficients
 # decide (`critical_points`); for expressions the error of the second derivatives is not known.
 _SINGULAR_RATIO = 1e-10
 # Coordinates below this, in units of the distance of the nearest point, are rounding errors of zero.
 _ROUNDING = 1e-13
 
-# Initial number of boxes along a side of the region, and the four parts of a box.
+# Initial number of boxes along a side of the region.
 _SIDE = 32
+# Centres of the four parts of a box, in units of half the side of a part.
 _QUARTERS = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
-# Half the side of the smallest boxes on walls, and of the smallest boxes elsewhere, in units of the distance of the nearest
-# point.
-_SMALLEST_ON_WALL, _SMALLEST = 2.0**-9, 2.0**-34
-# Boxes within this many half sides of a box in which V is not defined count as around a pole.
+# Half the side of the smallest boxes on walls, in units of the distance of the nearest point.
+_SMALLEST_ON_WALL = 2.0**-9
+# The same for boxes elsewhere.
+_SMALLEST = 2.0**-34
+# Boxes within this many half sides of a box in which V is not defined are around a pole.
 _AROUND_POLE = 64.0
 # If there are more boxes of one small size than this, the points are tested for a curve.
 _MANY_BOXES = 4_000
-# If the points form a curve, Newton's method converges within this many half sides of a box, to a point where the ratio of the
-# eigenvalues is at most this.
-_NEAR_BOX, _SINGULAR_ON_A_CURVE = 8.0, 1e-6
+# If the points form a curve, Newton's method converges within this many half sides of the centre of a box.
+_NEAR_BOX = 8.0
+# Largest ratio of the eigenvalues of the Hessian at a point of a curve.
+_SINGULAR_ON_A_CURVE = 1e-6
 
 
 def find_stationary_points(derivatives: Derivatives, effort: float = 1.0) -> np.ndarray:
-    """Find (n, 3) the points with ∇V = 0 in the region, each once, with their indices; the origin is exactly (0, 0).
+    """Find x, y and index of each point with ∇V = 0 in the region, of shape (n, 3).
 
-    The index is 1 for a minimum or a maximum, −1 for a saddle and 0 for a point whose Hessian is singular to rounding.
+    A point at the origin is exactly (0, 0). The index is 1 for a minimum or a maximum, −1 for a saddle and 0 for a point whose
+    Hessian is singular to rounding.
 
     Parameters
     ----------
     derivatives
         V and its derivatives.
     effort
-        Factor of the limit on the operations.
+        Factor by which the limits on the operations are multiplied.
 
     Raises
     ------
@@ -86,7 +100,7 @@ def find_stationary_points(derivatives: Derivatives, effort: float = 1.0) -> np.
 
 
 def _find_within(derivatives: Derivatives, near: np.ndarray, nearest: float, factor: float, operations: int) -> np.ndarray:
-    """Find the points within a multiple of the distance of the nearest one; they include those found by Newton's method."""
+    """Find the points within a multiple of the distance of the nearest point; `near` are points found by Newton's method."""
     radius = factor * nearest
     region = f"within r = {radius:.6g}, {factor:g} times the distance of the nearest critical point from the origin"
     undecided = UndecidedError(f"Whether all critical points {region} are known is not decided within the limit on the work.")
@@ -125,13 +139,13 @@ def _find_within(derivatives: Derivatives, near: np.ndarray, nearest: float, fac
 
 
 def _are_near(points: np.ndarray, others: np.ndarray, distance: float | np.ndarray) -> np.ndarray:
-    """Return (n,) whether points (n, 2) are within a distance of any of the points (m, 2)."""
+    """Return whether each point (n, 2) is within a distance of any of the others (m, 2)."""
     near: np.ndarray = np.hypot(*np.moveaxis(points[:, None] - others, -1, 0)).min(axis=1, initial=np.inf) <= distance
     return near
 
 
 def _lie_on_curve(derivatives: Derivatives, centres: np.ndarray, half: float) -> bool:
-    """Return whether most boxes contain a point with a singular Hessian."""
+    """Return whether most boxes are near a point with a singular Hessian."""
     points = refined(derivatives, centres)
     near = (np.abs(points - centres) <= _NEAR_BOX * half).all(axis=1)
     eigenvalues = np.abs(np.linalg.eigvalsh(derivatives.hessian_at(points[near])))
@@ -140,13 +154,13 @@ def _lie_on_curve(derivatives: Derivatives, centres: np.ndarray, half: float) ->
 
 
 def _rings(radii: np.ndarray) -> np.ndarray:
-    """Return (n, 2) points on circles, but not on the axes, where symmetry can lead Newton's method to the same point again."""
+    """Return points (n, 2) on circles, off the axes, where symmetry can lead Newton's method to the same point again."""
     angle = 0.1 + 2.0 * np.pi / _ANGLES * np.arange(_ANGLES)
     return np.stack([np.outer(radii, np.cos(angle)), np.outer(radii, np.sin(angle))], axis=-1).reshape(-1, 2)
 
 
 def _newton(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """Return (n, 2) the points to which Newton's method converges, with repetitions."""
+    """Return the points (n, 2) to which Newton's method converges, with repetitions."""
     roots = [NO_POINTS]
     for _ in range(_NEWTON_STEPS):
         step = newton_step(derivatives, points)
@@ -159,7 +173,7 @@ def _newton(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
 
 
 def _distinct(points: np.ndarray, nearest: float, same: float) -> np.ndarray:
-    """Return each point once; points on the axes and at the origin are exact."""
+    """Remove repetitions, and make points on the axes and at the origin exact."""
     distance = np.hypot(*points.T)
     at_origin = distance < max(_ZERO, same * nearest)
     kept, left = [np.zeros(2)] if at_origin.any() else [], points[~at_origin]
@@ -171,7 +185,7 @@ def _distinct(points: np.ndarray, nearest: float, same: float) -> np.ndarray:
 
 
 def _with_indices(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """Return (n, 3) points (n, 2) with their indices."""
+    """Return points (n, 2) with their indices, of shape (n, 3)."""
     hessians = np.nan_to_num(derivatives.hessian_at(points))
     eigenvalues = np.linalg.eigvalsh(hessians)
     sizes = np.abs(eigenvalues)

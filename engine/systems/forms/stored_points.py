@@ -18,7 +18,7 @@ log = logging.getLogger(__name__)
 
 
 def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np.ndarray:
-    """Return the result of `find`, read from a file if the same package has computed it before on this machine.
+    """Return the result of `find`, read from a file if the same version has computed it before on this machine.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np
 
 @functools.cache
 def _versions() -> tuple[str, ...]:
-    """Return everything else on which the results depend: the modules that find them and the libraries that they use."""
+    """Return all else that determines the points: hashes of the modules that find them, and versions of the libraries."""
     engine = Path(__file__).parents[2]
     files = [*sorted((engine / "expressions").glob("*.py")), *sorted(Path(__file__).parent.glob("*.py"))]
     sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)

@@ -77,9 +77,9 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     text
         A formula in x and y, at most 500 characters: numbers (2, 0.5, 1e-3, ½), x, y, r = √(x² + y²), + − * / ^ ** √, exp(),
         log() or ln(), sin(), cos(), sqrt() and round brackets. "2x²y" is a product; "−", "·" and "×" are operators too; "V ="
-        in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin but e, E and V, or
-        Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py", "vx" and "vy" are
-        refused. Clauses can follow: "; centre the Moon (0, 0) 0.0045", a body with a name, its place and its radius of collision;
+        in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin except e, t, E, V or
+        Greek, with or without one digit, are parameters, at most 8: "a", "k1", "α". "px", "py", "vx" and "vy" are refused.
+        Clauses can follow: "; centre the Moon (0, 0) 0.0045", a body with a name, its place and its radius of collision;
         "; escape 10", an escape radius; "; well (1, 0)", a place near a minimum to which the axes are moved, see
         `Potential.at_minimum`; "; exits L2, L1", names of the exits in channel order; and "; masses (8, 8)", the masses of
         px²/2m₁ + py²/2m₂, which must be equal: for two masses write V(x/√m₁, y/√m₂), whose axes are √m₁ x and √m₂ y.
@@ -97,10 +97,10 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     ------
     ValueError
         A `FormulaError` with the position and the problem, if the text cannot be parsed, has more than 500 characters, more than
-        50 nested brackets or roots, neither x nor y, a function of a number outside its domain, as a polynomial a degree above
-        12, more than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9, or else more than 120 products and
-        functions with the derivatives up to the second. A ValueError, if a parameter is not a letter of the formula, its value is
-        not legal, or V has no minimum to which the axes could be moved.
+        50 nested brackets or roots, neither x nor y, or a function of a number outside its domain; if a polynomial has a degree
+        above 12, more than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9; or if another formula and its
+        derivatives up to the second have more than 120 products and functions. A ValueError, if a parameter is not a letter
+        of the formula, its value is not legal, or V has no minimum to which the axes could be moved.
 
     Examples
     --------
@@ -119,7 +119,7 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     expanded = _Parser(clauses.formula, values).parse()
     if isinstance(expanded, Expression):
         potential = Potential(name or "", expanded)
-        # The next operation on it needs its derivatives.
+        # All further steps need its derivatives.
         if (problem := potential.form.limits_refusal()) is not None:
             raise FormulaError(0, problem)
     else:
@@ -227,7 +227,7 @@ class _Parser:
         while self.token.kind == "sign":
             sign = self._next_token()
             right = self._parse_product()
-            value = self._bounded(sign, add, value, negative(right) if SIGNS[sign.text] == "-" else right)
+            value = self._apply(sign, add, value, negative(right) if SIGNS[sign.text] == "-" else right)
         return value
 
     def _parse_product(self) -> FormulaValue:
@@ -243,7 +243,7 @@ class _Parser:
             divides = OPERATORS.get(operator.text) == "/"
             if divides and constant_of(right) == 0:
                 raise FormulaError(operator.position, "the divisor must not be 0")
-            value = self._bounded(operator, quotient if divides else product, value, right)
+            value = self._apply(operator, quotient if divides else product, value, right)
         return value
 
     def _parse_factor(self) -> FormulaValue:
@@ -264,7 +264,7 @@ class _Parser:
         exponent = self._parse_exponent()
         if start.kind == "name" and start.text == "r":
             exponent = (1 if exponent is None else exponent) * Fraction(1, 2)
-        return value if exponent is None else self._bounded(start, raised, value, exponent)
+        return value if exponent is None else self._apply(start, raised, value, exponent)
 
     def _parse_exponent(self) -> Fraction | None:
         if self.token.kind not in ("power", "superscript"):
@@ -316,12 +316,12 @@ class _Parser:
             start = self.token
             argument = self._parse_nested(token, self._parse_base) if start.kind == "root" else self._parse_base()
             if start.kind == "name" and start.text == "r":
-                argument = self._bounded(token, raised, argument, Fraction(1, 2))
+                argument = self._apply(token, raised, argument, Fraction(1, 2))
         else:
             if self.token.kind != "open":
                 raise FormulaError(self.token.position, f"{token.text} needs its argument in brackets, as in {token.text}(x)")
             argument = self._parse_brackets(self._next_token())
-        return self._bounded(token, NAMES["sqrt" if token.kind == "root" else token.text], argument)
+        return self._apply(token, NAMES["sqrt" if token.kind == "root" else token.text], argument)
 
     def _parse_brackets(self, opening: Token) -> FormulaValue:
         value = self._parse_nested(opening, self._parse_sum)
@@ -342,7 +342,7 @@ class _Parser:
         return value
 
     @staticmethod
-    def _bounded[*Operands](token: Token, operation: Callable[[*Operands], FormulaValue], *operands: *Operands) -> FormulaValue:
+    def _apply[*Operands](token: Token, operation: Callable[[*Operands], FormulaValue], *operands: *Operands) -> FormulaValue:
         """Return the result of an operation; raise an error at the position of `token` if it is too large or not real."""
         try:
             return operation(*operands)
@@ -352,7 +352,7 @@ class _Parser:
             raise FormulaError(token.position, f"{token.text}: its value is not a finite real number") from None
 
     def _next_token(self) -> Token:
-        """Return the current token and move to the next one; the end token remains the current one."""
+        """Return the current token and move to the next one; the end token stays current."""
         token = self.token
         self.index = min(self.index + 1, len(self.tokens) - 1)
         return token

@@ -6,8 +6,9 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
-# Limits that keep exact arithmetic fast.
+# Largest magnitude of a decimal exponent, which keeps exact arithmetic fast.
 _LARGEST_DECIMAL_EXPONENT = 99
+# Most bits of a numerator or denominator, which keep exact arithmetic fast.
 _MOST_NUMBER_BITS = 700
 
 FROM_SUPERSCRIPT = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")

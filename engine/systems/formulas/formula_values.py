@@ -1,7 +1,7 @@
 """Arithmetic of the parser: polynomials with exact coefficients as far as possible, otherwise expressions.
 
 A part of a formula without functions, roots or divisions by x and y is expanded exactly. Its coefficients are rounded once, when
-it becomes part of an expression.
+the part enters an expression.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ LARGEST_EXPONENT = 12
 def add(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     """Return the sum of two values."""
     if isinstance(one, Expression) or isinstance(other, Expression):
-        return _simplified(linear_combination([(1.0, _rounded(one)), (1.0, _rounded(other))]))
+        return _simplify(linear_combination([(1.0, _as_expression(one)), (1.0, _as_expression(other))]))
     return exact_sum(one, other)
 
 
@@ -47,7 +47,7 @@ def negative(value: FormulaValue) -> FormulaValue:
 def product(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     """Return the product of two values."""
     if isinstance(one, Expression) or isinstance(other, Expression):
-        return _simplified(multiply(_rounded(one), _rounded(other)))
+        return _simplify(multiply(_as_expression(one), _as_expression(other)))
     return exact_product(one, other)
 
 
@@ -60,25 +60,25 @@ def quotient(one: FormulaValue, other: FormulaValue) -> FormulaValue:
 
 
 def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
-    """Return a power; ArithmeticError or ValueError if it is a number that is not finite and real."""
+    """Return a power; ArithmeticError or ValueError for a number that is not finite and real."""
     if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
         return exact_power(base, int(exponent))
     if exponent.denominator == 1 and base and not isinstance(base, Expression):
-        return _simplified(_power_of_factors(base, int(exponent)))
-    return _simplified(power(_rounded(base), float(exponent)))
+        return _simplify(_power_of_factors(base, int(exponent)))
+    return _simplify(power(_as_expression(base), float(exponent)))
 
 
 def _power_of_factors(base: ExactTerms, exponent: int) -> Expression:
     """Return a power of a polynomial. Repeated factors are raised separately, so that 1/(x² + 2x + 1) is (x + 1)^−2."""
     constant, factors = exact_polynomial(base).factor_squarefree()
     if all(n == 1 for _, n in factors):
-        return power(_rounded(base), float(exponent))
+        return power(_as_expression(base), float(exponent))
     raised_factors = []
     for factor, n in factors:
         leading = factor.leading_coefficient()
         constant *= leading**n
         terms = {(i, j): _fraction(c / leading) for (i, j), c in factor.to_dict().items()}
-        raised_factors.append(power(_rounded(terms), float(n * exponent)))
+        raised_factors.append(power(_as_expression(terms), float(n * exponent)))
     return multiply(number(float(_fraction(constant) ** exponent)), *raised_factors)
 
 
@@ -88,7 +88,7 @@ def _fraction(value: fmpq) -> Fraction:
 
 def applied(name: str, argument: FormulaValue) -> FormulaValue:
     """Apply a function of `FUNCTIONS`; ArithmeticError or ValueError for a number outside its domain."""
-    return _simplified(apply_function(name, _rounded(argument)))
+    return _simplify(apply_function(name, _as_expression(argument)))
 
 
 def constant_of(value: FormulaValue) -> Fraction | None:
@@ -98,14 +98,14 @@ def constant_of(value: FormulaValue) -> Fraction | None:
     return value.get((0, 0), Fraction(0)) if set(value) <= {(0, 0)} else None
 
 
-def _rounded(value: FormulaValue) -> Expression:
+def _as_expression(value: FormulaValue) -> Expression:
     if isinstance(value, Expression):
         return value
     return from_terms({powers: float(c) for powers, c in value.items()})
 
 
-def _simplified(value: Expression) -> FormulaValue:
-    """Convert an expression that is a number or a polynomial to one with exact coefficients; keep other expressions."""
+def _simplify(value: Expression) -> FormulaValue:
+    """Convert a number or a polynomial to exact coefficients; keep other expressions."""
     number = as_number(value)
     if number is not None:
         return {(0, 0): Fraction(number)} if number else {}

@@ -25,7 +25,7 @@ def write_formula(potential: Potential, digits: int | None = None) -> str:
     potential
         The potential.
     digits
-        Significant digits of the coefficients, 1 to 17, so that `parse_formula` reads each of them with a relative error of at
+        Significant digits of the coefficients, 1 to 17, so that `parse_formula` reads each with a relative error of at
         most 5·10^−digits; None for all digits needed to read exactly the same terms.
 
     Examples

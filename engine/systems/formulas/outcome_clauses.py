@@ -30,7 +30,7 @@ class Part(NamedTuple):
 
 
 class EndClause(NamedTuple):
-    """The clause of an end: its kind, its place and radius by name, and its own name, or ""."""
+    """The clause of an end: its kind, the numbers of its place and radius by key, and its name, which may be empty."""
 
     kind: type[End]
     numbers: Mapping[str, Part]
@@ -47,7 +47,7 @@ class EndClause(NamedTuple):
 
 
 class Clauses(NamedTuple):
-    """The formula of V, the clauses of ends, the place of a well and both masses, or None, and the names of exits."""
+    """The formula of V, the clauses of ends, the place of a well or None, both masses or None, and the names of exits."""
 
     formula: str
     ends: tuple[EndClause, ...]
@@ -57,7 +57,7 @@ class Clauses(NamedTuple):
 
     @property
     def numbers(self) -> tuple[Part, ...]:
-        """Return all places, radii and masses."""
+        """All places, radii and masses."""
         of_ends = (part for end in self.ends for part in end.numbers.values())
         return (*of_ends, *(self.well or ()), *(self.masses or ()))
 
@@ -104,7 +104,7 @@ def _part(match: re.Match[str], key: str, position: int) -> Part:
 
 
 def write_clauses(ends: Iterable[End], exits: Sequence[str], mass: float) -> str:
-    """Write the clauses as text that can be read exactly."""
+    """Return the clauses as text, with all digits of numbers."""
     names = [f"exits {', '.join(exits)}"] if exits else []
     masses = [] if mass == 1.0 else [f"masses ({mass!r}, {mass!r})"]
     return "".join(f"{SEPARATOR} {clause}" for clause in (*(end.text for end in ends), *names, *masses))

@@ -15,7 +15,7 @@ _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
 def read_potential(attributes: Mapping[Any, Any]) -> Potential:
-    """Return the potential of attributes; by default there is no rotation, no end of a kind, no shift, and a mass of 1."""
+    """Return the potential of attributes; missing ones stand for no rotation, no ends, no shift, and a mass of 1."""
     text, name = str(attributes["terms"]), str(attributes["potential"])
     terms = [_TERM.fullmatch(term) for term in text.split("; ")]
     if all(terms):

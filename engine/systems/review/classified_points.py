@@ -22,7 +22,7 @@ class PointKind(Enum):
 
 @dataclass(frozen=True)
 class CriticalPoint:
-    """A point (x, y) with ∇V = 0 and V = `energy`; `channel` is the number of the channel over it, 0 if there is none."""
+    """A point (x, y) with ∇V = 0 and V = `energy`; `channel` is the number of the channel over this point, or 0."""
 
     x: float
     y: float
@@ -64,7 +64,10 @@ def minima_of(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
 
 
 def other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
-    """Return the nearest minimum to which a clause can move the axes of a formula, which may have only one such clause."""
+    """Return the nearest minimum if a clause can move the axes there; otherwise None.
+
+    Axes are moved only once, and not in a rotating frame or with an escape radius.
+    """
     nearest = next(iter(minima_of(points)), None)
     is_moved = any(potential.origin)
     if nearest is None or nearest is point_at_origin(points) or is_moved or potential.rotation:

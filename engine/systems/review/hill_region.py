@@ -8,11 +8,16 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
-# The tests use this share of the saddle energy, because at the saddle energy itself the ridge is too narrow for the grid.
+# Share of the saddle energy that the tests use, because at the saddle energy itself the ridge is too narrow for the grid.
 _ENERGY_SHARE = 0.9
-_ANGLES, _RADII_PER_E_FOLD = 720, 35
-# Smallest and largest radius of the grid, in units of the distances of the nearest and of the outermost critical point.
-_SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-2, 50.0
+# Angles of the grid per turn.
+_ANGLES = 720
+# Radii of the grid per factor of e.
+_RADII_PER_E_FOLD = 35
+# Smallest radius of the grid, in units of the distance of the nearest critical point.
+_SMALLEST_RADIUS = 1e-2
+# Largest radius of the grid, in units of the distance of the outermost critical point.
+_LARGEST_RADIUS = 50.0
 # Openings without a saddle are searched at this multiple of the range of the critical energies.
 _OPEN_ENERGY_FACTOR = 100.0
 _CACHE_SIZE = 256
@@ -38,7 +43,7 @@ def check_closed_well(potential: Potential) -> None:
 
 
 def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bool:
-    """Return whether the region around the origin slightly below `energy` extends far beyond all critical points (n, 2).
+    """Return whether the region around the origin with V slightly below `energy` extends far beyond all critical points (n, 2).
 
     The grid is polar, in coordinates in which V ≈ ½ r² near the origin of a well, so that it resolves narrow wells.
     """
@@ -48,8 +53,8 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
     scaled = np.sqrt(frequencies) * (points @ axes)
     distance = np.hypot(*scaled.T)
     distance = distance[distance > 0.0]
-    alone = np.sqrt(potential.units.energy) if potential.well.is_minimum else potential.units.length
-    low, high = (distance.min(), distance.max()) if distance.size else (alone, alone)
+    default = np.sqrt(potential.units.energy) if potential.well.is_minimum else potential.units.length
+    low, high = (distance.min(), distance.max()) if distance.size else (default, default)
     low, high = _SMALLEST_RADIUS * low, _LARGEST_RADIUS * high
     radius = np.geomspace(low, high, int(_RADII_PER_E_FOLD * np.log(high / low)))[:, None]
     # The angles span two turns, so that the edge of the grid does not split a region.

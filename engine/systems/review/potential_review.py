@@ -22,6 +22,7 @@ from engine.systems.review.refusals import find_points_or_refusal
 from engine.systems.system import System
 from engine.systems.well import EQUAL_ENERGY_TOLERANCE
 
+# Number of cached reviews.
 _CACHE_SIZE = 256
 _MOVED = "x and y count from the well at ({:.6g}, {:.6g}) of the formula."
 
@@ -37,7 +38,7 @@ class PotentialReview(Result):
     formula
         V(x, y) as text, with the values of the parameters.
     critical_points
-        All critical points, sorted by distance from the origin; empty if they form a curve.
+        All critical points, sorted by distance from the origin; empty if unknown, for example because they form a curve.
     escape_energy
         Energy of the lowest exit saddle; infinite if there is none.
     channels
@@ -74,7 +75,7 @@ class PotentialReview(Result):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore: multiples of the escape energy. They are not available for a potential that is refused."""
+        """Energies to explore, derived from the potential; not available for a potential that is refused."""
         return energy_range(self.potential, self.highest_energy, [point.energy for point in self.critical_points])
 
     def provenance(self) -> dict[str, Any]:
@@ -106,7 +107,7 @@ class SystemReview(PotentialReview):
 
     @cached_property
     def energies(self) -> EnergyRange:
-        """Energies to explore: those of the catalogue for its parameter values, otherwise those derived from the potential."""
+        """Energies to explore: from the catalogue for its parameter values, otherwise derived from the potential."""
         known = self.system.entry.energies
         return super().energies if known is None or self.system.parameters else known
 
@@ -126,7 +127,7 @@ def review_potential(potential: Potential) -> PotentialReview:
 
     Returns
     -------
-    The review. A potential that cannot be used does not raise an error, but its review has a `refusal`.
+    The review. For a potential that cannot be used, the review has a `refusal`, and no error is raised.
 
     Examples
     --------
@@ -191,7 +192,7 @@ def review_system(system: System) -> SystemReview:
 def critical_energies(potential: Potential) -> tuple[float, ...]:
     """Return the energies whose equipotentials are the limits of connected regions.
 
-    With exits it is the energy of the lowest exit; with an escape radius, those of all saddles.
+    With exits, this is the energy of the lowest exit; with an escape radius, the energies of all saddles.
     """
     if potential.escape_radius is None:
         return (potential.escape_energy,)

@@ -20,7 +20,7 @@ MOST_CHANNELS = 16
 
 
 def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
-    """Return the critical points, none if unknown, and the reason why the potential cannot be used, or None if it can."""
+    """Return the critical points, empty if unknown, and the reason why the potential cannot be used, or None."""
     refusal = potential.form.limits_refusal() or singularity_refusal(potential)
     if refusal is not None:
         return (), refusal
@@ -43,7 +43,7 @@ def find_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, .
 
 
 def _known_points(potential: Potential) -> tuple[CriticalPoint, ...]:
-    """Return the critical points; none if they are not found for a system with an escape radius, which does not need them."""
+    """Return the critical points; empty if they are not found. A system with an escape radius does not need them."""
     try:
         return classify_points(potential)
     except (UndecidedError, NotIsolatedError):

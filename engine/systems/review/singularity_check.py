@@ -8,8 +8,11 @@ import numpy as np
 
 from engine.systems.potential import Potential
 
-# Points at which V must be defined: radii in units of the escape radius, and angles away from the axes.
-_SCANNED_RADII, _SCANNED_ANGLES = np.geomspace(1e-3, 1.0, 60), 0.1 + np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+# Radii at which V must be defined, in units of the escape radius.
+_SCANNED_RADII = np.geomspace(1e-3, 1.0, 60)
+# Angles at which V must be defined, in radians, away from the axes.
+_SCANNED_ANGLES = 0.1 + np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+# Number of potentials whose check is cached.
 _CACHE_SIZE = 256
 
 
@@ -24,7 +27,10 @@ def check_defined(potential: Potential) -> None:
 
 
 def singularity_refusal(potential: Potential) -> str | None:
-    """Return the reason if orbits can reach a point where V is not defined; points beyond the exits are not reached."""
+    """Return a sentence if orbits can reach a point where V is not defined; otherwise None.
+
+    Orbits do not reach points beyond the exits.
+    """
     if potential.escape_radius is None:
         return _origin_refusal(potential)
     for x, y in potential.form.singular_points.tolist():
@@ -41,7 +47,7 @@ def singularity_refusal(potential: Potential) -> str | None:
 
 
 def _origin_refusal(potential: Potential) -> str | None:
-    """Return the reason if, without an escape radius, there is neither a smooth well nor a centre at the origin."""
+    """Return a sentence if there is neither a smooth well nor a centre at the origin; otherwise None."""
     values = [potential.value(0.0, 0.0), *potential.gradient(0.0, 0.0), *potential.hessian(0.0, 0.0)]
     if np.isfinite(values).all() or _is_beyond(potential, np.zeros(1), np.zeros(1))[0]:
         return None
