@@ -41,7 +41,7 @@ SECTION = Plane.X_PX
 
 
 def checked_slice(value: Any) -> Slice:
-    """Return a slice, given as one or by the title or the key of a named slice: "(x, px)" or "x_px"."""
+    """Return a slice, given as a `Slice` or as the title or the key of a named slice: "(x, px)" or "x_px"."""
     if isinstance(value, Slice):
         return next((plane for plane in Plane if _fields(plane) == _fields(value)), value)
     for plane in Plane if isinstance(value, str) else ():
@@ -73,7 +73,8 @@ def start_states(
 
     Returns
     -------
-    (n, 4), n = 1 for numbers: x, y, px, py; the momentum determined by the energy is NaN where the start is forbidden.
+    x, y, px, py of each start, of shape (n, 4), n = 1 for numbers. Where a start is forbidden, the momentum determined by the
+    energy is NaN.
 
     Raises
     ------
