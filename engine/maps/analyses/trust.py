@@ -111,7 +111,7 @@ def compute_trust(
 ) -> TrustMap:
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
-    A pixel is tested if one of its eight neighbours has another fate, or escapes like it but with another number of crossings,
+    A pixel is tested if one of its eight neighbours has another fate, or escapes likewise but after another number of crossings,
     and also if the pixel is bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different
     directions by 1e-11 length units of the well, but at most a hundredth of a pixel; the second time with ten times the
     tolerance. The pixel is doubtful if in either rerun its fate changes, or its crossings before the escape, or its escape time

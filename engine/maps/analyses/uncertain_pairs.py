@@ -67,10 +67,10 @@ def compute_uncertainty_exponent(
     A start is ε-uncertain if a start at distance ε has a different fate. The share of such starts falls as f(ε) ~ ε^α, and the
     basin boundary has dimension 2 − α in the plane of initial conditions (Grebogi, McDonald, Ott & Yorke 1983, Phys. Lett. A 99,
     415; McDonald, Grebogi, Ott & Yorke 1985, Physica D 17, 125). Each ε has its own random pairs: the first start is uniform over
-    the interior of the window, and the second lies at distance ε in a random direction of the plane. On (x, h) both have the
     the interior of the window, and the second lies at distance ε in a random direction of the plane. On (x, h) both starts have
     the energy of a row of pixels, and the second start is displaced along x. Pairs with a forbidden or outside start are drawn
     again.
+
     Orbits are integrated to t_max, at most 1e4 time units of the well, and being inside at that time is a fate like a channel.
     In the result, `one_inside` and `both_inside` count the pairs that this choice can affect. The number of pairs in which both
     orbits escape is ``pairs − one_inside − both_inside``; ``uncertain − one_inside`` of these pairs are uncertain.
