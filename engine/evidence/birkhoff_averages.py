@@ -34,7 +34,7 @@ Of 1975 orbits on five maps that escape after t = 1000, none exceeded 6.1 digits
 """
 
 REGULAR_DIGITS = 7.0
-"""Averages over both halves of an orbit agree as on a torus from this many digits on, see `benchmarks.verdicts`."""
+"""An orbit is regular if averages over its halves agree to this many digits or more, see `benchmarks.verdicts`."""
 
 # Shape parameter β of the Kaiser window. A larger β gives smaller weights at the ends but needs a longer window.
 _KAISER_SHAPE = 20.0

@@ -12,11 +12,11 @@ from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9
-# Beyond the ends of an exit, straight lines are sampled from this |s| − 1,
+# Beyond the ends of an exit, straight lines are sampled. Smallest |s| − 1 of the samples.
 _FIRST_BEYOND = 1e-3
-# up to this multiple of the distance of the saddle from the origin,
+# Length of these lines, in units of the distance of the saddle from the origin or of its half width if this is larger.
 _FARTHEST_BEYOND = 2.0
-# at this number of points.
+# Number of samples along a line.
 _SAMPLES_BEYOND = 400
 # Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
 _CLOSED_HALF_WIDTH = 1e-3

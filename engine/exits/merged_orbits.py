@@ -16,7 +16,7 @@ from engine.integrator.kernels.dense_output import trace_pieces
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Places where the lines of starts cross the line between the outermost saddles, as shares of the latter's length.
+# Places where the lines of starts cross the line between the outermost saddles, as shares of the distance of these saddles.
 _LINES = (0.5, 0.25, 0.75, 0.0, 1.0)
 # Points of an exit's path from which orbits leave.
 _POINTS = np.arange(5, 100, 10)

@@ -53,7 +53,7 @@ class MapRun:
     If two pixels are mirror images of each other, only the first is computed.
 
     The results up to a time do not depend on t_max, so a map with a smaller t_max is the beginning of this map. Stages end at
-    fixed times. From `FIRST_TEST_TIME` on, the orbits that are still inside at these times are tested for evidence.
+    fixed times. At these times, starting with `FIRST_TEST_TIME`, orbits that are still inside are tested for evidence.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class MapRun:
         self._batch.reopen(continued)
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each integrates orbits to a horizon, or tests the orbits that are inside at one."""
+        """Yield the stages, see `Staged`; each integrates orbits to a horizon, or looks for evidence there."""
         changed = partial(on_change, False)
         self._find_starts(execution)
         for pixels, stride, horizon in self._targets():

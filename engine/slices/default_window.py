@@ -35,10 +35,10 @@ _LARGEST_ASPECT = 4.0
 _SHOWN_MOMENTA = 0.9
 # Points along each side of the positions whose momenta are shown. Lines are searched at four times as many, rays at half as many.
 _SCAN_POINTS = 801
-# The interior is searched up to this many times the distance of the nearest exit saddle from the origin. While the interior
-# reaches further, this radius is doubled,
+# First radius of the search for the interior, in units of the distance of the nearest exit saddle from the origin. It is doubled
+# while the interior reaches further.
 _SEARCH_LENGTHS = 4.0
-# until it is this many times the distance of the outermost exit saddle.
+# Doubling ends at the latest when the radius exceeds this many times the distance of the outermost exit saddle.
 _SEARCH_SADDLE_DISTANCES = 2.0
 # For systems whose saddles are not exits, the radius in units of the distance of the outermost body or critical point.
 _SEARCH_BODY_DISTANCES = 2.5
@@ -300,7 +300,7 @@ def _search_radius(potential: Potential, energy: float) -> float:
 
 
 def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return x, y and whether points on rays from the origin are inside, (rays, n). In a well, each ray ends where it leaves."""
+    """Return x, y and whether points on rays from the origin are inside, (rays, n). In a well, a ray ends where it leaves."""
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
     radius = np.linspace(0.0, farthest, _SCAN_POINTS // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
@@ -317,7 +317,7 @@ def _shown_radius(potential: Potential, escape_radius: float) -> float:
 
 
 def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return x and y of points inside on rays from the origin, and of the exits, in the (x, y) plane, each of shape (n,)."""
+    """Return x and y of the points of rays from the origin that are inside, and of the exits, each of shape (n,)."""
     x, y, inside = _interior_on_rays(potential, energy, _search_radius(potential, energy))
     x, y = x[inside], y[inside]
     if x.size == 0 or not x.min() < x.max():

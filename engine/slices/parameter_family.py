@@ -250,7 +250,7 @@ def find_members(axis: ParameterAxis) -> None:
 
 
 def _match(first: Potential, last: Potential) -> list[int] | None:
-    """Return the index in the last potential of each exit saddle of the first, continued; None unless they match one to one."""
+    """Return the index of the last potential's saddle for each exit saddle of the first; None unless they match one to one."""
     if first.channels != last.channels:
         return None
     found = [_nearest(last.saddles, place) for place in _continue(last, first.saddles)]

@@ -31,7 +31,7 @@ class Slice:
     Parameters
     ----------
     abscissa, ordinate
-        The axes: two different coordinates, `Direction`s or one `ParameterAxis`.
+        The two axes, which must differ: coordinates, `Direction`s, and at most one `ParameterAxis`.
     solved
         The coordinate that the energy determines: a momentum, or the speed if an angle is used. None, the default, stands for the
         speed if an angle is used, px if py is used, and otherwise py.
@@ -266,7 +266,7 @@ class Slice:
     def mirrored_axes(self) -> tuple[bool, bool] | None:
         """For each axis, whether its sign changes under x → −x; None if the mirror image is a different slice."""
         parities = [axis.parity for axis in self.axes]
-        # A coordinate that x → −x turns into its opposite does not change if it is 0.
+        # A coordinate whose sign x → −x changes is its own mirror image if it is 0.
         held = [coordinate.parity for coordinate, value in self.fixed if value or coordinate.parity != -1]
         if None in parities or any(parity != 1 for parity in (self.decided.parity, *held)):
             return None

@@ -25,7 +25,7 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
     start = _coordinates(plane, x, ordinate)
     with np.errstate(over="ignore", invalid="ignore"):
         # An overflow far from the origin gives a forbidden start.
-        # For the mass times H, the kinetic energy is ½(px² + py²).
+        # In the mass times H, the kinetic energy is ½(px² + py²).
         value = potential.mass * potential.value(start[Coordinate.X], start[Coordinate.Y])
         energies = potential.mass * plane.energies(energy, x, ordinate)
         found = kernel.decided_momentum(energies, value, _held_momentum(plane, start), plane.sign)
@@ -41,7 +41,7 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
 
 
 def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-    """Return the lowest energy of a start; with an axis h, relative to the h of each point: positive where it is forbidden."""
+    """Return the lowest energy of a start; with an axis h, relative to the h of its point: positive if forbidden."""
     if plane.parameter is not None:
         required = np.full(np.shape(x), np.inf)
         for here, line, each in _lines(plane, x, ordinate):

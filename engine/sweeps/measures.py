@@ -97,9 +97,9 @@ _ALL = (
         ),
         curve=Curve("percentage of starts"),
         other_variables=_describe_shares,
-        help="The shares of the interior starts that escape through each exit, and of the starts that stay, against the energy or "
-        "a parameter. Just above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one after "
-        "the other as the energy rises.",
+        help="The shares of the interior starts that escape through each exit, and of the starts that stay, against the energy "
+        "or a parameter. Just above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one "
+        "after the other as the energy rises.",
     ),
     Measure(
         "escape_times", "Escape time", "how long orbits stay",

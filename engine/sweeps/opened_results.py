@@ -30,9 +30,9 @@ _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     Sweep: Sweep,
     Potential: lambda dataset: read_potential(dataset.attrs),
 }
-# Variable of the stores of earlier versions that marks finished energies. Such stores are opened as plain datasets,
+# Variable of stores of earlier versions that marks finished energies. Such stores are opened as plain datasets.
 _FORMER_FLAGS = "done"
-# and so are files with results of this former kind.
+# Former kind of result. Its files are opened as plain datasets.
 _FORMER_CURVES = "Curves"
 # File by which the folder of a Zarr store is recognised.
 _ZARR = "zarr.json"

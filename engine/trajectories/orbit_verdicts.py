@@ -139,11 +139,11 @@ class OrbitVerdict(OrbitResult):
 def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerdict:
     """Judge an orbit by its energy, its outcome and its chaos indicators.
 
-    A bounded orbit is regular or chaotic if an indicator concludes so and no indicator concludes the opposite. Otherwise it shows
-    no sign of chaos if this is the conclusion from all deviation vectors and no indicator contradicts; if not, it is undecided.
-    The orbit is bounded for ever if its energy is below every saddle. Birkhoff averages that agree as on an invariant torus are
-    evidence that it is bounded for ever in a well at rest (`Potential.tori_are_evidence`), unless another indicator shows chaos.
-    An escaping orbit is chaotic while inside if an indicator says so.
+    A bounded orbit is regular or chaotic if an indicator concludes so and no indicator concludes the opposite. If no indicator
+    concludes either, the orbit shows no sign of chaos if all indicators of deviation vectors say so. In all other cases it is
+    undecided. The orbit is bounded for ever if its energy is below every saddle. Birkhoff averages that agree as on an invariant
+    torus are evidence that it is bounded for ever in a well at rest (`Potential.tori_are_evidence`), unless another indicator
+    shows chaos. An escaping orbit is chaotic while inside if an indicator says so.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ class PointSpacing:
         return spacing
 
     def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
-        """Yield the lines of a piece within the window, each (m, 2), without points that lie between their neighbours."""
+        """Yield the lines of a piece in the window, each (m, 2), without points close to the line between their neighbours."""
         import shapely
 
         line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
@@ -103,7 +103,7 @@ def _subdivide(phases: np.ndarray, width: np.ndarray, parts: np.ndarray) -> tupl
 
 
 def _affordable(parts: np.ndarray, width: np.ndarray, min_width: float, max_orbits: int) -> np.ndarray:
-    """Limit `parts` (n,), so that no part is narrower than `min_width` and, widest first, at most `max_orbits` are added."""
+    """Limit `parts` (n,) to widths of `min_width` or more and to `max_orbits` new orbits, the widest intervals first."""
     parts = np.minimum(parts, np.maximum(width / min_width, 1.0)).astype(int)
     widest_first = np.argsort(-width, kind="stable")
     parts[widest_first[np.cumsum(parts[widest_first] - 1) > max_orbits]] = 1

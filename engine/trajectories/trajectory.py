@@ -29,11 +29,11 @@ from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff
 MAX_ORBIT_TIME = 1e7
 """Largest t_max of `integrate_orbit`, for which its samples take 3 GB."""
 
-# Interval between samples, in units of the well,
+# Interval between samples, in units of the well, unless this gives too few or too many samples.
 _SAMPLE_INTERVAL = 0.02
-# as long as there are at least this many samples
+# Smallest number of intervals between samples.
 _MIN_SAMPLES = 400
-# and at most this many or one for each step.
+# Largest number of intervals between samples, unless there are more integrator steps.
 _MAX_SAMPLES = 500_000
 
 
@@ -72,7 +72,7 @@ class Orbit(OrbitResult):
     potential
         The `Potential`; None for an orbit that was not integrated here, whose path cannot be drawn.
     exits_unknown
-        The reason why the exits over saddles are not known at this energy; empty if they are known. If it is given, no fate is an
+        The reason why the exits over saddles are not known at this energy; empty if they are known. With a reason, no fate is an
         exit, and `Fate.BOUNDED` only means that the orbit has no other outcome by t_max.
     """
 

@@ -223,7 +223,7 @@ class TrustTest:
         return curves, reruns
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each integrates the undecided reruns to a horizon, or tests those inside at one."""
+        """Yield the stages, see `Staged`; each integrates the undecided reruns to a horizon, or looks for evidence there."""
         reached = 0.0
         for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max):
             if not self._undecided.size:

@@ -30,9 +30,9 @@ MIN_SEPARATION = 1e-10
 WORK = 1.5e8
 """Default limit of the total integration time of all orbits, in units of the well: a few seconds of computation."""
 
-# In a deep zoom the smallest separation is this many decades below a pixel,
+# In a deep zoom, the smallest separation is this many decades below a pixel.
 _DECADES_BELOW_PIXEL = 4.0
-# but not below this, in units of the well: a few hundred units in the last place of coordinates of order 1.
+# Lower limit of all separations, in units of the well: a few hundred units in the last place of coordinates of order 1.
 _MIN_ZOOM_SEPARATION = 1e-13
 _MAX_SEPARATIONS = 100
 _MAX_PAIRS = 100_000
