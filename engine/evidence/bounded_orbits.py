@@ -125,7 +125,7 @@ class BoundedOrbitSearch:
                 yield from ((window, tested) for tested in self._most_promising(promising, duration))
 
     def _lattices(self, candidates: np.ndarray) -> Iterator[np.ndarray]:
-        """Yield groups of candidates, first a coarse lattice, because the curves of a few orbits can enclose many others."""
+        """Yield groups of candidates, a coarse lattice first, because the curves of a few orbits can enclose many others."""
         for stride in _LATTICE_STRIDES:
             on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
             tested = np.flatnonzero(self._without_evidence() & candidates & on_lattice)
@@ -173,7 +173,7 @@ class BoundedOrbitSearch:
         self.evidence[self._separated.all(axis=1) & self._without_evidence()] = Evidence.ENCLOSED
 
     def _separate_in_parallel(self, barriers: list[_Barrier], orbits: np.ndarray) -> None:
-        # Prepared polygons must not be used by two threads at once: each task unpickles its own.
+        # Prepared polygons must not be used by two threads at once: each task unpickles its own copies.
         pickled = pickle.dumps(barriers)
 
         def select(part: np.ndarray) -> tuple[Any, ...]:

@@ -21,7 +21,7 @@ from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
 # Lengths along the channel, in units of the distance of the saddle from the origin.
-# A trial orbit farther from the saddle than this has left it.
+# A trial orbit farther from the saddle than this has left the saddle.
 _LARGEST_EXCURSION = 1.0
 # First step of the bracket search.
 _FIRST_STRIDE = 0.01
@@ -255,7 +255,7 @@ class _Trials:
         return float(self._kernels.shoot(u, *self._arguments)[0])
 
     def solve(self, bracket: tuple[float, float], rest: float) -> _Shot | None:
-        """Return the orbit that starts between two offsets and comes to rest; None if it does not."""
+        """Return the orbit that starts between two offsets and comes to rest; None if no orbit does."""
         u = find_root(self.outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
         if not (np.isfinite(half_period) and abs(velocity) < rest):

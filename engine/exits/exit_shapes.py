@@ -14,7 +14,7 @@ from engine.systems.potential import Potential
 _LARGEST_FIT_ERROR = 1e-9
 # Beyond the ends of an exit, straight lines are sampled. Smallest |s| − 1 of the samples.
 _FIRST_BEYOND = 1e-3
-# Length of these lines, in units of the distance of the saddle from the origin or of its half width if this is larger.
+# Length of these lines, in units of the distance of the saddle from the origin or, if larger, of the half width of the exit.
 _FARTHEST_BEYOND = 2.0
 # Number of samples along a line.
 _SAMPLES_BEYOND = 400

@@ -17,7 +17,7 @@ _LARGEST_LIMIT = 1000
 
 
 class JobSubmitter(Protocol):
-    """Accepts requests: `Jobs` itself, or a `JobClient` of it."""
+    """Accepts requests: `Jobs` or a `JobClient`."""
 
     def request[Result](
         self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]

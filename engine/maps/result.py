@@ -51,7 +51,7 @@ type MapLike = EscapeMap | xr.Dataset
 """A map as measures and analyses accept it: an `EscapeMap`, or its dataset, such as a map of a sweep."""
 
 NOTED_SHARE = 0.01
-"""A map reports the share of interior pixels that double precision does not support if it is at least this."""
+"""A map reports the share of interior pixels that double precision does not support if the share is at least this."""
 
 
 @with_former_fields

@@ -94,7 +94,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     The image is tiled with boxes from its first row and column. A strip at the far edges that is narrower than a box is left out,
     and so are boxes with a pixel that does not count. With p_ij the share of label j in box i,
 
-        S_i = Σ_j p_ij ln(1/p_ij),   S_b = mean of all S_i,   S_bb = mean of those S_i with more than one label
+        S_i = Σ_j p_ij ln(1/p_ij),   S_b = mean of all S_i,   S_bb = mean of the S_i of boxes with several labels
 
     (Daza, Wagemakers, Georgeot, Guéry-Odelin & Sanjuán 2016, Sci. Rep. 6, 31416; leaving out boxes is our choice). Entropies for
     different box sizes or pixel spacings are not comparable.

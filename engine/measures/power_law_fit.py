@@ -143,7 +143,7 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
 
     A and α maximise the binomial likelihood of k uncertain pairs out of n at each ε (for the law see Grebogi, McDonald, Ott &
     Yorke 1983, Phys. Lett. A 99, 415). The law holds for small ε. The largest separation is therefore left out as long as the
-    shares bend (`MAX_BEND`) or scatter too much (`MIN_PROBABILITY`), as they do where they saturate. From the first straight
+    shares bend (`MAX_BEND`) or scatter too much (`MIN_PROBABILITY`), as shares do where they saturate. From the first straight
     range, the separations within a factor of `TRANSITION_FACTOR` of its largest separation are also left out. Separations with
     too few pairs (`MIN_EXPECTED_PAIRS`) never count. There is no exponent if too few separations remain (`MIN_SEPARATIONS`,
     `MIN_DECADES`).

@@ -113,7 +113,7 @@ class OrbitBatch:
         *,
         execution: Execution = DEFAULT_EXECUTION,
     ) -> np.ndarray:
-        """Set `outside` and `fate` of those starts among `which` (indices) that lie outside the exits.
+        """Set `outside` and `fate` of the starts among `which` (indices) that lie outside the exits.
 
         Returns the indices that were tested: all, unless the test was cancelled.
         """
@@ -153,7 +153,7 @@ class OrbitBatch:
         self.evidence[images] = np.where(on_evidence, Evidence.MIRRORED, Evidence.NONE)
 
     def reopen(self, which: np.ndarray) -> None:
-        """Make the orbits `which` (indices), which are bounded or undecided, undecided, so that they can be continued."""
+        """Make bounded orbits among `which` (indices) undecided again, so that they can be continued."""
         self.fate[which], self.evidence[which] = Fate.NOT_COMPUTED, Evidence.NONE
         self.last_crossings[which] = 0
 

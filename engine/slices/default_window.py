@@ -29,14 +29,14 @@ from engine.systems.well_units import WellUnits
 
 # Margin of the default window on each side, as a share of the size of the interior.
 _MARGIN = 0.03
-# If the sides of an interior, in units of the well, differ by more than this factor, their scales differ.
+# If the sides of an interior, in units of the well, differ by more than this factor, each side of the window has its own scale.
 _LARGEST_ASPECT = 4.0
 # For a system with gaps, near which momenta are unbounded, the window shows the momenta of this share of points between edges.
 _SHOWN_MOMENTA = 0.9
 # Points along each side of the positions whose momenta are shown. Lines are searched at four times as many, rays at half as many.
 _SCAN_POINTS = 801
-# First radius of the search for the interior, in units of the distance of the nearest exit saddle from the origin. It is doubled
-# while the interior reaches further.
+# First radius of the search for the interior, in units of the distance of the nearest exit saddle from the origin. The radius
+# is doubled while the interior reaches further.
 _SEARCH_LENGTHS = 4.0
 # Doubling ends at the latest when the radius exceeds this many times the distance of the outermost exit saddle.
 _SEARCH_SADDLE_DISTANCES = 2.0

@@ -77,8 +77,8 @@ class Member:
 class ParameterFamily:
     """Finds the potentials along one axis and numbers their outcomes. `parameter_family` returns the one family of an axis.
 
-    Outcomes keep their numbers at the system's own value of the parameter. Exits that do not exist there get the next numbers in
-    the order in which they appear, first towards higher and then towards lower values.
+    Outcomes keep the numbers that they have at the system's own value of the parameter. Exits that do not exist there get the
+    next numbers in the order in which they appear, first towards higher and then towards lower values.
 
     Parameters
     ----------

@@ -16,9 +16,8 @@ from engine.systems.potential import Potential
 class Plane(Slice, Enum):
     """The named slices. Coordinates that are not axes are 0, and the momentum determined by the energy is positive.
 
-    The first three are those of Zotos (2014), the fourth is the section of Hénon & Heiles (1964), Astron. J. 69, 73. The last
-    one, with orbits launched at right angles to the radius, is that of Aguirre, Vallejo & Sanjuán (2001), Phys. Rev. E 64,
-    066208.
+    The first three slices are from Zotos (2014), the fourth is the section of Hénon & Heiles (1964), Astron. J. 69, 73. In the
+    last slice, of Aguirre, Vallejo & Sanjuán (2001), Phys. Rev. E 64, 066208, orbits start at right angles to the radius.
     """
 
     X_Y = Coordinate.X, Coordinate.Y

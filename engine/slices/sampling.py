@@ -40,7 +40,7 @@ def sample_starts(
 ) -> np.ndarray:
     """Draw random starts inside all exits.
 
-    On the energy surface they have the microcanonical measure δ(H − h) dx dy dpx dpy: with two degrees of freedom, the positions
+    On the energy surface, starts have the microcanonical measure δ(H − h) dx dy dpx dpy: with two degrees of freedom, positions
     are uniform where V ≤ h, and the directions of the velocity are uniform. On a slice, starts are uniform in both axes.
 
     Parameters

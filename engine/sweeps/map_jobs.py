@@ -52,7 +52,7 @@ def sweep_job(spec: SweepSpec) -> Job[Sweep]:
 
 
 def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
-    """Return the cached map that differs by a t_max that is smaller by the least amount; None unless it can be resumed."""
+    """Return the cached map with the largest t_max up to that of the job; None unless it can be resumed."""
     (spec,) = job.arguments
     maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
     # Energies are compared first, because this is cheap and there may be thousands of maps.

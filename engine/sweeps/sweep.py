@@ -237,7 +237,7 @@ def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, obje
 
 
 def _next_value(spec: SweepSpec, found: xr.Dataset, order: Sequence[float]) -> float | None:
-    """Return the next value: one of the request, then one in the interval where shares change most; None at the end."""
+    """Return the next value: of the request, then in the middle of where shares change most; None at the end."""
     values = found[spec.name].values
     missing = (value for value in order if value not in values)
     if (first := next(missing, None)) is not None:

@@ -111,7 +111,7 @@ class EscapeFlux(RecordedResult):
 
 @checks_types(potential=Potential)
 def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
-    """Compute the flux through all open exits and the volume of the energy surface inside them.
+    """Compute the flux through all open exits and the volume of the energy surface inside the exits.
 
     The flux through an exit is the action ∮ p·dq of its Lyapunov orbit, the smallest of all curves that close the exit (Waalkens,
     Burbanks & Wiggins 2005, J. Phys. A 38, L759; for two degrees of freedom MacKay 1990, Phys. Lett. A 145, 425). With two

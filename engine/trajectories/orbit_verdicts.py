@@ -64,7 +64,7 @@ class OrbitVerdict(OrbitResult):
 
     @property
     def is_bounded_for_ever(self) -> bool:
-        """Whether its energy proves that the orbit can never escape."""
+        """Whether the energy proves that the orbit can never escape."""
         return self.evidence is Evidence.CLOSED
 
     @property

@@ -13,7 +13,7 @@ from engine.slices.window import Window
 SPACING = 1 / 200
 """Largest distance between neighbouring points as a share of the window's side, before straight parts are thinned."""
 
-# Curves in a window extend beyond its edges by this share of its sides.
+# Curves in a window extend beyond the window's edges by this share of its sides.
 _WINDOW_MARGIN = 0.1
 
 # Largest distance of a point from the chord of its neighbours, as a share of the spacing.

@@ -136,8 +136,8 @@ def find_stable_manifolds(
 
     On one side of an arc of image n, orbits leave through its channel after exactly n − 1 upward crossings of y = 0, the start
     not counted. On the other side they turn back before that exit, and leave later or never. Where the Lyapunov orbit itself
-    crosses y = 0 (channel 1 of Case II), orbits cross it more often the longer they stay near that orbit; images are then
-    numbered along the curve, which starts at the orbit's own point, and the number of crossings is not fixed.
+    crosses y = 0 (channel 1 of Case II), orbits that stay near it for longer cross y = 0 more often. In this case, images are
+    numbered along the curve, which starts at the Lyapunov orbit's own point, and the number of crossings is not fixed.
 
     Parameters
     ----------

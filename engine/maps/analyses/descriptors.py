@@ -93,7 +93,7 @@ def compute_lagrangian_descriptor(
     """Integrate M = ``∫ |v|^p dt`` along the orbit of each start of a complete map, over the time τ.
 
     ``|v|`` is the speed √(ẋ² + ẏ²) in the frame of the potential, which may rotate. M changes rapidly across the stable manifolds
-    of unstable periodic orbits if it is integrated forward in time, and across the unstable manifolds if backward.
+    of unstable periodic orbits if integrated forward in time, and across the unstable manifolds if integrated backward.
 
     An integral ends where its orbit crosses an exit, collides or passes the escape radius. Beyond an exit the motion is
     unbounded: in most wells orbits reach infinity within a finite time, so the integral diverges, and their motion there gives no

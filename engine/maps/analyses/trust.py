@@ -261,8 +261,8 @@ class TrustTest:
     def _find_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
         """Mark as bounded reruns of pixels that are bounded on the map, if their states at t = `reached` give evidence.
 
-        The evidence of the first rerun holds for both, because on a regular orbit their difference is far below the digits that
-        are compared.
+        The evidence of the first rerun holds for both reruns, because on a regular orbit their difference is far below the digits
+        that are compared.
         """
         first, undecided = self._reruns[0], self._undecided
         tested = undecided[(first.fate[undecided] == Fate.BOUNDED) & ~first.is_decided()[undecided]]

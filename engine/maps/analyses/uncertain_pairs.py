@@ -81,7 +81,7 @@ def compute_uncertainty_exponent(
     Parameters
     ----------
     spec
-        Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel of its resolution. The
+        Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel. The
         smallest ε is 1e-10 length units of the well or, in a deep zoom, four decades below a pixel, but not below 1e-13 units.
         Momenta are measured in units in which the unit of time of the well is 1.
     pairs
@@ -105,7 +105,7 @@ def compute_uncertainty_exponent(
     concurrent.futures.CancelledError
         If cancelled.
     ValueError
-        If a parameter is out of range, or the pixels are too small to resolve starts below them.
+        If a parameter is out of range, or the pixels are too small to resolve starts inside a pixel.
 
     Examples
     --------
