@@ -83,8 +83,8 @@ def compute_regularity(
 
     Orbits with evidence of a torus are regular. Another orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9).
     The orbit is regular if its Birkhoff averages show a torus, over windows before t_max or over both halves of the orbit. Any
-    other orbit shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only because
-    of rounding, but runs to infinity here, is judged by its smallest SALI until then.
+    other orbit shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only
+    because of rounding, but runs to infinity here, is judged by its smallest SALI until then.
 
     Parameters
     ----------
