@@ -28,7 +28,7 @@ _FIRST_STRIDE = 0.01
 # End of the bracket search.
 _LARGEST_OFFSET = 2.0
 
-# Search from outside: number of starts.
+# Number of starts of the search from outside.
 _STARTS = 241
 # Farthest start along the channel, in units of the size of the search.
 _FARTHEST_START = 1.5
@@ -36,7 +36,7 @@ _FARTHEST_START = 1.5
 _LARGEST_MOVE = 0.6
 
 # Steps of the continuation, in units of the distance between the ends of the preceding orbit.
-# Where the line to the zero-velocity curve begins.
+# Distance from the first end at which the line to the zero-velocity curve begins.
 _LINE_START = 0.1
 # First step of the bracket search.
 _FIRST_SHIFT = 1e-4

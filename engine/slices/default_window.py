@@ -33,7 +33,7 @@ _MARGIN = 0.03
 _LARGEST_ASPECT = 4.0
 # For a system with gaps, near which momenta are unbounded, the window shows the momenta of this share of points between edges.
 _SHOWN_MOMENTA = 0.9
-# Points along each side of the positions whose momenta are shown. Lines are searched at four times as many, rays at half as many.
+# Number of positions from which the range of momenta is found. Lines have four times as many points, rays half as many.
 _SCAN_POINTS = 801
 # First radius of the search for the interior, in units of the distance of the nearest exit saddle from the origin. The radius
 # is doubled while the interior reaches further.
