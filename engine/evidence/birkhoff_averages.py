@@ -1,15 +1,15 @@
 """Detection of quasi-periodic orbits by weighted Birkhoff averages.
 
-Along a quasi-periodic orbit the average of a smooth observable, weighted by a window function that vanishes smoothly at both
+Along a quasi-periodic orbit, the average of a smooth observable, weighted by a window function that vanishes smoothly at both
 ends, converges fast with the window length T; along a chaotic orbit it converges no faster than 1/√T. The averages over two
 consecutive windows therefore agree to many digits on an invariant torus and to few digits otherwise (Das, Saiki, Sander & Yorke
 2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). On a weakly chaotic orbit two averages can agree by
-chance, so a third one over a window that overlaps half of each must agree as well. The observables are x² and y², sampled at a
-fixed time step.
+chance, so a third average, over a window that overlaps half of each of the two, must also agree. The observables are x² and y²,
+sampled at a fixed time step.
 
 The weight exp(−1/(s(1 − s))), s = t/T, of these papers converges faster than any power of T. Eight digits are enough here, and
 the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105) reaches them for motion that completes 7 or more revolutions
-within T, whereas the former weight needs 30 revolutions.
+within T, whereas the weight of these papers needs 30 revolutions.
 """
 
 from __future__ import annotations
@@ -25,19 +25,20 @@ from engine.systems.compiled import fixed_step_size, kernels_of
 from engine.systems.potential import Potential
 
 WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
-"""Window lengths T to try in turn, dimensionless; the first one suffices for most tori."""
+"""Window lengths T to try in turn, dimensionless; the first window suffices for most tori."""
 
 TORUS_DIGITS = 8.0
-"""Number of agreeing digits from which an orbit counts as quasi-periodic.
+"""An orbit whose averages agree to this many digits or more counts as quasi-periodic.
 
 Of 1975 orbits on five maps that escape after t = 1000, none exceeded 6.1 digits.
 """
 
 REGULAR_DIGITS = 7.0
-"""Digits from which averages over both halves of an orbit agree as on a torus, see `benchmarks.verdicts`."""
+"""An orbit is regular if averages over its halves agree to this many digits or more, see `benchmarks.verdicts`."""
 
-# Shape parameter β of the Kaiser window. A larger one has smaller values at the ends but needs a longer window.
+# Shape parameter β of the Kaiser window. A larger β gives smaller weights at the ends but needs a longer window.
 _KAISER_SHAPE = 20.0
+# Largest change of the energy of an orbit whose averages count, in units of the well.
 _ENERGY_TOLERANCE = 1e-9
 _MOST_DIGITS = 16.0
 
@@ -49,7 +50,7 @@ def count_agreeing_digits(
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
-    """Count the digits to which weighted averages of x² and y² over two consecutive windows, and one between them, agree.
+    """Count the digits to which weighted averages of x² and y² agree over two consecutive windows and a window between them.
 
     Parameters
     ----------
@@ -64,8 +65,8 @@ def count_agreeing_digits(
 
     Returns
     -------
-    (n,) −log10 of the largest relative difference of the averages, from 0 to 16; 0 for an orbit that escapes or whose energy
-    is not conserved. An orbit with `TORUS_DIGITS` or more counts as quasi-periodic.
+    −log10 of the largest relative difference of the averages, from 0 to 16, of shape (n,); 0 for an orbit that escapes or whose
+    energy is not conserved. An orbit with `TORUS_DIGITS` or more counts as quasi-periodic.
     """
     return compare_averages(potential, states, window, execution=execution)[:, 1]
 
@@ -77,7 +78,7 @@ def compare_averages(
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
-    """Return (n, 2) digits to which the averages over the two consecutive windows agree, and to which all three averages agree.
+    """Return, of shape (n, 2), the digits to which the averages over two consecutive windows agree, and all three averages.
 
     The parameters are those of `count_agreeing_digits`.
     """
@@ -85,7 +86,7 @@ def compare_averages(
 
 
 def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
-    """Return the digits to which weighted averages of x² and y² over both halves of one orbit, and one between them, agree.
+    """Return the digits to which weighted averages of x² and y² agree over both halves of one orbit and a window between them.
 
     Parameters
     ----------
@@ -94,7 +95,7 @@ def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
 
     Returns
     -------
-    From 0 to 16, as `count_agreeing_digits`, with a window as long as half of the orbit; 0 for an orbit along an axis.
+    Digits from 0 to 16, as `count_agreeing_digits` with windows half as long as the orbit; 0 for an orbit along an axis.
     """
     half = len(x) // 2
     squares, weights = np.array([x * x, y * y]), window_weights(float(half), 1.0)
@@ -103,7 +104,7 @@ def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
 
 
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
-    """Return (lanes, 2) digits of the orbits in a tile (4, lanes)."""
+    """Return the digits of the orbits in a tile (4, lanes), of shape (lanes, 2)."""
     energy, step = potential.energy(tile.T), fixed_step_size(potential)
     averages = np.zeros((3, 2, tile.shape[1]))
     kernels_of(potential).birkhoff_averages(step, window_weights(window, step), tile, averages)
@@ -113,7 +114,7 @@ def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> n
 
 
 def _digits(averages: np.ndarray) -> np.ndarray:
-    """Return (2, n) digits to which the first two, and all three, averages (3, 2, n) of two observables agree, for n orbits."""
+    """Return the digits to which the first two, and all three, averages (3, 2, n) of two observables agree, of shape (2, n)."""
     with np.errstate(all="ignore"):
         difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])
         digits = -np.log10(np.maximum(difference.max(axis=1), 10.0**-_MOST_DIGITS))

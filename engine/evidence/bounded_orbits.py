@@ -20,26 +20,31 @@ from engine.propagation.fixed_step_batches import run_tiles
 from engine.propagation.section_points import find_section_points, trace_section_points
 from engine.systems.potential import Potential
 
-# An orbit is tested with the next window if its averages over the previous one agreed to at least this many digits.
+# An orbit is tested with the next window if its averages over the previous window agreed to at least this many digits.
 _PROMISING_DIGITS = 3.5
-# A window that takes longer than the time left is used on the few most promising orbits alone, because their curves can enclose
-# other orbits, and only if its cost is less than this share of the work left.
+# A window that takes longer than the time left is used for the few most promising orbits alone, because their curves can enclose
+# other orbits, and only if the test costs less than this share of the work left.
 _MAX_WORK_SHARE = 0.15
+# Largest number of these orbits in a round.
 _MAX_SEEDS = 2 * LANES
+# Distances in pixels between the orbits of successive rounds.
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)
 # A coarse lattice with fewer candidates is skipped, because a round with few orbits does not keep all workers busy.
 _SMALLEST_ROUND = 16
-# Section points per orbit and the time to collect them; orbits per round for which an invariant curve is computed.
+# Section points per orbit for an invariant curve.
 _CURVE_POINTS = 800
+# Time to collect these points, dimensionless.
 _CURVE_TIME = 8000.0
+# Orbits per round for which an invariant curve is computed.
 _MAX_CURVES_PER_ROUND = 192
+# Time to find the first section point of an orbit, dimensionless.
 _FIRST_POINT_TIME = 30.0
-# With so few points, sharing barriers among workers takes longer than applying them.
+# With at most this many points, sharing barriers among workers takes longer than applying them.
 _FEW_POINTS = 2000
 
 
 class BoundedOrbitSearch:
-    """Looks for evidence that undecided orbits of one map are bounded; they have one energy or, on the (x, h) plane, several.
+    """Looks for evidence that undecided orbits of one map are bounded. They have one energy or, with an axis h, several.
 
     Parameters
     ----------
@@ -120,7 +125,7 @@ class BoundedOrbitSearch:
                 yield from ((window, tested) for tested in self._most_promising(promising, duration))
 
     def _lattices(self, candidates: np.ndarray) -> Iterator[np.ndarray]:
-        """Yield groups of candidates, first a coarse lattice, because the curves of a few orbits can enclose many others."""
+        """Yield groups of candidates, a coarse lattice first, because the curves of a few orbits can enclose many others."""
         for stride in _LATTICE_STRIDES:
             on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
             tested = np.flatnonzero(self._without_evidence() & candidates & on_lattice)
@@ -145,7 +150,7 @@ class BoundedOrbitSearch:
                 return
 
     def _without_evidence(self) -> np.ndarray:
-        """Return (n,) bool: orbits without evidence."""
+        """Return whether each orbit is without evidence, of shape (n,)."""
         without_evidence: np.ndarray = self.evidence == Evidence.NONE
         return without_evidence
 
@@ -168,7 +173,7 @@ class BoundedOrbitSearch:
         self.evidence[self._separated.all(axis=1) & self._without_evidence()] = Evidence.ENCLOSED
 
     def _separate_in_parallel(self, barriers: list[_Barrier], orbits: np.ndarray) -> None:
-        # Prepared polygons must not be used by two threads at once: each task unpickles its own.
+        # Prepared polygons must not be used by two threads at once: each task unpickles its own copies.
         pickled = pickle.dumps(barriers)
 
         def select(part: np.ndarray) -> tuple[Any, ...]:
@@ -187,15 +192,15 @@ class _Barrier:
     curve
         The curve.
     exit_sides
-        The side of the curve on which each exit lies, see `InvariantCurve.find_side`; 0 if it is unknown. The key is 1.0 for the
-        curve and −1.0 for its mirror image.
+        The side of the curve on which each exit lies, see `InvariantCurve.find_side`; 0 if the side is unknown. The key is 1.0
+        for the curve and −1.0 for its mirror image.
     """
 
     curve: InvariantCurve
     exit_sides: dict[float, np.ndarray]
 
     def find_separated(self, points: np.ndarray) -> np.ndarray:
-        """Return (n, channels) bool: whether the curve or its mirror image separates each point (n, 2) from each exit."""
+        """Return whether the curve or its mirror image separates each point (n, 2) from each exit, of shape (n, channels)."""
         # Rotating the points by 180° is equivalent to rotating the curve into its mirror image.
         sides = [self.curve.find_side(sign * points)[:, None] * exit_side for sign, exit_side in self.exit_sides.items()]
         separated: np.ndarray = np.any(np.equal(sides, -1), axis=0)
@@ -222,7 +227,7 @@ def _exit_sides(curve: InvariantCurve, mirror: bool, entry_points: tuple[np.ndar
 
 
 def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separated: np.ndarray) -> list[_Barrier]:
-    """Return the barriers of those orbits (n, 2) that the preceding barriers do not already separate from all exits."""
+    """Return the barriers of the orbits (n, 2) that the preceding barriers do not separate from all exits."""
     kept = []
     for number in _alternating_by_size([0.0 if barrier is None else barrier.curve.area for barrier in barriers]):
         barrier = barriers[number]
@@ -238,7 +243,7 @@ def _separated_by_pickled(barriers: bytes, points: np.ndarray, separated: np.nda
 
 
 def _separated_by_any(barriers: list[_Barrier], points: np.ndarray, separated: np.ndarray) -> np.ndarray:
-    """Return (n, channels) bool: whether any barrier separates each point (n, 2) from each exit, or was known to do so."""
+    """Mark in `separated`, (n, channels), from which exits any barrier separates each point (n, 2)."""
     for barrier in barriers:
         left = np.flatnonzero(~separated.all(axis=1))
         separated[left] |= barrier.find_separated(points[left])
@@ -246,7 +251,7 @@ def _separated_by_any(barriers: list[_Barrier], points: np.ndarray, separated: n
 
 
 def _alternating_by_size(sizes: list[float]) -> Iterator[int]:
-    """Yield the indices of the largest, the smallest, the second largest, …, so that the extremes of nested curves come first."""
+    """Yield the indices of the largest, smallest, second largest size, …, so that the extremes of nested curves come first."""
     order = np.argsort(sizes, kind="stable")[::-1]
     for k in range(order.size):
         yield int(order[k // 2] if k % 2 == 0 else order[-1 - k // 2])

@@ -14,9 +14,11 @@ from engine.propagation.section_points import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.potential import Potential
 
-# Starts on each exit: every tenth sample of the Lyapunov orbit except near its ends, and angles from the inward direction.
+# Every tenth sample of the path of a Lyapunov orbit except near its ends.
 _POSITIONS = slice(10, -10, 10)
+# Angles of the starts on an exit from the inward direction.
 _ANGLES = np.radians([-60.0, -30.0, 0.0, 30.0, 60.0])
+# Time in which an orbit must cross the section, in units of the well.
 _MAX_ENTRY_TIME = 30.0
 
 
@@ -55,7 +57,7 @@ def _entry_points(potential: Potential, energy: float, orbit: LyapunovOrbit) -> 
 
 
 def _inward_states(potential: Potential, energy: float, orbit: LyapunovOrbit) -> np.ndarray:
-    """Return (n, 4) states on a Lyapunov orbit's path with momenta that point inward."""
+    """Return states on the path of a Lyapunov orbit with momenta that point inward, of shape (n, 4)."""
     x, y = np.repeat(orbit.half_path[_POSITIONS], _ANGLES.size, axis=0).T
     speed = np.sqrt(2.0 * np.maximum(energy - potential.value(x, y), 0.0))
     inward = -orbit.outward
@@ -64,7 +66,7 @@ def _inward_states(potential: Potential, energy: float, orbit: LyapunovOrbit) ->
 
 
 def _is_interior(potential: Potential, energy: float, points: np.ndarray) -> np.ndarray:
-    """Return (n,) bool: whether points (n, 2) are allowed and inside all exits; False for NaN and for orbits that left again."""
+    """Return whether each point (n, 2) is allowed and inside all exits; False for NaN and for orbits that left again."""
     x, px = points.T
     with np.errstate(invalid="ignore"):
         allowed = SECTION.required_energy(potential, x, px) <= energy

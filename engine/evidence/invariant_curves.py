@@ -1,8 +1,8 @@
-"""Closed invariant curves on the section y = 0, and which side of them a point lies on.
+"""Closed invariant curves on the section y = 0, and the side of such a curve on which a point lies.
 
 In a system of two degrees of freedom, an orbit cannot cross an invariant torus of its own energy. A quasi-periodic orbit meets
 the section in one closed curve, or in a chain of closed curves around the islands of a resonance. An orbit that starts on one
-side stays on that side.
+side of these curves stays on that side.
 """
 
 from __future__ import annotations
@@ -98,8 +98,8 @@ def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
 
     Returns
     -------
-    A curve with one loop per island, or one loop for an orbit around a fixed point. None when there are too few points, or when
-    they do not lie densely enough on smooth curves without self-intersections.
+    A curve with one loop per island, or one loop for an orbit around a fixed point. None if there are too few points, or if the
+    points do not lie densely enough on smooth curves without self-intersections.
     """
     for islands in range(1, MOST_ISLANDS + 1):
         if len(points) < islands * LEAST_POINTS:
@@ -123,7 +123,7 @@ def _find_loops(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon,
 
 
 def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
-    """Return the loop through successive points of a rotation and its margin; None when they are not on a closed curve."""
+    """Return the loop through successive points of a rotation and its margin; None if the points are not on a closed curve."""
     import shapely
 
     loop = np.empty_like(points)

@@ -1,9 +1,9 @@
 """Orbits over a saddle between two points at rest on the zero-velocity curve, found by shooting and by continuation in energy.
 
-At an energy h above the saddle such an orbit oscillates between two points at rest (Contopoulos 1990, Astron. Astrophys. 231,
-41). An orbit that starts at rest on the zero-velocity curve too close to the well moves inward, one that starts too far out moves
-outward. The orbit in between is the root of the velocity along the channel at the turning point. All quantities are in units of
-the well.
+At an energy h above the saddle, such an orbit oscillates between two points where it is at rest (Contopoulos 1990, Astron.
+Astrophys. 231, 41). A trial orbit that starts at rest on the zero-velocity curve moves inward if its start is too close to the
+well, and outward if its start is too far out. In between is the start for which the velocity along the channel is 0 at the
+turning point across the channel. All quantities are in units of the well.
 """
 
 from __future__ import annotations
@@ -20,35 +20,45 @@ from engine.integrator.source.series import ORDER
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Lengths along the channel, in units of the distance of the saddle from the origin: the distance beyond which a trial orbit has
-# left the saddle, the first step of the bracket search, and the end of this search.
+# Lengths along the channel, in units of the distance of the saddle from the origin.
+# A trial orbit farther from the saddle than this has left the saddle.
 _LARGEST_EXCURSION = 1.0
+# First step of the bracket search.
 _FIRST_STRIDE = 0.01
+# End of the bracket search.
 _LARGEST_OFFSET = 2.0
 
-# Search from outside: number of starts, farthest start along the channel, and distance beyond which a trial orbit has left.
-_STARTS, _FARTHEST_START, _LARGEST_MOVE = 241, 1.5, 0.6
+# Number of starts of the search from outside.
+_STARTS = 241
+# Farthest start along the channel, in units of the size of the search.
+_FARTHEST_START = 1.5
+# A trial orbit that has moved farther than this along the channel has left, in the same unit.
+_LARGEST_MOVE = 0.6
 
-# Steps of the continuation, in units of the distance between the ends of the preceding orbit: where the line to the zero-velocity
-# curve begins, the first step of the bracket search, and the end of this search.
+# Steps of the continuation, in units of the distance between the ends of the preceding orbit.
+# Distance from the first end at which the line to the zero-velocity curve begins.
 _LINE_START = 0.1
+# First step of the bracket search.
 _FIRST_SHIFT = 1e-4
+# End of the bracket search.
 _LARGEST_SHIFT = 0.2
 # Largest relative change of the ends and of the period; a larger change can be a jump to another orbit.
 _LARGEST_CHANGE = 0.15
-# First and smallest step of the energy, in units of its height above the saddle.
+# First step of the energy, in units of its height above the saddle.
 _FIRST_ENERGY_STEP = 2.0**-4
+# Smallest step of the energy, in the same unit.
 _SMALLEST_ENERGY_STEP = 2.0**-14
 _MOST_ENERGY_STEPS = 256
 
-# Largest speed at the second end, in units of the well; a root with a larger speed is a discontinuity of the velocity, not an
-# orbit.
+# Largest speed at the second end, in units of the well. A root with a larger speed is a discontinuity of the velocity, not an
+# orbit. Two shots that are joined differ by at most this distance.
 _REST = 1e-8
-# Limits for orbits joined from two shots: `_REST` is the largest distance between the shots in this part of the half period
-# around the middle.
+# Largest speed at the second end of a shot that is joined with another.
 _NEARLY_AT_REST = 1e-3
+# Two shots are compared up to this share of the half period before and after the middle.
 _OVERLAP = 0.05
 _SAMPLES_PER_HALF_PERIOD = 100
+# Largest number of integrator steps of a trial orbit.
 _MOST_STEPS = 400
 
 
@@ -58,9 +68,9 @@ class BrakeOrbit(NamedTuple):
     Attributes
     ----------
     half_period
-        Its duration, dimensionless.
+        Duration of the half period, dimensionless.
     path
-        (2, 101) x and y, evenly spaced in time, the well on the left.
+        (2, 101) x and y, evenly spaced in time, with the well on the left.
     """
 
     half_period: float
@@ -68,13 +78,13 @@ class BrakeOrbit(NamedTuple):
 
 
 class Axes(NamedTuple):
-    """Coordinates of a channel: u along `outward` from `origin`, q 90° counterclockwise from it; both (2,)."""
+    """Coordinates of a channel: u along `outward` from `origin`, and q 90° counterclockwise from `outward`. Both are (2,)."""
 
     origin: np.ndarray
     outward: np.ndarray
 
     def coordinates(self, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return u and q of a path (2, n)."""
+        """Return u and q of a path of shape (2, n)."""
         dx, dy = path[0] - self.origin[0], path[1] - self.origin[1]
         return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
 
@@ -87,7 +97,7 @@ class _Search(NamedTuple):
 
 
 class _Shot(NamedTuple):
-    """A trial orbit, at rest at its start and nearly at rest at its end: Taylor coefficients (2, 20, n) from times (n,)."""
+    """A trial orbit, at rest at its start and nearly at rest at its end, as Taylor coefficients (2, 20, n) of n steps."""
 
     coefficients: np.ndarray
     begins: np.ndarray
@@ -103,7 +113,7 @@ class _Shot(NamedTuple):
         return self.positions(np.linspace(0.0, self.half_period, _SAMPLES_PER_HALF_PERIOD + 1))
 
     def positions(self, times: np.ndarray) -> np.ndarray:
-        """Return (2, m) x and y at `times` (m,)."""
+        """Return x and y at m `times`, of shape (2, m)."""
         step = np.searchsorted(self.begins, times, side="right") - 1
         powers = (times - self.begins[step]) ** np.arange(ORDER + 1)[:, None]
         path: np.ndarray = (self.coefficients[:, :, step] * powers).sum(axis=1)
@@ -111,12 +121,12 @@ class _Shot(NamedTuple):
 
 
 def saddle_axes(potential: Potential, channel: int) -> Axes:
-    """Return the saddle and its unstable direction."""
+    """Return axes with a saddle as origin and its unstable direction as outward direction."""
     return Axes(potential.saddles[channel - 1], potential.well.outward_directions[channel - 1])
 
 
 def chord_axes(path: np.ndarray) -> Axes:
-    """Return axes across and along the line between the ends of a path (2, n), near its first end."""
+    """Return axes with q along the line between the ends of a path (2, n), and the origin near its first end."""
     chord = path[:, -1] - path[:, 0]
     return Axes(path[:, 0] + _LINE_START * chord, np.array([chord[1], -chord[0]]) / np.hypot(*chord))
 
@@ -130,7 +140,7 @@ def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrb
 def find_from_both_ends(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """Return the orbit over a saddle at one energy, shot from both ends and joined in its middle; None if it is not found.
 
-    Errors then grow over only a quarter of a period, and the zero-velocity curve may bend away at the first end.
+    Errors grow over only a quarter of a period, and the zero-velocity curve may bend away at the first end.
     """
     axes = saddle_axes(potential, channel)
     back = _find_from_saddle(potential, energy, channel, Axes(axes.origin, -axes.outward), _NEARLY_AT_REST)
@@ -142,7 +152,7 @@ def find_from_both_ends(potential: Potential, energy: float, channel: int) -> Br
 
 
 def find_from_outside(potential: Potential, energy: float, axes: Axes, size: float) -> Iterator[BrakeOrbit]:
-    """Yield the orbits from a wall at q < 0 to one at q > 0, the outermost first; `size` is the scale of the search."""
+    """Yield the orbits from a wall at q < 0 to a wall at q > 0, the outermost first; `size` is the scale of the search."""
     trials = _Trials(potential, energy, axes, _LARGEST_MOVE * size)
     offsets = _FARTHEST_START * size * np.linspace(1.0, -1.0, _STARTS)
     velocities = [trials.outward_velocity(u) for u in offsets.tolist()]
@@ -166,7 +176,7 @@ def continue_in_energy(potential: Potential, energy: float, channel: int) -> Bra
 
 
 def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, rest: float) -> _Shot | None:
-    """Return the orbit from a point with q < 0 in axes at the saddle to one with q > 0; None if it is not found."""
+    """Return the orbit from a point with q < 0 in axes at the saddle to a point with q > 0; None if it is not found."""
     distance = _distance(potential, channel)
     search = _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
     shot = _shoot(potential, energy, channel, axes, search, rest)
@@ -202,7 +212,7 @@ def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
 
 
 def _next_orbit(potential: Potential, energy: float, channel: int, before: BrakeOrbit) -> BrakeOrbit | None:
-    """Continue an orbit to a nearby energy; None if the orbit found there is not close to it."""
+    """Continue an orbit to a nearby energy; None if the orbit found there is not close to the given orbit."""
     ends = before.path[:, [0, -1]]
     shot = _shoot(potential, energy, channel, chord_axes(before.path), _chord_search(before.path), _REST)
     if shot is None:
@@ -227,14 +237,14 @@ def _distance(potential: Potential, channel: int) -> float:
 
 
 def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, rest: float) -> _Shot | None:
-    """Find the orbit whose start is nearest to the origin of the axes along the channel; None if there is none."""
+    """Find the orbit whose start is nearest to the origin of the axes along the channel; None if it is not found."""
     trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _distance(potential, channel))
     bracket = _find_bracket(trials.outward_velocity, search)
     return None if bracket is None else trials.solve(bracket, rest)
 
 
 class _Trials:
-    """Orbits that start at rest on the wall at q < 0 in some axes; they are followed along the channel as far as `reach`."""
+    """Shoots orbits from rest on the wall at q < 0 in some axes, and follows them along the channel as far as `reach`."""
 
     def __init__(self, potential: Potential, energy: float, axes: Axes, reach: float) -> None:
         self._kernels, self._steps = kernels_of(potential), np.empty((_MOST_STEPS, 5))
@@ -245,7 +255,7 @@ class _Trials:
         return float(self._kernels.shoot(u, *self._arguments)[0])
 
     def solve(self, bracket: tuple[float, float], rest: float) -> _Shot | None:
-        """Return the orbit that starts between two offsets and comes to rest; None if there is none."""
+        """Return the orbit that starts between two offsets and comes to rest; None if no orbit does."""
         u = find_root(self.outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
         if not (np.isfinite(half_period) and abs(velocity) < rest):

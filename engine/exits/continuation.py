@@ -22,8 +22,8 @@ def follow[Solution](
     Parameters
     ----------
     advance
-        A function of a value and of the solution at the value reached. It returns the solution at the new value, or None if it
-        finds none close to the given one. After None the step is halved; otherwise it is doubled.
+        A function of the last solution and of a new value. It returns the solution at the new value, or None if it finds none
+        close to the last solution. After None the step is halved; after a solution it is doubled.
     solution
         The solution at `begin`.
     begin, end
@@ -33,7 +33,7 @@ def follow[Solution](
 
     Returns
     -------
-    The solution at `end`; None if it is not reached.
+    The solution at `end`; None if `end` is not reached.
     """
     reached, step = begin, steps.first
     for _ in range(steps.most):

@@ -22,7 +22,7 @@ _GATE_MARGIN = 1e-3
 
 
 def closed_exits(potential: Potential) -> np.ndarray:
-    """Return (outcomes, columns) the exits below all saddles: short lines across the saddles, and the ends besides saddles.
+    """Return the exits below all saddles, (outcomes, columns): short lines across the saddles, and all other ends.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def closed_exits(potential: Potential) -> np.ndarray:
 
 
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
-    """Return (outcomes, columns) exits of a potential in units of its well at one energy, for the kernels."""
+    """Return the exits of a potential in units of its well at one energy, (outcomes, columns), for the kernels."""
     curves = closed_exits(potential)
     for orbit in find_orbits_in_well_units(potential, energy):
         curves[orbit.channel - 1] = orbit.curve
@@ -52,7 +52,7 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
 
 
 def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execution = DEFAULT_EXECUTION) -> np.ndarray:
-    """Return (n, outcomes, columns) `exit_curves` at energies (n,)."""
+    """Return `exit_curves` at n energies, of shape (n, outcomes, columns)."""
     curves = np.repeat(closed_exits(potential)[None], len(energies), axis=0)
     for row, energy in enumerate(energies.tolist()):
         execution.raise_if_cancelled()
@@ -63,7 +63,7 @@ def exit_curves_at(potential: Potential, energies: np.ndarray, execution: Execut
 def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
     """Return the `exit_curves` for one orbit, and the reason why exits over saddles are unknown, or "" if they are known.
 
-    Where the exits are unknown, no orbit crosses one and no start lies beyond one; other ends remain.
+    Where exits over saddles are unknown, they count as absent: no orbit crosses them. Other ends remain.
     """
     try:
         return exit_curves(potential, energy), ""
@@ -75,10 +75,10 @@ def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:
-    """Return (outcomes, 3) gates of exits (…, outcomes, columns). No orbit ends before it passes a gate, which is cheap to test.
+    """Return the gates of exits (…, outcomes, columns), of shape (outcomes, 3). No orbit ends before it passes a gate.
 
-    The gate of a channel is the line a x + b y = c slightly inside its exits at all energies. The gate of a circle is its centre
-    and its radius.
+    A gate is cheap to test. For a channel, it is the line a x + b y = c slightly inside the exits at all energies; for a circle,
+    it is the centre and the radius.
     """
     outcomes, columns = curves.shape[-2:]
     rows = curves.reshape(math.prod(curves.shape[:-2]), outcomes, columns)
@@ -89,7 +89,7 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
 
 
 def _lines_inside(rows: np.ndarray) -> np.ndarray:
-    """Return (channels, 3) lines across channels, slightly inside their exits (energies, channels, columns)."""
+    """Return lines across channels, slightly inside their exits (energies, channels, columns), of shape (channels, 3)."""
     s = np.linspace(-1.0, 1.0, 201)
     u = chebyshev.chebval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0))
     q = rows[..., events.MIDDLE, None] + rows[..., events.HALF_WIDTH, None] * s

@@ -12,28 +12,38 @@ from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
 _LARGEST_FIT_ERROR = 1e-9
-# The lines beyond the ends of an exit are sampled from this |s| − 1 to this multiple of the distance of the saddle.
-_FIRST_BEYOND, _FARTHEST_BEYOND, _SAMPLES_BEYOND = 1e-3, 2.0, 400
+# Beyond the ends of an exit, straight lines are sampled. Smallest |s| − 1 of the samples.
+_FIRST_BEYOND = 1e-3
+# Length of these lines, in units of the distance of the saddle from the origin or, if larger, of the half width of the exit.
+_FARTHEST_BEYOND = 2.0
+# Number of samples along a line.
+_SAMPLES_BEYOND = 400
 # Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
 _CLOSED_HALF_WIDTH = 1e-3
 # Distance of the line beyond the saddle, in the same unit. An orbit at rest on the saddle then starts inside in spite of
 # rounding.
 _CLOSED_OFFSET = 1e-9
-# Number of steps in which walls are followed from the saddle to the line. A wall is searched up to this multiple of the distance
-# of the saddle from the origin, at this number of points.
+# Number of steps in which walls are followed from the saddle to the line.
 _WALL_STEPS = 32
-_FARTHEST_WALL, _WALL_POINTS, _BISECTIONS = 5.0, 400, 60
-# Points along a line for drawings; step along the ridge, in units of the distance of the saddle from the origin.
-_LINE_POINTS, _RIDGE_STEP = 41, 1e-3
+# Walls are searched up to this multiple of the distance of the saddle from the origin.
+_FARTHEST_WALL = 5.0
+# Number of points at which a wall is searched.
+_WALL_POINTS = 400
+# Number of bisections between two of these points.
+_BISECTIONS = 60
+# Points along a line for drawings.
+_LINE_POINTS = 41
+# Step of the difference across the ridge, in units of the distance of the saddle from the origin.
+_RIDGE_STEP = 1e-3
 # Largest change of the position of a wall in a step, in units of the width of the neck; a larger change can be a jump to another
 # wall.
 _LARGEST_WALL_STEP = 0.25
-# Ends of two orbits closer than this, in units of the well, are the same.
+# Two orbits have the same ends if these are closer than this, in units of the well.
 _SAME_END = 1e-6
 
 
 def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
-    """Return (columns,) the exit of a closed channel: a short straight line just beyond the origin of the axes."""
+    """Return the row of a closed channel, (columns,): a short straight line just beyond the origin of the axes."""
     curve = np.zeros(events.CURVE_COLUMNS)
     curve[events.ORIGIN_X : events.OUTWARD_Y + 1] = *axes.origin, *axes.outward
     curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
@@ -44,16 +54,16 @@ def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
 
 
 def absent_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
-    """Return (columns,) a row that no orbit crosses, for a channel that is part of another exit."""
+    """Return a row that no orbit crosses, (columns,), for a channel that is part of another exit."""
     curve = closed_channel(axes, saddle)
     curve[events.REACH] = -1.0
     return curve
 
 
 def ridge_bend(potential: Potential, channel: int) -> float:
-    """Return a of u = a q², the ridge of V near the saddle, on which V_u = 0, in the axes of the saddle.
+    """Return a of the ridge u = a q² of V, on which V_u = 0, near a saddle in its axes.
 
-    It follows from V_uqq and V_uu. A central difference suffices for V_uqq, because any a near the exact one gives an exit.
+    a = −V_uqq/(2 V_uu). A central difference suffices for V_uqq, because any a near the exact value gives an exit.
     """
     axes = saddle_axes(potential, channel)
     step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * np.array([-axes.outward[1], axes.outward[0]])
@@ -64,9 +74,9 @@ def ridge_bend(potential: Potential, channel: int) -> float:
 
 
 def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
-    """Return (columns,) the exit u = edge + a q² in the axes of a saddle, between the walls of its neck; a: `ridge_bend`.
+    """Return the row of the exit u = edge + a q² between the walls of a neck, in the axes of the saddle; a: `ridge_bend`.
 
-    The walls beside the saddle are followed to the line. The result is None if they do not lead to it.
+    The walls are followed from the saddle to the line. The result is None if they do not lead there.
     """
     axes, bend = saddle_axes(potential, channel), ridge_bend(potential, channel)
     walls = _find_walls(potential, energy, axes, np.linspace(0.0, edge, _WALL_STEPS + 1), bend)
@@ -88,7 +98,7 @@ def line_across(potential: Potential, energy: float, channel: int, edge: float) 
 
 
 def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray | None:
-    """Return (columns,) the path (2, n) as a graph u = f(s), s ∈ [−1, 1], without its reach; None if it is not a smooth graph."""
+    """Return the row of a path (2, n) as a graph u = f(s), s ∈ [−1, 1], without its reach; None unless it is a smooth graph."""
     u, q = axes.coordinates(path)
     middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
     s = (q - middle) / half_width
@@ -116,7 +126,7 @@ def mirrored_curve(curve: np.ndarray) -> np.ndarray:
 
 
 def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
-    """Return the largest |s| at which a crossing counts: half the way along straight lines from the ends to where V ≤ h."""
+    """Return the largest |s| at which a crossing counts: half-way from an end, along a straight line, to where V ≤ h."""
     reach = np.inf
     saddle, outward = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
     farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
@@ -130,7 +140,7 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
 
 
 def line_points(curve: np.ndarray) -> np.ndarray:
-    """Return (41, 2) x and y along an exit that is a line, from wall to wall."""
+    """Return x and y along an exit that is a line, from wall to wall, of shape (41, 2)."""
     origin, outward = curve[events.ORIGIN_X : events.ORIGIN_Y + 1], curve[events.OUTWARD_X : events.OUTWARD_Y + 1]
     s = np.linspace(-1.0, 1.0, _LINE_POINTS)
     u, q = chebyshev.chebval(s, curve[events.COEFFICIENTS :]), curve[events.MIDDLE] + curve[events.HALF_WIDTH] * s
@@ -139,7 +149,7 @@ def line_points(curve: np.ndarray) -> np.ndarray:
 
 
 def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndarray, bend: float) -> np.ndarray:
-    """Return (n, 2) the q of the walls on both sides of q = 0 on u = offset + bend q², by bisection; NaN without a wall."""
+    """Find the q of the walls on both sides of q = 0 on n lines u = offset + bend q², of shape (n, 2); NaN without a wall."""
     across = np.array([-axes.outward[1], axes.outward[0]])
 
     def is_beyond(q: np.ndarray) -> np.ndarray:
@@ -161,7 +171,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
 
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
-    """Return whether two paths, (n, 2) and (m, 2), intersect, or connect the same points, so that they are equal to rounding."""
+    """Return whether two paths, (n, 2) and (m, 2), intersect, or have the same ends and so are equal to rounding."""
     return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
 
 
@@ -171,7 +181,7 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
         return False
 
     def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """Return (segments, points) the side of each segment of a line on which each point lies."""
+        """Return whether each point lies to the left of each segment of a line, of shape (segments, points)."""
         along, apart = np.diff(line, axis=0)[:, None], points - line[:-1, None]
         left: np.ndarray = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
         return left

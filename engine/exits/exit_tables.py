@@ -1,6 +1,6 @@
 """Exits tabulated over a range of energies, so that they can be interpolated where Lyapunov orbits cannot be computed.
 
-The Lyapunov orbit over a saddle depends smoothly on σ = √(h − E), E the energy of the saddle: its width is proportional to σ, its
+The Lyapunov orbit over a saddle of energy E depends smoothly on σ = √(h − E). The width of the orbit is proportional to σ, its
 height to σ². The table has the columns of the exit curve, in the axes of the orbit's chord, at Chebyshev nodes in σ, for
 barycentric interpolation (Berrut & Trefethen 2004, SIAM Review 46, 501).
 """
@@ -27,14 +27,15 @@ LARGEST_ERROR = 1e-6
 
 # Numbers of nodes to try, in turn, until the error measured between the nodes is small enough.
 _NODES = (10, 20, 40)
-# Shares of the range of energies to try; a smaller share is needed near a maximum between two exits, where they change too fast.
+# Shares of the range of energies to try. A smaller share is needed near a maximum between two exits, where exits change too fast.
 _SHARES = (1.0, 0.9, 0.75, 0.5)
-# Share of the largest error that the error between the nodes may have.
+# The error between the nodes must be below this share of the largest error.
 _SAFETY = 0.1
-# Smaller coefficients at the end of the series are dropped, in units of the well.
+# Coefficients below this are dropped from the end of the series, in units of the well.
 _NEGLIGIBLE = 1e-9
 # This value represents an infinite reach, which cannot be interpolated.
 _FARTHEST_REACH = 1e6
+# Values of s at which exits are compared.
 _POSITIONS = np.linspace(-1.0, 1.0, 21)
 # Columns of a row after gate and reach, see `engine.integrator.kernels.exit_curves`.
 _CURVE_COLUMNS = np.r_[events.ORIGIN_X : events.OUTWARD_Y + 1, events.MIDDLE : events.CURVE_COLUMNS]
@@ -69,7 +70,7 @@ class ExitTable:
             read_only(array)
 
     def points_at(self, energy: float, positions: np.ndarray) -> np.ndarray:
-        """Return (2, m) the points of the exit at an energy above the saddle, at s (m,) from −1 to 1."""
+        """Return m points of the exit, at s from −1 to 1, at an energy above the saddle, of shape (2, m)."""
         return _points(_interpolate(self.nodes, self.rows, energy - self.saddle), positions)
 
 
@@ -85,9 +86,9 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
 
     Returns
     -------
-    One table for each channel, valid up to `highest`, or up to its saddle if its exits cannot be interpolated. No table is valid
-    above the lowest maximum between exits, where several channels form one exit. Interpolated exits differ from the computed ones
-    by at most `LARGEST_ERROR`, as tested at energies between the nodes.
+    One table for each channel, valid up to `highest` or as far as its exits can be interpolated. No table is valid above the
+    lowest maximum between exits, where several channels form one exit. Interpolated exits differ from the computed exits by at
+    most `LARGEST_ERROR`, as tested at energies between the nodes.
     """
     curves: dict[float, dict[int, np.ndarray]] = {}
 
@@ -102,7 +103,7 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
 
 
 def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
-    """Return the exit curves at one energy, by channel; ValueError if one is not a graph over its chord."""
+    """Return the exit curves at one energy, by channel; ValueError if a curve is not a graph over its chord."""
     curves = {}
     for orbit in find_orbits_in_well_units(potential, energy):
         curve = _exit_over_chord(orbit)
@@ -113,10 +114,10 @@ def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
 
 
 def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
-    """Return (columns,) the exit of an orbit in units of the well, in the axes of its chord, which depend smoothly on the energy.
+    """Return the row of the exit of an orbit in units of the well, in the axes of its chord, which depend smoothly on the energy.
 
-    The result is None if the path is not a smooth graph over the chord. In a rotating frame the line keeps the axes of the
-    saddle.
+    The result is None if the path is not a smooth graph over the chord. In a rotating frame, the exit is a line and keeps the
+    axes of the saddle.
     """
     potential = orbit.potential
     if potential.rotation:
@@ -160,7 +161,7 @@ def _nodes(count: int, largest: float) -> np.ndarray:
 
 
 def _between(count: int, largest: float) -> np.ndarray:
-    """Return positions between the nodes, and the end of the range."""
+    """Return values of σ between the nodes, and the end of the range."""
     return 0.5 * largest * (1.0 - np.cos(np.pi * (np.arange(count) + 1) / count))
 
 
@@ -171,7 +172,7 @@ def _row(curve: np.ndarray) -> np.ndarray:
 
 
 def _interpolate(nodes: np.ndarray, rows: np.ndarray, above: float) -> np.ndarray:
-    """Return (columns,) the exit at an energy above its saddle."""
+    """Return the row of the exit at an energy that is `above` the energy of its saddle."""
     curves, gates = np.zeros((1, 1, events.CURVE_COLUMNS)), np.zeros((1, 3))
     interpolate_exit(nodes, rows, 0.0, events.CURVE, np.array([above]), 0, curves, gates)
     found: np.ndarray = curves[0, 0]
@@ -179,7 +180,7 @@ def _interpolate(nodes: np.ndarray, rows: np.ndarray, above: float) -> np.ndarra
 
 
 def _points(curve: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """Return (2, m) the points of an exit at s (m,)."""
+    """Return the points of an exit at m values of s, of shape (2, m)."""
     points = np.empty((2, positions.size))
     exit_points(curve, positions, points)
     return points

@@ -1,6 +1,6 @@
 """The interior of a potential at one energy: all points connected to the origin below the energy without crossing an exit.
 
-With an escape radius the interior consists of all points within it. No point beyond another end belongs to it.
+With an escape radius, the interior consists of all points within that radius, except points beyond another end.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ def find_outside_in_well_units(potential: Potential, energy: float, x: np.ndarra
 def find_outside_starts(
     potential: Potential, x: np.ndarray, y: np.ndarray, energy: np.ndarray, curves: np.ndarray, curve_row: np.ndarray
 ) -> np.ndarray:
-    """Return (n,) int8: `find_outside_channels` for points of several energies, in units of the well.
+    """Apply `find_outside_channels` to n points of several energies, in units of the well; int8, of shape (n,).
 
     Parameters
     ----------
     potential
         The potential in units of its well, `Potential.in_well_units`.
     x, y, energy
-        (n,) each.
+        Positions and energies of the points, (n,) each.
     curves
-        (rows, outcomes, columns) exits, see `exit_curves`. If all of them are absent, no point lies beyond an exit.
+        (rows, outcomes, columns) exits, see `exit_curves`. If all exits of a row are absent, no point lies beyond an exit.
     curve_row
         (n,) the row of `curves` for each point.
     """
@@ -61,13 +61,13 @@ def find_outside_starts(
 
 
 def find_inner_radius(potential: Potential) -> float:
-    """Return the radius of the gap at the origin; 0.0 if the well is at the origin."""
+    """Return the radius of the gap at the origin; 0.0 without a gap there."""
     return max((gap.radius for gap in potential.gaps if gap.x == gap.y == 0.0), default=0.0)
 
 
 @functools.singledispatch
 def _finder(form: Any, potential: Potential) -> Callable[..., None]:
-    """Return the kernel for a form of potentials, with its first arguments."""
+    """Return the kernel of the interior test for a form of potentials, with its first arguments bound."""
     raise TypeError(form)
 
 
@@ -85,8 +85,8 @@ def _finder_of_polynomial(form: PolynomialForm, _potential: Potential) -> Callab
 class PolynomialTable(NamedTuple):
     """A polynomial as `engine.integrator.kernels.interior` takes it.
 
-    powers (terms, 2) and coefficients (terms,) describe V; bernstein (n, n) converts the coefficients of a power series on [0, 1]
-    to those of Bernstein polynomials.
+    `powers`, (terms, 2), and `coefficients`, (terms,), describe V. `bernstein`, (n, n), converts the coefficients of a power
+    series on [0, 1] to those of Bernstein polynomials.
     """
 
     powers: np.ndarray

@@ -34,7 +34,7 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
-# Reasons why an exit of several channels is not defined, in the order in which its search checks them.
+# Reasons why an exit of several channels is not defined. The search meets them in this order.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
 _MISSING = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
@@ -61,20 +61,20 @@ class LyapunovOrbit(Result):
     Attributes
     ----------
     channel
-        Number of its exit channel, from 1.
+        Number of the exit channel, from 1.
     energy
-        Its energy h.
+        Energy h of the orbit.
     period
-        Its period.
+        Period of the orbit.
     x, y
         (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
         last point are equal.
     curve
         (columns,) row of the exit for the kernels of the integrator.
     velocity
-        (2,) px and py at the first point, of a mass of 1 the velocity; 0 unless the frame rotates.
+        (2,) px and py at the first point, for a mass of 1 the velocity; 0 unless the frame rotates.
     others
-        Other channels that are part of the same exit, above the maxima between them; `channel` is the lowest number.
+        Other channels of the same exit, above the maxima between the channels; `channel` is the lowest of their numbers.
     potential
         The `Potential`.
     """
@@ -96,9 +96,8 @@ class LyapunovOrbit(Result):
     def find_multipliers(self) -> np.ndarray:
         """Return the stability of the orbit: the eigenvalues of the flow linearised along one period, the largest modulus first.
 
-        (4,) complex. Two of them are 1, and the others are λ and 1/λ: if the modulus of λ is not 1, the orbit is unstable. The
-        eigenvalue 1 has only one eigenvector, so that rounding changes this pair by the square root of the error of the matrix,
-        1e-8 to 1e-6.
+        The result is complex, of shape (4,): 1, 1, λ and 1/λ. If the modulus of λ is not 1, the orbit is unstable. The double
+        eigenvalue 1 has only one eigenvector, so rounding changes it by the square root of the error of the matrix, 1e-8 to 1e-6.
 
         Examples
         --------
@@ -127,7 +126,7 @@ class LyapunovOrbit(Result):
 
     @property
     def name(self) -> str:
-        """The name of the exit, "L1", if it has one, otherwise its channel number, "1", or "1+3" if two channels form it."""
+        """The name of the exit, such as "L1"; without names its channel number, "1", or "1+3" if two channels form the exit."""
         named = self.potential.exit_names if len(self.potential.exit_names) == self.potential.channels else ()
         return name_channels((self.channel, *self.others), named)
 
@@ -171,8 +170,8 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
 
     Returns
     -------
-    The orbits in channel order; empty at or below the escape energy. Above a maximum of V between two channels, these form one
-    exit with one orbit, from one outer wall to the other.
+    The orbits in channel order; empty at or below the escape energy. Above a maximum of V between two channels, the channels form
+    one exit with one orbit, from one outer wall to the other.
 
     Raises
     ------
@@ -232,7 +231,7 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 
 
 def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> tuple[LyapunovOrbit, ...]:
-    """Find orbits that do not meet, directly or by continuation in energy; orbits of mirror channels are exact mirror images."""
+    """Find orbits that do not meet, directly or by continuation in energy. Orbits of mirror channels are exact mirror images."""
     found: dict[int, LyapunovOrbit] = {}
     merged = {exit.channels[0]: exit for exit in potential.well.merged_exits(energy)}
     numbers = potential.well.exit_numbers(energy)
@@ -341,7 +340,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
 
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
-    """Return an orbit between two points at rest, with its exit (columns,), whose reach is set here."""
+    """Return an orbit between two points at rest, with its exit `curve`, and set the reach of the exit."""
     curve[events.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])

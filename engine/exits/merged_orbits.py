@@ -1,7 +1,7 @@
-"""Orbits between the outer walls of an exit of several channels, above the maxima of V between these.
+"""Orbits between the outer walls of an exit of several channels, above the maxima of V between the channels.
 
-Just below a maximum, two orbits lead from an outer wall to the forbidden region around the maximum. Above it this region is gone,
-and one orbit leads from one outer wall to the other.
+Just below a maximum, two orbits lead from an outer wall to the forbidden region around the maximum. Above the maximum, this
+region is gone, and one orbit leads from one outer wall to the other.
 """
 
 from __future__ import annotations
@@ -16,18 +16,20 @@ from engine.integrator.kernels.dense_output import trace_pieces
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Places where the lines of starts cross the line between the outermost saddles, as shares of its length.
+# Places where the lines of starts cross the line between the outermost saddles, as shares of the distance of these saddles.
 _LINES = (0.5, 0.25, 0.75, 0.0, 1.0)
-# Orbits that leave through an exit: points of the path, angles to its normal, and how long they are followed.
+# Points of an exit's path from which orbits leave.
 _POINTS = np.arange(5, 100, 10)
+# Angles of these orbits to the normal of the path.
 _ANGLES = np.radians([-75.0, -40.0, 0.0, 40.0, 75.0])
-_FOLLOWED = 30.0
+# Time for which these orbits are followed, in units of the well.
+_FOLLOWED_TIME = 30.0
 # All points are beyond this gate.
 _NO_GATES = np.array([[0.0, 0.0, -1.0]])
 
 
 def axes_between(potential: Potential, channels: tuple[int, ...], share: float = 0.5) -> Axes:
-    """Return axes along and across the line between the outermost saddles of an exit, with the origin at a share of it."""
+    """Return axes across and along the line between the outermost saddles of an exit, with the origin at a share of this line."""
     saddles = potential.saddles[np.array(channels) - 1]
     angles = np.arctan2(saddles[:, 1], saddles[:, 0])
     order = np.argsort(angles)
@@ -52,10 +54,10 @@ def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int,
 
 
 def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: np.ndarray) -> bool:
-    """Return whether any of 50 orbits that leave across an exit (columns,) returns through it."""
+    """Return whether any of 50 orbits that leave across an exit, a row `curve`, returns through it."""
     kernels = kernels_of(potential)
     for start in _leaving_states(potential, energy, orbit.path):
-        steps, _ = next(trace_pieces(kernels, start, _FOLLOWED, len(potential.outcomes)))
+        steps, _ = next(trace_pieces(kernels, start, _FOLLOWED_TIME, len(potential.outcomes)))
         # In backward time an orbit that returns is an orbit that leaves. The first step begins on the exit.
         for (x0, y0), (x1, y1) in zip(steps[1:-1, :2], steps[2:, :2], strict=True):
             if events.crossed_exit(x1, y1, x0, y0, curve[None], _NO_GATES):
@@ -64,7 +66,7 @@ def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: n
 
 
 def _leaving_states(potential: Potential, energy: float, path: np.ndarray) -> np.ndarray:
-    """Return (50, 4) states on a path (2, 101), which has the well on its left."""
+    """Return 50 states that leave across a path (2, 101) with the well on its left, of shape (50, 4)."""
     along = np.arctan2(*(path[:, _POINTS + 1] - path[:, _POINTS - 1])[::-1])
     angle = (along - 0.5 * np.pi)[:, None] + _ANGLES
     speed = np.sqrt(2.0 * (energy - potential.value(*path[:, _POINTS])))[:, None]

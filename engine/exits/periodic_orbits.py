@@ -1,9 +1,9 @@
 """Periodic orbits over a saddle in a rotating frame, found by Newton's method and continuation.
 
 The motion linearised at a saddle of Φ has a pair of eigenvalues ±iν: small oscillations of period 2π/ν around the saddle, its
-centre direction. By Lyapunov's centre theorem a family of periodic orbits begins with them. With σ = √(h − E), E the energy of
-the saddle, orbits are proportional to σ at first, and (position − saddle)/σ and the period depend smoothly on σ. They are
-predicted from those at smaller σ and corrected by Newton's method for several states of one period at once, so that errors grow
+centre direction. By Lyapunov's centre theorem, a family of periodic orbits begins with these oscillations. With σ = √(h − E), E
+the energy of the saddle, orbits are proportional to σ at first, and (position − saddle)/σ and the period depend smoothly on σ.
+Each orbit is predicted from orbits at smaller σ. Newton's method corrects several states of one period at once, so errors grow
 over a part of the period only (multiple shooting; Stoer & Bulirsch 2002, Introduction to Numerical Analysis, section 7.3.5). All
 quantities are in units of the well.
 """
@@ -22,19 +22,22 @@ from engine.integrator.kernels.dense_output import advance_states, sample_path, 
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# Number of states of one period that are corrected together, and number of points of the path between two of them.
+# Number of states of one period that are corrected together, the nodes.
 _NODES = 8
+# Number of points of the path between two nodes.
 _POINTS_PER_NODE = 25
 _MOST_CORRECTIONS = 12
-# Relative size of a correction below which further corrections are rounding errors once they no longer decrease. Near the saddle
-# the limit is this number of roundings of the energy.
+# Once corrections of this relative size no longer decrease, further corrections are rounding errors.
 _NEARLY_EXACT = 1e-6
+# Near the saddle, this limit is at least this number of roundings of the energy, relative to σ².
 _ROUNDINGS = 64
 # Largest relative change of a prediction by its corrections; a larger change can be a jump to another orbit.
 _LARGEST_CHANGE = 0.1
-# Number of orbits from which the next one is predicted; smallest step of σ, in units of the final σ; largest number of steps.
+# Number of orbits from which the next one is predicted.
 _PREDICTED_FROM = 4
+# Smallest step of σ, in units of the final σ.
 _SMALLEST_STEP = 2.0**-10
+# Largest number of steps of σ.
 _MOST_STEPS = 400
 # Largest number of integrator steps in a part of an orbit; an orbit with more steps passes close to a centre.
 _MOST_STEPS_PER_PART = 400
@@ -43,7 +46,7 @@ _SHARPNESS = 50.0
 # Largest distance between the ends of neighbouring parts of an orbit, in units of the well.
 _LARGEST_GAP = 1e-10
 
-# The last σ reached, with the unknowns of their orbits, see `_correct`.
+# The values of σ reached last, each with the unknowns of its orbit, see `_correct`.
 _Known = list[tuple[float, np.ndarray]]
 
 
@@ -53,11 +56,11 @@ class PeriodicOrbit(NamedTuple):
     Attributes
     ----------
     period
-        Its period, dimensionless.
+        Period of the orbit, dimensionless.
     path
         (4, 201) x, y, ẋ, ẏ, evenly spaced in time; the last point is the first one.
     edge
-        The value of u − a q² on a line just outside the orbit, in the axes of the saddle, dimensionless; for a see `ridge_bend`.
+        The value of u − a q², with a of `ridge_bend`, on a line just outside the orbit, in the axes of the saddle, dimensionless.
     multipliers
         (4,) complex eigenvalues of the monodromy matrix, the largest modulus first.
     """
@@ -89,8 +92,9 @@ class _Parts(NamedTuple):
 def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: int) -> PeriodicOrbit | None:
     """Return the orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
 
-    In a frame at rest the result is the orbit that `brake_orbits` finds, up to rounding errors. There the exits are made from the
-    orbits of `brake_orbits`, whose ends are exactly at rest. Orbits over several saddles do not begin as small oscillations.
+    In a frame at rest, the result is the orbit that `brake_orbits` finds, up to rounding errors. There the exits are made from
+    the orbits of `brake_orbits`, whose ends are exactly at rest. Orbits over several saddles are not found, because they do not
+    begin as small oscillations.
 
     Parameters
     ----------
@@ -112,14 +116,14 @@ def find_orbit_in_rotating_frame(potential: Potential, energy: float, channel: i
 
 
 def multipliers_of(matrix: np.ndarray) -> np.ndarray:
-    """Return (4,) complex eigenvalues of a monodromy matrix, the largest modulus first."""
+    """Return the complex eigenvalues of a monodromy matrix, of shape (4,), the largest modulus first."""
     values = np.linalg.eigvals(matrix).astype(complex)
     ordered: np.ndarray = values[np.argsort(-np.abs(values), kind="stable")]
     return ordered
 
 
 def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
-    """Return (4, 4) the flow linearised along one period from a state (4,), in units of the well."""
+    """Return the flow linearised along one period from a state (4,), of shape (4, 4), in units of the well."""
     kernels = kernels_of(potential)
     steps = trace_steps(kernels, start, period, len(potential.outcomes))
     durations = np.diff(steps[:, 4], append=period)
@@ -169,9 +173,9 @@ def _extrapolate(known: _Known, target: float) -> np.ndarray:
 
 
 def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray | None:
-    """Return the orbit at σ near a predicted one by Newton's method; None if it does not converge to one nearby.
+    """Correct a predicted orbit at σ by Newton's method; None if this does not converge to a nearby orbit.
 
-    Unknowns (4 nodes + 1,): (state − saddle)/σ at the nodes, evenly spaced over the period, and the period.
+    The unknowns, (4 nodes + 1,), are (state − saddle)/σ at the nodes, evenly spaced over the period, and the period.
     """
     unknowns: np.ndarray = predicted.copy()
     before = np.inf
@@ -224,7 +228,7 @@ def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndar
 
 
 def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
-    """Return (n, 4) time derivatives of states (n, 4)."""
+    """Return the time derivatives of n states, of shape (n, 4)."""
     x, y, vx, vy = states.T
     slope_x, slope_y = potential.gradient(x, y)
     twice = 2.0 * potential.rotation
@@ -251,7 +255,7 @@ def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | 
 
 
 def _product(matrices: np.ndarray) -> np.ndarray:
-    """Return (4, 4) the product of transition matrices (n, 4, 4), the first one applied first."""
+    """Return the product of n transition matrices, of shape (4, 4), with the first matrix applied first."""
     product: np.ndarray = functools.reduce(lambda before, matrix: matrix @ before, matrices)
     return product
 
@@ -272,7 +276,7 @@ def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrb
 
 
 def _edge(family: _Family, path: np.ndarray) -> float:
-    """Return a little more than the largest u − a q² on the path (4, points) of an orbit; for a see `ridge_bend`.
+    """Return a little more than the largest u − a q² on the path (4, points) of an orbit, with a of `ridge_bend`.
 
     The largest value itself is not a smooth function of the energy where its position jumps.
     """

@@ -8,6 +8,7 @@ from typing import Any
 
 from cachetools import LRUCache
 
+# Size that counts for a result without arrays, in bytes.
 _SMALL_RESULT = 1024
 
 ABSENT: Any = object()
@@ -44,7 +45,7 @@ class ResultCache:
             return self._results.get(key, default)
 
     def put(self, key: Hashable, result: Any) -> None:
-        """Store a result, evicting the least recently used ones where space is needed."""
+        """Store a result, evicting the least recently used results where space is needed."""
         with self._lock:
             self._results.pop(key, None)
             if _size(result) <= self.limit:
@@ -57,5 +58,5 @@ class ResultCache:
 
 
 def _size(result: Any) -> int:
-    """Return the size of a result in bytes, with that of its key."""
+    """Return the size in bytes with which a result counts."""
     return getattr(result, "nbytes", 0) or _SMALL_RESULT

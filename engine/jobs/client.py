@@ -17,7 +17,7 @@ _LARGEST_LIMIT = 1000
 
 
 class JobSubmitter(Protocol):
-    """Accepts requests: `Jobs` itself, or a `JobClient` of it."""
+    """Accepts requests: `Jobs` or a `JobClient`."""
 
     def request[Result](
         self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
@@ -35,7 +35,7 @@ class JobClient:
     most_requests
         Most requests open at the same time, 1 to 1000.
     account
-        As for `Jobs.request`.
+        The account of the client, see `Jobs.request`.
     """
 
     def __init__(self, jobs: Jobs, most_requests: int = MOST_REQUESTS, account: Hashable = None) -> None:

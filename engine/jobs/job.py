@@ -17,7 +17,7 @@ class Queue(Enum):
     """The queue in which the calls of a job wait for a thread."""
 
     FIRST_FRAME = "first frame"
-    """The function makes many short calls, which precede all others until its first result."""
+    """The function makes many short calls, which precede all other calls until its first result."""
 
     BACKGROUND = "background"
     """The function makes many short calls."""
@@ -26,7 +26,7 @@ class Queue(Enum):
     """The function is one call of up to seconds."""
 
     LIMITED = "limited"
-    """The function makes one call on text typed by a visitor, in a process with limits if any; one per account at a time."""
+    """The function makes one call on text typed by a visitor, in a process with limits if any; one call per account at a time."""
 
     COMPILATION = "compilation"
     """The function compiles kernels; only one such call runs at a time in the process."""
@@ -45,11 +45,11 @@ class Job[Result]:
         The function, which returns the result. When cancelled, it raises CancelledError or returns a result whose ``complete`` is
         False.
     arguments
-        Its positional arguments. A job among them is replaced by its result, which must be complete.
+        Positional arguments of the function. A job among them is replaced by its result, which must be complete.
     options
         ((name, value), …): keyword arguments.
     queue
-        The queue in which its calls wait for a thread.
+        The queue in which calls of the function wait for a thread.
     orbits
         Number of orbits that the function holds in memory.
     find_earlier

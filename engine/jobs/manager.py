@@ -68,7 +68,7 @@ class _Run:
 
 
 class Jobs:
-    """Job manager of a process.
+    """Manages the jobs of a process.
 
     Parameters
     ----------
@@ -79,11 +79,11 @@ class Jobs:
     most_orbits
         Largest number of orbits of all large running jobs together, at about 120 bytes per orbit.
     threads
-        Size of a thread pool of its own; None for the default pool of this process.
+        Size of the manager's own thread pool; None for the default pool of this process.
     limited
         Calls a function in a process with limits until an event is set, for `Queue.LIMITED`; None for a thread of this process.
     limited_calls
-        Largest number of such calls at a time, each of a different account.
+        Largest number of limited calls at a time, each of a different account.
     clock
         The clock; by default the clock of this process.
     """
@@ -102,7 +102,7 @@ class Jobs:
         self._limited = limited
         self._clock = clock
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads), clock)
-        # Numba compiles one function at a time, so that more threads would only wait for each other and use memory for orbits.
+        # Numba compiles one function at a time, so more threads would only wait for each other and use memory for orbits.
         self._compilations = FairScheduler(create_thread_pool(1), clock)
         self._limited_calls = FairScheduler(create_thread_pool(limited_calls), clock, one_each=True)
         self._semaphore = OrbitSemaphore(most_orbits)
@@ -130,12 +130,12 @@ class Jobs:
         job
             The job.
         on_result
-            Called from another thread with the result; if it has an attribute ``complete``, partial results come before.
+            Called from another thread with the result; if results have an attribute ``complete``, partial results come before.
         on_error
             Called from another thread with the exception if the computation fails.
         client
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
-            the second frame of any.
+            the second frame of any map.
         account
             The account whose share of the limit of compiled code the job uses, and whose turn it takes in the queues of limited
             calls and of compilations. With None no account is charged, and the turn is that of the client.
@@ -228,7 +228,7 @@ class Jobs:
                 subscription.deliver(result, last=True)
 
     def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
-        """Call the function of a job that `run` has started, or of a job that it needs."""
+        """Call the function of a job that `run` has started, or of a job that this job needs."""
         arguments = [self._find_result(run, each) if isinstance(each, Job) else each for each in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
         offered = {
@@ -270,7 +270,7 @@ class Jobs:
     def _finish(self, run: _Run, result: Any, error: Exception | None) -> list[Subscription]:
         """Cache the result, remove the job and return its subscriptions."""
         with self._lock:
-            # An interrupted result must not replace a complete one.
+            # An interrupted result must not replace a complete result.
             if result is not ABSENT and (_is_complete(result) or not _is_complete(self.cache.get(run.job, ABSENT))):
                 self.cache.put(run.job, result)
             if self._in_flight.get(run.job) is run:

@@ -8,18 +8,18 @@ from collections.abc import Callable
 from engine.jobs.scheduler import Clock, Priority
 
 REST_SECONDS = 1.0
-"""Time after the request of a map within which it is often replaced, because its user is still searching."""
+"""Time in seconds after the request of a map in which the map is often replaced, because its user is still searching."""
 
 CROWDED_REST_SECONDS = 3.0
-"""The same time while the process is crowded; most maps are then replaced before a second frame is computed."""
+"""The same time while the process is crowded, when most maps are replaced before a second frame is computed."""
 
 
 class MapPriority:
     """Priority of one map, from its request on.
 
-    The calls until the first frame have `Priority.FIRST_FRAME`. Later integration times change few pixels. During the first
-    `REST_SECONDS` they have `Priority.UNSETTLED`, so that other calls run first, but no thread stays idle. While the process is
-    crowded, all calls after the first frame have this priority for `CROWDED_REST_SECONDS`.
+    The calls until the first frame have `Priority.FIRST_FRAME`. Calls with later integration times, which change few pixels, have
+    `Priority.UNSETTLED` during the first `REST_SECONDS`, so that other calls run first, but no thread stays idle. While the
+    process is crowded, all calls after the first frame have this priority for `CROWDED_REST_SECONDS`.
 
     Parameters
     ----------

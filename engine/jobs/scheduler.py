@@ -33,7 +33,7 @@ class Priority(IntEnum):
     """Priority of a call; lower values run first."""
 
     FIRST_FRAME = 0
-    """Part of the first frame of a map; until it is complete the page shows nothing."""
+    """Part of the first frame of a map; until this frame is complete the page shows nothing."""
 
     LONG_CALL = 1
     """A single call of up to seconds, such as one orbit. If there are several threads, one is kept free of such calls."""
@@ -67,7 +67,7 @@ class _Call(NamedTuple):
 
 
 class FairScheduler:
-    """Scheduler that chooses the next call when a thread is free: by priority, and within a priority by client, round-robin.
+    """Chooses the next call when a thread is free: by priority, and within a priority by client, round-robin.
 
     Parameters
     ----------
@@ -124,10 +124,10 @@ class FairScheduler:
             return sum(len(calls) for queues in self._pending.values() for calls in queues.values())
 
     def pause_background(self, paused: bool) -> None:
-        """Pause or resume `Priority.BACKGROUND` calls and those of lower priority, to relieve an overloaded process.
+        """Pause or resume `Priority.BACKGROUND` calls and calls of lower priority, to relieve an overloaded process.
 
-        While they are paused, long calls have a duty cycle of 10 % of one thread. To start the next of these, call this method
-        about every 0.1 s during the pause.
+        During the pause, long calls have a duty cycle of 10 % of one thread. To start the next long call, call this method about
+        every 0.1 s during the pause.
         """
         with self._lock:
             resumed, self._background_paused = self._background_paused and not paused, paused
@@ -138,8 +138,8 @@ class FairScheduler:
         """Keep one thread free for first frames and delay `Priority.UNSETTLED` calls; or stop doing so.
 
         A single thread is not kept free. When other programs use the processor, a short call takes long, and the first frame of a
-        map would wait for several of them in turn. To start delayed calls that have become settled, call this method about every
-        0.1 s.
+        map would wait for several short calls in turn. To start delayed calls that have become settled, call this method about
+        every 0.1 s.
         """
         with self._lock:
             ended, self.first_frames_spared = self.first_frames_spared and not spared, spared
@@ -147,7 +147,7 @@ class FairScheduler:
             self._start_threads(self.threads if ended else 1)
 
     def add(self, call: _Call) -> None:
-        """Queue a call, or cancel it if those of its executor have been cancelled."""
+        """Queue a call, or cancel it if the calls of its executor have been cancelled."""
         with self._lock:
             is_cancelled = call.executor in self._cancelled
             if not is_cancelled:
@@ -175,7 +175,7 @@ class FairScheduler:
             self._pool.submit(self._run_calls)
 
     def _run_calls(self) -> None:
-        """Run calls until none may start."""
+        """Run calls until no call may start."""
         while chosen := self._take_next():
             call, priority = chosen
             begun, computed = self._clock.monotonic(), self._clock.thread_time()
@@ -254,5 +254,5 @@ class QueueExecutor(Executor):
         return future
 
     def cancel_futures(self) -> None:
-        """Cancel the calls that no thread has started, and all later ones."""
+        """Cancel the calls that no thread has started, and all later calls."""
         self._scheduler.cancel_futures(self)

@@ -22,9 +22,9 @@ class JobStats:
     orbits_held, orbits_limit
         Orbits of large running jobs and their limit.
     threads
-        Worker threads.
+        Number of worker threads.
     computed
-        Processor time of calls of low priority that have ended, in seconds.
+        Processor time of calls that have ended, without limited calls, in seconds.
     """
 
     in_flight: int

@@ -18,7 +18,7 @@ class Subscription:
     release
         Called with the subscription when it is cancelled.
     on_result
-        Called with each partial result and with the final one, from any thread but never concurrently.
+        Called with each partial result and with the final result, from any thread but never concurrently.
     on_error
         Called with the exception if the job fails.
     """
@@ -29,7 +29,7 @@ class Subscription:
         self._release = release
         self._on_result = on_result
         self._on_error = on_error
-        # Serializes the callbacks: a partial result from another thread must not follow the final one.
+        # Serializes the callbacks: a partial result from another thread must not follow the final result.
         self._delivery_lock = threading.RLock()
         self.open = True
         """Whether more results, or an error, may follow."""
@@ -55,5 +55,5 @@ class Subscription:
             try:
                 callback(value)
             except Exception:
-                # An exception in one subscriber must not affect the others.
+                # An exception in one subscriber must not affect other subscribers.
                 log.exception("a callback of a job failed")

@@ -25,7 +25,7 @@ LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks and cannot be resumed."""
 
 DEEP_PIXEL = 1e-7
-"""Distance of pixels, in units of the well, below which a map reports the share that double precision does not support."""
+"""Distance of pixels, in units of the well, below which a map reports the share of pixels lost to double precision."""
 
 SAMPLED_SIDE = 16
 """Approximate number of pixels per side that are sampled for `estimate_rounded_share`."""
@@ -53,11 +53,11 @@ def compute_map(
         Called in this thread with the map so far, at increasing intervals: first at coarse resolution, then at full resolution,
         then with longer integration times. A map of more than 2²⁰ pixels is filled block by block.
     cancel, executor, on_progress
-        Fields of `execution`, which they replace if given. All other long functions take ``execution=Execution(executor,
+        Replace the fields of `execution` with these names if given. All other long functions take ``execution=Execution(executor,
         cancel)`` instead; here both are allowed.
     resume
-        An earlier map, complete or cancelled, whose spec differs at most by a smaller t_max: its orbits are continued. Maps
-        computed in blocks cannot be resumed.
+        An earlier map, complete or cancelled, with an equal spec except that its t_max may be smaller. Its orbits are continued.
+        Maps computed in blocks cannot be resumed.
     execution
         How the computation runs. When it is cancelled, the map so far is returned, with ``complete`` False.
 
@@ -114,7 +114,7 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
 
 
 def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
-    """Add to a map in units of the well, in a deep zoom, the share of pixels that double precision does not support."""
+    """Add to a map in units of the well, if it is a deep zoom, the share of pixels that double precision does not support."""
     pixels = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
     is_deep = result.spec.plane.parameter is None and 0.0 < min(pixels) < DEEP_PIXEL
     if not (result.complete and is_deep):
@@ -150,14 +150,14 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
 
 
 class BlockStack:
-    """The computation of a map of one potential, block by block, because all its orbits together need too much memory.
+    """Computes a map of one potential block by block, because all its orbits together need too much memory.
 
     Parameters
     ----------
     spec
         The request, `MapSpec.in_well_units`.
     max_pixels
-        See `row_blocks`.
+        Largest number of pixels in a block, see `row_blocks`.
     """
 
     def __init__(self, spec: MapSpec, max_pixels: int) -> None:
@@ -197,8 +197,8 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
     """Estimate the share of pixels of a complete map whose fate or crossings change with the errors of double precision.
 
     About `SAMPLED_SIDE`² pixels, evenly spaced, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only
-    the errors of the integration differ. If the outcome changes, one of the two is wrong. The share of changes is therefore at
-    most the sum of both shares of wrong pixels, and at least their difference.
+    the errors of the integration differ. If the outcome changes, one of the two outcomes is wrong. The share of changes is
+    therefore at most the sum of the shares of wrong pixels in both integrations, and at least the difference.
 
     Parameters
     ----------
@@ -209,14 +209,14 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
 
     Returns
     -------
-    The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN if none is interior.
+    The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN without interior pixels.
     """
-    thinned = _thinned(escape_map)
+    thinned = _sample_pixels(escape_map)
     unlike = find_unlike_neighbours(thinned.fate, thinned.crossings)
     return run_to_frame(TrustTest(thinned, unlike, SAME_STARTS), execution).doubtful_share
 
 
-def _thinned(escape_map: EscapeMap) -> EscapeMap:
+def _sample_pixels(escape_map: EscapeMap) -> EscapeMap:
     """Return evenly spaced pixels of a map, with the request of the whole map."""
     down, right = (max(1, side // SAMPLED_SIDE) for side in escape_map.fate.shape)
     arrays = {name: getattr(escape_map, name)[down // 2 :: down, right // 2 :: right] for name in PIXEL_ARRAYS}

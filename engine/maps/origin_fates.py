@@ -1,4 +1,4 @@
-"""Origins and fates of orbits: their outcomes backward in time, such as the channels by which they entered, and forward."""
+"""Origins and fates of orbits: their outcomes backward in time, such as the channel of entry, and forward in time."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class OriginFateMap(PixelAnalysis):
         return [outcome.label for outcome in self.spec.outcomes]
 
     def count_passages(self) -> np.ndarray:
-        """Return (outcomes + 1, outcomes + 1) int64: number of starts by origin (row) and fate (column), 0 for bounded."""
+        """Return the number of starts by origin (row) and fate (column), 0 for bounded; int64, (outcomes + 1, outcomes + 1)."""
         size = len(self.spec.outcomes) + 1
         interior = (self.origin >= 0) & (self.fate >= 0)
         pairs = self.origin[interior].astype(np.int64) * size + self.fate[interior]

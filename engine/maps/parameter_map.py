@@ -1,6 +1,6 @@
 """Maps along a parameter, in which each row, or each column, is a map with its own potential.
 
-Such a line has the units of its well and its own exits, and is computed like any map of its potential. The lines of a whole map
+Each line has the units of its own well and its own exits, and is computed like any map of its potential. The lines of a whole map
 are computed one by one.
 """
 
@@ -28,13 +28,13 @@ from engine.slices.axes import HeldParameter, highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family
 from engine.slices.window import Window
 
-# Time, in units of the well, up to which a line is one task of the executor, of about 50 ms at most. Dividing a line into tiles,
-# and threads that wait for them, would take three times as long, which pays only for orbits that are still inside.
+# Up to this time, in units of the well, a line is one task of the executor, of about 50 ms at most. Dividing a line into tiles,
+# for which a thread waits, takes three times as long. This pays only for orbits that are still inside.
 _FIRST_HORIZON = 1000.0
 # Strides between the lines of the first frames.
 _STRIDES = (8, 4, 2, 1)
 # The arrays whose positive codes are numbers of outcomes.
-_NUMBERED = ("fate", "outside")
+_OUTCOME_ARRAYS = ("fate", "outside")
 
 Place = tuple[Any, Any]
 """The index of a line in the arrays of a map."""
@@ -54,7 +54,7 @@ class Line:
     place
         The index of the line in the arrays of the whole map.
     numbers
-        (outcomes + 1,) the fate on the whole map for each fate of the line; entry 0 is 0.
+        (outcomes + 1,) fate on the whole map of each fate of the line; entry 0 is 0.
     """
 
     spec: MapSpec
@@ -66,7 +66,7 @@ class Line:
         own = np.zeros(int(self.numbers.max(initial=0)) + 1, np.int8)
         own[self.numbers] = np.arange(self.numbers.size)
         arrays: dict[str, Any] = {name: getattr(escape_map, name)[self.place] for name in PIXEL_ARRAYS}
-        for name in _NUMBERED:
+        for name in _OUTCOME_ARRAYS:
             arrays[name] = renumber(arrays[name], own)
         x, ordinate = self.spec.pixel_centres()
         line = replace(escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, **arrays)
@@ -78,7 +78,7 @@ class Line:
 
 
 def find_lines(spec: MapSpec) -> list[Line | None]:
-    """Return the lines of a map along a parameter, in increasing order of it; None where the system has no potential."""
+    """Return the lines of a map along a parameter, in increasing order of its values; None where there is no potential."""
     axis, place = spec.plane.parameter, spec.plane.parameter_axis
     assert axis is not None
     window, family = spec.find_window(), parameter_family(axis)
@@ -93,6 +93,7 @@ def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k:
     except ValueError:
         return None
     columns, rows = spec.resolution
+    # Across the line, only the middle of the window matters.
     edges = value - 0.5, value + 0.5
     place: Place
     if spec.plane.parameter_axis == 0:
@@ -104,7 +105,7 @@ def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k:
 
 
 class LineStack:
-    """The computation of the lines of a map along a parameter.
+    """Computes the lines of a map along a parameter.
 
     Parameters
     ----------
@@ -169,7 +170,7 @@ class LineStack:
         self._found[k] = found if self._keeps_states else replace(found, batch=None)
         for name, array in self._arrays.items():
             codes = getattr(found, name)
-            array[line.place] = renumber(codes, line.numbers) if name in _NUMBERED else codes
+            array[line.place] = renumber(codes, line.numbers) if name in _OUTCOME_ARRAYS else codes
         if found.spec.t_max < self.spec.t_max:
             open_ended = (found.fate == Fate.BOUNDED) & (found.evidence == Evidence.INTEGRATED)
             for name, value in (("fate", Fate.NOT_COMPUTED), ("evidence", Evidence.NONE)):
@@ -230,7 +231,7 @@ def analyse_map[Analysis: PixelAnalysis](
 
     Returns
     -------
-    The analysis of the map; it is complete when those of all its lines are complete.
+    The analysis of the map; it is complete when the analyses of all lines are complete.
     """
     if escape_map.spec.plane.parameter is None:
         return run_to_frame(begin(escape_map, ALL_PIXELS), execution, on_frame)
@@ -238,7 +239,7 @@ def analyse_map[Analysis: PixelAnalysis](
 
 
 class _LineAnalyses[Analysis: PixelAnalysis]:
-    """The analyses of the lines of a map, which run concurrently; see `analyse_map`."""
+    """Analyses the lines of a map concurrently, see `analyse_map`."""
 
     def __init__(
         self,
@@ -282,7 +283,7 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
 
 
 def _as_finished[Key, Found](running: dict[Future[Found], Key], execution: Execution) -> Iterator[tuple[Key, Found]]:
-    """Yield results as they are finished; calls that are dropped when the computation is cancelled are left out."""
+    """Yield results as they are finished, without those of calls that were dropped because the computation was cancelled."""
     for future in as_completed(running):
         found = execution.collect(future)
         if found is not None:
@@ -290,7 +291,7 @@ def _as_finished[Key, Found](running: dict[Future[Found], Key], execution: Execu
 
 
 def _coordinating_threads() -> ThreadPoolExecutor:
-    """Return threads for lines that are computed concurrently. They share the executor, and mostly wait for their tiles."""
+    """Return threads for lines that are computed concurrently. The threads share the executor, and mostly wait for tiles."""
     return ThreadPoolExecutor(2 * count_cores(), thread_name_prefix="lines")
 
 

@@ -1,4 +1,4 @@
-"""Pixels of a map, numbered row by row from 0; their mirror images; the codes that an analysis assigns to them."""
+"""Pixels of a map, numbered row by row from 0: their mirror images, and the codes that an analysis assigns to them."""
 
 from __future__ import annotations
 
@@ -79,12 +79,12 @@ class MirrorPixels:
         self.partner = np.arange(x.size * ordinate.size) if partner is None else partner
 
     def firsts_among(self, pixels: np.ndarray) -> np.ndarray:
-        """Return those of the pixels (n,) that are the first of their pair."""
+        """Return the pixels among `pixels` (n,) that are the first of their pair."""
         firsts: np.ndarray = pixels[pixels <= self.partner[pixels]]
         return firsts
 
     def firsts_of(self, pixels: np.ndarray) -> np.ndarray:
-        """Return the first pixel of the pair of each pixel (n,); the pixels are sorted and distinct, and so is the result."""
+        """Return the first pixels of the pairs of `pixels` (n,). Both are sorted and distinct."""
         if not self.symmetric:
             return pixels
         is_first = np.zeros(self.partner.size, bool)
@@ -98,7 +98,7 @@ class MirrorPixels:
 
 
 class PixelCodes:
-    """Codes of the pixels of a map while an analysis decides them; the second of two mirror images gets the code of the first.
+    """Holds the codes of the pixels of a map while an analysis decides them. Both of two mirror images get the same code.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ type MapLike = EscapeMap | xr.Dataset
 """A map as measures and analyses accept it: an `EscapeMap`, or its dataset, such as a map of a sweep."""
 
 NOTED_SHARE = 0.01
-"""Share of the interior pixels not supported by double precision from which a map reports it."""
+"""A map reports the share of interior pixels that double precision does not support if the share is at least this."""
 
 
 @with_former_fields
@@ -66,7 +66,7 @@ class EscapeMap(MapResult):
     x, ordinate
         (columns,), (rows,) pixel centres.
     fate, escape_time, crossings, energy_error
-        As in `Outcomes`; undecided pixels are `Fate.NOT_COMPUTED`.
+        See `Outcomes`; undecided pixels are `Fate.NOT_COMPUTED`.
     evidence
         int8, the `Evidence` of each bounded orbit: the reason why it is called bounded. Crossings and energy error of an orbit
         bounded on evidence refer to the time up to which it was integrated.
@@ -84,7 +84,7 @@ class EscapeMap(MapResult):
     started
         bool, the pixels whose orbits have been started.
     batch
-        State of the orbits `continued_pixels` for ``resume``, in units of the well; None in frames.
+        States of the orbits of `continued_pixels` for ``resume``, in units of the well; None in frames.
     rounded_share
         For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support,
         because their outcome changes with the errors of the integration; otherwise None.
@@ -186,7 +186,7 @@ class EscapeMap(MapResult):
         return replace(spec.plane.restore(self, spec.potential.units), spec=spec)
 
     def coordinates(self, pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return (n,) x and (n,) ordinate of the centres of pixels (n,), which are numbered row by row from 0."""
+        """Return x and ordinate of the centres of n pixels, which are numbered row by row from 0, of shape (n,) each."""
         rows, columns = np.divmod(pixels, self.x.size)
         return self.x[columns], self.ordinate[rows]
 
@@ -209,8 +209,8 @@ class EscapeMap(MapResult):
 
         Returns
         -------
-        The arrays, of (rows, columns) / `stride` rounded up, and the window that they cover. It can extend beyond the window of
-        the map by less than one square, because the last squares may be incomplete.
+        The arrays, of (rows, columns) / `stride` rounded up, and the window that they cover. This window can extend beyond that
+        of the map by less than one square, because the last squares may be incomplete.
         """
         names = ("fate", "escape_time", "crossings", "evidence")
         if self.stride == 1:
@@ -276,23 +276,23 @@ def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, f
 
 
 def find_interior(fate: np.ndarray) -> np.ndarray:
-    """Return a bool array of the same shape: whether starts are neither forbidden nor outside."""
+    """Return whether starts are neither forbidden nor outside, for fates of any shape."""
     interior: np.ndarray = (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
     return interior
 
 
 def representative_indices(size: int, stride: int) -> np.ndarray:
-    """Return (size,) for each row or column the first one computed in its block of `stride`: the middle, or the last one."""
+    """Return for each of `size` rows or columns the first computed in its block of `stride`: the middle, or the last of all."""
     return np.minimum(np.arange(size) // stride * stride + stride // 2, size - 1)
 
 
 def as_map(name: str, value: Any) -> EscapeMap:
-    """Return a map, given as one or as its dataset: `EscapeMap.to_xarray`, a file, or ``dataset.sel(h=0.3)`` of a sweep.
+    """Return a map, given as an `EscapeMap` or as its dataset: `to_xarray`, a file, or ``dataset.sel(h=0.3)`` of a sweep.
 
     Raises
     ------
     ValueError
-        If it is neither of them, or a dataset of several maps; the message contains `name` as the parameter.
+        If the value is neither, or is a dataset of several maps; the message contains `name` as the parameter.
     """
     if isinstance(value, EscapeMap):
         return value
@@ -300,7 +300,7 @@ def as_map(name: str, value: Any) -> EscapeMap:
 
 
 def read_map(dataset: xr.Dataset) -> EscapeMap:
-    """Return the map of a dataset. It has no integration state, so that it cannot be resumed."""
+    """Return the map of a dataset. It has no integration state, so it cannot be resumed."""
     spec = read_spec(dataset)
     abscissa, ordinate = spec.plane.axis_names
     arrays: dict[str, Any] = {name: read_only(np.array(dataset[name].values)) for name in _STORED_ARRAYS}

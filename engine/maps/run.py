@@ -27,7 +27,9 @@ COARSE_PIXELS = 1200
 FIRST_TEST_TIME = 1000.0
 """Time, in units of the well, at which undecided orbits are first tested for evidence; most escapes happen earlier."""
 
+# Horizon of the first stages, in units of the well.
 _FIRST_HORIZON = 100.0
+# Ratio of successive horizons.
 _HORIZON_FACTOR = 10.0
 
 
@@ -46,12 +48,12 @@ def looks_for_tori(spec: MapSpec) -> bool:
 
 
 class MapRun:
-    """The computation of a map, or of some of its rows, in units of the well.
+    """Computes a map, or some of its rows, in units of the well.
 
     If two pixels are mirror images of each other, only the first is computed.
 
-    The results up to a time do not depend on t_max, so that a map with a smaller t_max is the beginning of this one. Stages end
-    at fixed times. From `FIRST_TEST_TIME` on, the orbits that are still inside at these times are tested for evidence.
+    The results up to a time do not depend on t_max, so a map with a smaller t_max is the beginning of this map. Stages end at
+    fixed times. At these times, starting with `FIRST_TEST_TIME`, orbits that are still inside are tested for evidence.
 
     Parameters
     ----------
@@ -89,7 +91,7 @@ class MapRun:
         self._curves = np.repeat(closed_exits(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
         self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(self._curve_row.size, bool)
-        # Energy errors of the orbits that an earlier map has finished, whose states are not stored; NaN for all others.
+        # Energy errors of the orbits that an earlier map has finished, whose states are not stored; NaN for all other orbits.
         self._earlier_errors: np.ndarray | None = None
         if resume is not None:
             self._continue(resume)
@@ -109,7 +111,7 @@ class MapRun:
         self._batch.reopen(continued)
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each integrates orbits to a horizon, or tests the orbits inside at that time."""
+        """Yield the stages, see `Staged`; each integrates orbits to a horizon, or looks for evidence there."""
         changed = partial(on_change, False)
         self._find_starts(execution)
         for pixels, stride, horizon in self._targets():
@@ -126,7 +128,7 @@ class MapRun:
             yield pixels, stride, horizon
 
     def _refinements(self) -> Iterator[tuple[np.ndarray, int]]:
-        """Yield (pixels, stride) of each refinement, coarse to fine; the last one contains all pixels."""
+        """Yield (pixels, stride) of each refinement, coarse to fine; the last refinement contains all pixels."""
         numbers = np.arange(self._started.size).reshape(self.shape)
         stride = 1 if self._started.all() else self.stride
         while stride > 1:
@@ -136,7 +138,7 @@ class MapRun:
         yield self._mirror.firsts_of(numbers.ravel()), 1
 
     def _find_starts(self, execution: Execution) -> None:
-        """Find the initial states of all pixels that have none."""
+        """Find the initial states of all pixels without a state."""
         missing = self._mirror.firsts_among(np.flatnonzero((self._batch.fate == Fate.NOT_COMPUTED) & ~self._started))
         axes = self.spec, self.x, self.ordinate
         for part, states in run_parts(_start_states, missing, lambda part: (*axes, part), execution=execution):
@@ -169,7 +171,7 @@ class MapRun:
         self._batch.mark_bounded(pixels[closed & undecided], Evidence.CLOSED)
 
     def _find_exits(self, pixels: np.ndarray) -> None:
-        """Find the exits at those energies of the pixels for which they are not known yet."""
+        """Find the exits at the energies of the pixels, except where they are known."""
         if not self._rows_without_exits:
             return
         rows, firsts = np.unique(self._curve_row[pixels], return_index=True)
@@ -179,7 +181,7 @@ class MapRun:
                 self._rows_without_exits.discard(row)
 
     def _test_for_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark orbits inside at t = `reached` as bounded if there is evidence; a cancelled test marks none."""
+        """Mark orbits inside at t = `reached` as bounded if there is evidence; a cancelled test marks no orbits."""
         spec, batch = self.spec, self._batch
         tested = self._find_untested(reached, execution)
         if not tested.size:
@@ -228,7 +230,7 @@ class MapRun:
         return collect_map(self.spec, (self.x, self.ordinate), arrays, **stage)
 
     def _outcomes(self) -> Outcomes:
-        """Return the outcomes of all pixels, (n,) arrays; those of second mirror images are copied from the first."""
+        """Return the outcomes of all n pixels, (n,) arrays; second mirror images get those of the first."""
         seconds = self._mirror.partner
         firsts = np.flatnonzero(self._started & (seconds > np.arange(seconds.size)))
         if firsts.size:
@@ -250,7 +252,7 @@ class MapRun:
 
 
 def _start_states(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    """Return (n, 4) initial states of pixels (n,) of a map with these pixel centres; runs in a worker."""
+    """Return the initial states of n pixels of a map with these pixel centres, of shape (n, 4); runs in a worker."""
     rows, columns = np.divmod(pixels, x.size)
     return spec.start_states(x[columns], ordinate[rows])
 

@@ -1,4 +1,4 @@
-"""The request for an escape map, which is frozen, validated and hashable, so that it also serves as a cache key."""
+"""The request for an escape map: frozen, validated and hashable, so it also serves as a cache key."""
 
 from __future__ import annotations
 
@@ -62,9 +62,9 @@ class MapSpec:
         the default window, also after ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows, the default
         window is shifted by half a pixel if its middle line would be a line of symmetry, on which orbits stay for ever.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless; by default 1e5, in rotating frames 1000/Ω, with centres or an escape
-        radius 1000, because bounded orbits are integrated to the end there. If the unit of time 1/ω of the well is above 1, the
-        limit is 1e8 in this unit.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless. The default is 1e5; in rotating frames it is 1000/Ω, and with centres or
+        an escape radius 1000, because bounded orbits are integrated to the end there. If the unit of time 1/ω of the well is
+        above 1, the limit is 1e8 in this unit.
     use_evidence
         Whether an orbit may be called bounded before t_max, on evidence that it never escapes, see `Evidence`.
     backward
@@ -137,7 +137,7 @@ class MapSpec:
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """The outcomes of orbits, of which the first is fate 1; along a parameter, those of all its potentials."""
+        """The outcomes of orbits, in the order of their fates from 1; along a parameter, those of all its potentials."""
         axis = self.plane.parameter
         return self.potential.outcomes_at(self.energy) if axis is None else parameter_family(axis).outcomes
 
@@ -147,7 +147,7 @@ class MapSpec:
         return None if self.window is None else checked_window(self.window)
 
     def find_window(self) -> Window:
-        """Return the window of the map: the given one, or the default window.
+        """Return the window of the map: the given window, or the default window.
 
         Raises
         ------
@@ -170,29 +170,29 @@ class MapSpec:
         return trace_zero_velocity_curve(self.potential, self.plane, self.energy, self.find_window())
 
     def in_well_units(self) -> MapSpec:
-        """Return the map in units of the well, with its window; the legal ranges of t_max and of energies do not apply to it."""
+        """Return the map in units of the well, with its window; the legal ranges of t_max and energy do not apply to this map."""
         units, window = self.potential.units, self.find_window()
         potential = self.potential.reversed_in_time if self.backward else self.potential
         return replace_unchecked(
             self,
             potential=potential.in_well_units,
             plane=self.plane.in_well_units(units),
-            # Units are powers of 2, so that factors are exact.
+            # Units are powers of 2, so factors are exact.
             energy=scaled_energy(self.energy, 1.0 / units.energy),
             window=window.scaled(*(1.0 / unit for unit in self.plane.axis_units(units))),
             t_max=self.t_max / units.time,
         )
 
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return x (columns,) and ordinate (rows,) of the pixel centres."""
+        """Return x and ordinate of the pixel centres, (columns,) and (rows,)."""
         return self.find_window().pixel_centres(*self.resolution)
 
     def energies(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """Return (n,) h of points (n,), (n,) of the slice."""
+        """Return h of n points of the slice, of shape (n,)."""
         return np.broadcast_to(self.plane.energies(self.common_energy, x, ordinate), np.shape(x))
 
     def start_states(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """Return (n, 4) initial states x, y, px, py of points (n,), (n,) of the slice; NaN where forbidden."""
+        """Return the initial states x, y, px, py of n points of the slice, of shape (n, 4); NaN where forbidden."""
         states = self.plane.states(self.potential, self.common_energy, x, ordinate)
         if self.backward:
             states[:, 2:] *= -1.0

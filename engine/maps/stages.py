@@ -8,8 +8,11 @@ from typing import Protocol
 
 from engine.foundations.execution import Execution
 
-SHORTEST_PAUSE, LONGEST_PAUSE = 0.1, 1.0
-"""Limits of the pause between two frames, in seconds."""
+SHORTEST_PAUSE = 0.1
+"""Shortest pause between two frames, in seconds."""
+
+LONGEST_PAUSE = 1.0
+"""Longest pause between two frames, in seconds."""
 
 # Pause between frames as a share of the elapsed time.
 _PAUSE_SHARE = 0.3
@@ -36,7 +39,7 @@ class Staged[F: Frame](Protocol):
     """A computation in stages: coarse to fine, short to long integration times, or part by part of a map."""
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages; each is called before the next one is requested. They call `on_change` repeatedly."""
+        """Yield the stages; each is called before the next one is requested. Stages call `on_change` repeatedly."""
 
     def progress(self) -> float:
         """Return the share of the work done, 0 to 1."""
@@ -60,7 +63,7 @@ def run_stages[F: Frame](
     work
         The computation.
     execution
-        How it runs; its progress is reported whenever pixels may have changed.
+        How the computation runs; progress is reported whenever pixels may have changed.
     on_frame
         Called in this thread with incomplete frames: first at the end of a stage, whose frame has one resolution, then after
         pauses.

@@ -17,9 +17,9 @@ BOX = 5
 """Default side of a box in pixels; a box has 25 starts, as in Daza et al. (2016)."""
 
 COUNTS_BOUNDED = True
-"""Whether bounded orbits are a label. They are, because staying bounded is one of the possible outcomes of a start."""
+"""Whether bounded orbits are a label. They are, because staying bounded is a possible outcome of a start."""
 
-# Two labels in equal parts give exactly ln 2, and the mean over boxes can exceed it by rounding.
+# Two labels in equal parts give exactly ln 2, and the mean over boxes can exceed ln 2 by rounding.
 _ROUNDING = 1e-12
 
 
@@ -35,8 +35,8 @@ class BasinEntropy(RecordedResult):
         S_bb, the mean entropy of the boxes with more than one label; NaN if there are no such boxes.
     s_b_error, s_bb_error
         Standard errors of these means for independent boxes; NaN for fewer than two boxes. The boxes of a tiling are more evenly
-        distributed: shifting it by a few pixels changed S_b and S_bb of some maps by up to about two thirds of these errors. The
-        errors do not include the effect of another box size or resolution, which is larger.
+        distributed: shifting the tiling by a few pixels changed S_b and S_bb of some maps by up to about two thirds of these
+        errors. The errors do not include the effect of another box size or resolution, which is larger.
     boxes, boundary_boxes
         Number of boxes that count, and number of these boxes with more than one label.
     labels
@@ -94,7 +94,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     The image is tiled with boxes from its first row and column. A strip at the far edges that is narrower than a box is left out,
     and so are boxes with a pixel that does not count. With p_ij the share of label j in box i,
 
-        S_i = Σ_j p_ij ln(1/p_ij),   S_b = mean of all S_i,   S_bb = mean of those S_i with more than one label
+        S_i = Σ_j p_ij ln(1/p_ij),   S_b = mean of all S_i,   S_bb = mean of the S_i of boxes with several labels
 
     (Daza, Wagemakers, Georgeot, Guéry-Odelin & Sanjuán 2016, Sci. Rep. 6, 31416; leaving out boxes is our choice). Entropies for
     different box sizes or pixel spacings are not comparable.
@@ -102,8 +102,8 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     Parameters
     ----------
     labels
-        A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits are a basin of their own,
-        or (rows, columns) integers; equal ones are one basin.
+        A complete map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits are a basin of their own;
+        or (rows, columns) integers, where equal integers are one basin.
     valid
         (rows, columns) bool, the pixels that count; for a map, the interior pixels. None for all, if no label is negative.
     box
@@ -143,14 +143,14 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
 
 
 def _tile(image: np.ndarray, box: int) -> np.ndarray:
-    """Return (boxes, box²) pixels of each complete box."""
+    """Return the pixels of each complete box, of shape (boxes, box²)."""
     rows, columns = (side // box for side in image.shape)
     tiles = image[: rows * box, : columns * box].reshape(rows, box, columns, box)
     return tiles.swapaxes(1, 2).reshape(rows * columns, box * box)
 
 
 def _box_entropies(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return S_i (boxes,), exactly 0 for one label, and the number of labels (boxes,) in each box."""
+    """Return S_i, exactly 0 for one label, and the number of labels of each box, both (boxes,)."""
     count, size = boxes.shape
     ordered = np.sort(boxes, axis=1)
     # Runs of equal labels in the sorted boxes, given by the index of their first pixel.

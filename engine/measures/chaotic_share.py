@@ -1,4 +1,4 @@
-"""The share of chaotic orbits among the bounded ones."""
+"""The share of chaotic orbits among the bounded orbits."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _JUDGED = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
 
 @dataclass(frozen=True)
 class ChaoticShare(Result):
-    """Chaotic orbits among the bounded ones.
+    """Counts of chaotic orbits among the bounded orbits.
 
     Attributes
     ----------
     chaotic, judged
-        Number of chaotic orbits, and of all bounded ones that are judged.
+        Number of chaotic orbits, and of all bounded orbits that are judged.
     share
-        Share of the chaotic ones; NaN if none is judged.
+        Share of chaotic orbits; NaN if no orbit is judged.
     low, high
-        95 % Wilson interval of the share, which holds for independent random starts; NaN if none is judged.
+        95 % Wilson interval of the share, which holds for independent random starts; NaN if no orbit is judged.
     """
 
     chaotic: int
@@ -44,7 +44,7 @@ class ChaoticShare(Result):
 
 
 def compute_chaotic_share(character: Any) -> ChaoticShare:
-    """Count the chaotic orbits among the bounded ones.
+    """Count the chaotic orbits among the bounded orbits.
 
     Orbits without a sign of chaos until t_max count as not chaotic, as in Zotos (2014).
 

@@ -24,13 +24,14 @@ from engine.measures.starts import Measurable, Starts, read_starts
 
 # Half-width of the 95 % interval of a normal distribution, in standard deviations.
 _DEVIATIONS = 1.96
-# Ratio of the number of escapes in the next window tried to that in the current one.
+# Ratio of the number of escapes in the next window tried to that in the current window.
 _WINDOW_RATIO = 0.9
-# Where a law first appears to hold, an undetectable remainder of the transient still biases the rate, so that the fit uses only
-# this share of the escapes, the latest ones.
+# Where a law first appears to hold, an undetectable remainder of the transient still biases the rate. The fit therefore uses only
+# this share of the escapes, the latest.
 _SETTLED_SHARE = 0.5
-# Degrees of the polynomials in the test of a law; the first one is almost the score.
+# Degrees of the polynomials in the test of a law. Degree 1 is left out, because it is almost the score.
 _DEGREES = (2, 3, 4)
+# Factors that normalise these polynomials.
 _NORMS = np.sqrt(2.0 * np.array(_DEGREES) + 1.0)
 # Steepness below which the variance of the uniform distribution is used.
 _FLAT = 1e-2
@@ -44,15 +45,15 @@ def fit_decay_laws(
 ) -> DecayLaws:
     """Fit an exponential law and a power law to the escape times in a window, and decide which one holds, if any.
 
-    Rates are maximum-likelihood estimates from the escape times inside the window, given that they lie in it, so that neither
+    Rates are maximum-likelihood estimates from the escape times inside the window, given that they lie in it. Therefore neither
     regular orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong to mirror images
-    and count once. The others are treated as independent draws although the starts form a grid: where a law held, rates from
+    and count once. All times are treated as independent draws although the starts form a grid: where a law held, rates from
     shifted grids scattered 0.8 to 1.1 times as much as the interval implies (docs/measures.md). A law is ruled out by Neyman's
     smooth test, with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
 
-    A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until one law is not ruled
-    out, neither for them nor for their later half. This half is the window, by the rule of Deluca & Corral (2013, Acta Geophys.
-    61, 1351) with an additional margin. If there is no such window, there is no fit. The laws are compared by their
+    A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until a law is ruled out
+    neither for these escapes nor for their later half. This half is the window, by the rule of Deluca & Corral (2013, Acta
+    Geophys. 61, 1351) with an additional margin. If there is no such window, there is no fit. The laws are compared by their
     log-likelihood ratio (Vuong 1989, Econometrica 57, 307).
 
     Parameters
@@ -136,7 +137,7 @@ class _Sample:
         return float(special.chdtrc(len(_DEGREES), u.size * means @ np.linalg.solve(covariance, means)))
 
     def log_likelihoods(self, law: DecayLaw) -> np.ndarray:
-        """Return (n,) logarithms of the largest likelihood of a law, up to a constant common to both laws."""
+        """Return the log-likelihood of each escape time under the fitted law, up to a constant common to both laws."""
         from scipy import special
 
         u = self.unit_times(law)
@@ -151,7 +152,7 @@ class _Sample:
 
 
 def _choose_t_low(times: np.ndarray, t_high: float) -> float:
-    """Return the time from which a law holds; NaN if there is none, or if there are too few escapes."""
+    """Return the time from which a law holds; NaN if no law holds, or if there are too few escapes."""
     remaining = times.size - 1
     while int(remaining * _SETTLED_SHARE) >= MIN_ESCAPES:
         sample, later = (_latest(times, t_high, count) for count in (remaining, int(remaining * _SETTLED_SHARE)))
@@ -167,7 +168,7 @@ def _latest(times: np.ndarray, t_high: float, count: int) -> _Sample:
 
 
 def _compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> DecayLaws:
-    """Fit both laws to a sample, and find the one that holds and is significantly more likely."""
+    """Fit both laws to a sample, and find the law that holds and is significantly more likely."""
     escaped = [int(np.count_nonzero(statistics.escape_times <= t)) for t in (sample.t_low, sample.t_high)]
     survival = [1.0 - count / statistics.decided for count in escaped]
     exponential, power_law = (_fit_law(law, sample, *survival) for law in DecayLaw)
@@ -197,7 +198,7 @@ def _fit_law(law: DecayLaw, sample: _Sample, survival_low: float, survival_high:
 def _fit_steepness(u: np.ndarray) -> float:
     """Return the maximum-likelihood steepness k, of either sign, of a density ∝ exp(−k u) on 0 ≤ u ≤ 1.
 
-    It solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean of u; the left form is also accurate for small k.
+    k solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean of u; the left form is also accurate for small k.
     Replacing u by 1 − u changes only the sign of k.
     """
     from scipy import special
@@ -213,6 +214,6 @@ def _fit_steepness(u: np.ndarray) -> float:
 
 
 def _variance(steepness: float) -> float:
-    """Return the variance of u."""
+    """Return the variance of u for a density of this steepness."""
     k = abs(steepness)
     return 1.0 / k**2 - float(np.exp(-k) / np.expm1(-k) ** 2) if k > _FLAT else 1.0 / 12.0

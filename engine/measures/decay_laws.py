@@ -1,7 +1,7 @@
 """Decay laws of the escapes of a map, exponential, power law or neither, as numbers, curves and sentences.
 
-Both laws are truncated exponentials in a unit time u from 0 at t_low to 1 at t_high, which is linear in t for the exponential law
-and in ln t for the power law. Both therefore share one estimator and one test.
+Both laws are truncated exponentials in a unit time u from 0 at t_low to 1 at t_high. The unit time is linear in t for the
+exponential law and in ln t for the power law. Both laws therefore share one estimator and one test.
 """
 
 from __future__ import annotations
@@ -94,9 +94,9 @@ class DecayLaws(RecordedResult):
     exponential, power_law
         The fits; None if there is no fit.
     preferred
-        The law that describes these escapes, which is not ruled out and significantly more likely than the other; otherwise None.
+        The law that is not ruled out and significantly more likely than the other law; None if there is none.
     ratio, ratio_low, ratio_high
-        Log-likelihood per escape of the exponential law minus the one of the power law, and its 95 % interval;
+        Log-likelihood per escape of the exponential law minus that of the power law, and its 95 % interval;
         NaN without fits.
     """
 
@@ -165,7 +165,7 @@ def _describe_exclusion(fit: LawFit) -> str:
 
 
 def window_length(law: DecayLaw, t_low: float, t_high: float) -> float:
-    """Return the length of the window in t (exponential law) or ln t (power law); times the rate it is the steepness."""
+    """Return the length of the window in t (exponential law) or ln t (power law): the steepness divided by the rate."""
     return t_high - t_low if law is DecayLaw.EXPONENTIAL else float(np.log(t_high / t_low))
 
 

@@ -105,8 +105,8 @@ class EscapeStatistics(OrbitResult):
     def escape_probabilities(self) -> np.ndarray:
         """p_n = dN_n / N_n, where N_n orbits have not escaped before their n-th crossing; shaped like `crossing_counts`.
 
-        N_0 is the number of decided starts, so that the product of all 1 − p_n is the bounded share of these. In a finished map
-        without failures it equals N0. An unfinished map lacks late escapes, and all of its p_n can change.
+        N_0 is the number of decided starts, so the product of all 1 − p_n is the bounded share of these. In a finished map
+        without failures, N_0 is the number of starts. An unfinished map lacks late escapes, and all of its p_n can change.
         """
         escaped_before = np.cumsum(self.crossing_counts) - self.crossing_counts
         return read_only(self.crossing_counts / (self.decided - escaped_before))
@@ -122,7 +122,7 @@ class EscapeStatistics(OrbitResult):
         Returns
         -------
         edges
-            (bins + 1,) times, evenly spaced on a logarithmic scale from the first escape to the last; from half to twice the time
+            (bins + 1,) times, evenly spaced on a logarithmic scale from the first to the last escape; from half to twice the time
             if all times are equal, and from 0.5 to 2 without escapes.
         counts
             (bins,) int64. The last bin includes its upper edge, and the first bin includes escapes at t = 0.
@@ -152,8 +152,8 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
     frame
         The map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep; or the outcomes of `classify_orbits`.
     window
-        Only pixels whose centre lies in this rectangle, edges included, count; given as in `MapSpec`. It can extend beyond the
-        map or miss it. None for all pixels, and for orbits that do not form a map.
+        Only pixels whose centre lies in this rectangle, edges included, count; given as in `MapSpec`. The rectangle can extend
+        beyond the map or miss it. None for all pixels, and for orbits that do not form a map.
 
     Examples
     --------
@@ -191,16 +191,16 @@ def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarr
     Parameters
     ----------
     statistics
-        The escapes. Undecided starts count neither as inside nor as escaped, so that S is too small at late times in an
-        unfinished map.
+        The escapes. Undecided starts count neither as inside nor as escaped, so S is too small at late times in an unfinished
+        map.
 
     Returns
     -------
     times
-        (m,) increasing escape times, dimensionless; read-only. All of them, or about `MAX_SURVIVAL_POINTS` evenly spaced in ln t,
-        which include the first and the last one. Empty without escapes.
+        (m,) increasing escape times, dimensionless; read-only. All times, or about `MAX_SURVIVAL_POINTS` evenly spaced in ln t,
+        including the first and the last. Empty without escapes.
     survival
-        (m,) S at these times; read-only. S is 1 before the first and constant after the last.
+        (m,) S at these times; read-only. S is 1 before the first time and constant after the last.
     """
     times, counts = np.unique(statistics.escape_times, return_counts=True)
     survival = 1.0 - np.cumsum(counts) / max(statistics.decided, 1)

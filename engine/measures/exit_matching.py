@@ -24,7 +24,7 @@ class ExitMatching(OrbitResult):
     entrances
         (m,) numbers of the exits through which orbits enter.
     ends
-        (k,) fates of orbits: `Fate.BOUNDED` for those that stay until t_max, and the outcomes from 1 on that occur.
+        (k,) fates of orbits: `Fate.BOUNDED` for orbits that stay until t_max, and the outcomes from 1 on that occur.
     counts
         (m, k) numbers of orbits with each entrance and end. Orbits whose integration failed do not count.
     outcomes
@@ -61,7 +61,7 @@ class ExitMatching(OrbitResult):
         return ["stays" if end == Fate.BOUNDED else name_fate(end, self.outcomes) for end in self.ends.tolist()]
 
     def numbers(self) -> dict[str, Any]:
-        """Return the number of orbits, and share of those that leave through their entrance."""
+        """Return the number of orbits, and the share that leaves through the exit of its entrance."""
         return {"orbits": int(self.counts.sum()), "returning_share": self.returning_share}
 
     def columns(self) -> Mapping[str, np.ndarray]:

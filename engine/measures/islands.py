@@ -56,8 +56,8 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     An area is the number of pixels times the area of a pixel. Its error is due to the resolution alone: the number of points of a
     square lattice in a region with a smooth edge of length L, in units of the spacing, has the variance 0.0724 L if the lattice
     lies at random (Matérn 1989, J. Microsc. 153, 269; Gundersen & Jensen 1987, J. Microsc. 147, 229). L is π/4 times the number
-    of pairs of neighbours of which one is bounded, as for an edge of all directions. Islands with an edge that is not smooth at
-    the scale of a pixel have larger errors. The error does not include orbits that escape after t_max.
+    of pairs of neighbours of which only one is bounded, as for an edge of all directions. Islands with an edge that is not smooth
+    at the scale of a pixel have larger errors. The error does not include orbits that escape after t_max.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
     Raises
     ------
     ValueError
-        If it is not a complete map.
+        If `starts` is not a complete map.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def compute_islands(starts: Measurable | Starts) -> Islands:
 
 
 def _find_area(inside: np.ndarray, pixel_area: float) -> tuple[float, float]:
-    """Return the area of the pixels (rows, columns) bool, and its error."""
+    """Return the area of the pixels that are `inside`, (rows, columns), and its error."""
     edges = sum(int(np.count_nonzero(np.diff(inside, axis=axis))) for axis in (0, 1))
     length: Any = 0.25 * np.pi * edges
     return float(np.count_nonzero(inside) * pixel_area), float(np.sqrt(_VARIANCE_PER_LENGTH * length) * pixel_area)

@@ -13,7 +13,7 @@ Variables = Mapping[str, Any]
 
 
 class Bars(StrEnum):
-    """Meaning of the error bars of a number; the value is its name in texts."""
+    """Meaning of the error bars of a number. The value of each member is its name in texts."""
 
     NONE = ""
     INTERVAL = "95 % interval"
@@ -21,7 +21,9 @@ class Bars(StrEnum):
     GRID_ERROR = "error of the resolution"
 
 
-LOW, HIGH = "lower end of the 95 % interval of the {}", "upper end of the 95 % interval of the {}"
+# Descriptions of the ends of an interval.
+LOW = "lower end of the 95 % interval of the {}"
+HIGH = "upper end of the 95 % interval of the {}"
 # Suffixes of the names of the variables of a number, with their descriptions.
 _ENDINGS: Mapping[Bars, Mapping[str, str]] = {
     Bars.NONE: {"": "{}"},
@@ -42,9 +44,9 @@ class Quantity:
     words
         Description of the number.
     read
-        A function that returns it from a result: one number, a number and its error, or a number and the ends of its interval.
+        A function that returns the number from a result: alone, with its error, or with the ends of its interval.
     bars
-        Meaning of its error bars.
+        Meaning of the error bars.
     label
         Label in the legend of its curve; empty for a number without a curve.
     """
@@ -108,23 +110,23 @@ class Measure:
     title
         Title on the page and in figures.
     meaning
-        Its meaning in about five words.
+        Meaning of the measure in about five words.
     compute
-        Returns the result for a map and what is measured on it; None if it is not defined.
+        Returns the result for a map and what is measured on it; None if the measure is not defined there.
     quantities
-        Its numbers.
+        Numbers of the measure.
     help
         Explanation of the measure and of its curve, in two to four sentences; empty without a curve.
     curve
-        The diagram of its numbers against the energy or a parameter; an empty curve if they are not drawn.
+        The diagram of these numbers against the energy or a parameter; an empty curve if they are not drawn.
     sentence
         Returns a description of the result; None if the measure has no description.
     slow
-        Whether it integrates further orbits, and is therefore measured on demand.
+        Whether the measure integrates further orbits, and is therefore computed on demand.
     place
-        Description of what it counts instead of the starts in a box; empty if it counts these.
+        Description of what the measure counts, if not the starts in a box; otherwise empty.
     terms
-        Terms of the glossary that it needs, with their definitions.
+        Terms of the glossary that the measure needs, with their definitions.
     other_variables
         Returns further variables of the dataset for a point of a sweep and the result.
     """
@@ -144,16 +146,16 @@ class Measure:
 
     @property
     def labels(self) -> Mapping[str, str]:
-        """Labels of its curves, by the names of their numbers."""
+        """Labels of the curves, by the names of their numbers."""
         return {quantity.name: quantity.label for quantity in self.quantities if quantity.label}
 
     @property
     def bars(self) -> Bars:
-        """Meaning of the error bars of its curves."""
+        """Meaning of the error bars of the curves."""
         return next((quantity.bars for quantity in self.quantities if quantity.label), Bars.NONE)
 
     def variables(self, point: Any, result: Any) -> Variables:
-        """Return its variables in the dataset of a sweep; numbers are NaN if `result` is None."""
+        """Return the variables of the measure in the dataset of a sweep; numbers are NaN if `result` is None."""
         found = {} if self.other_variables is None else dict(self.other_variables(point, result))
         for quantity in self.quantities:
             found |= quantity.variables(result)

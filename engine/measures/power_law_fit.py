@@ -15,13 +15,16 @@ from engine.measures.starts import wilson_interval
 from engine.systems.well_units import LENGTH, TIME
 
 MIN_EXPECTED_PAIRS = 5.0
-"""Expected number of uncertain pairs, and of certain pairs, for a separation to count; χ² requires it (Cochran 1954).
+"""Smallest expected number of uncertain pairs, and of certain pairs, for a separation to count; χ² requires it (Cochran 1954).
 
 The expected number is used, because the observed number would select separations with many uncertain pairs by chance.
 """
 
-MIN_SEPARATIONS, MIN_DECADES = 5, 1.9
-"""Smallest number of separations, and smallest range of separations in decades, for an exponent."""
+MIN_SEPARATIONS = 5
+"""Smallest number of separations for an exponent."""
+
+MIN_DECADES = 1.9
+"""Smallest range of separations for an exponent, in decades."""
 
 MAX_BEND = 2.0
 """Largest quadratic term of log f in log ε, in standard errors, with which the curve counts as a straight line."""
@@ -29,14 +32,15 @@ MAX_BEND = 2.0
 TRANSITION_FACTOR = 10.0
 """The fit begins this factor below the largest separation of the straight range, because noise hides the end of a bend.
 
-In trials with shares that saturate at some ε, the 95 % interval held the exponent in 63 to 76 % of the cases without this factor,
-and in 94 to 97 % with it.
+In trials with shares that saturate at some ε, the 95 % interval contained the exponent in 63 to 76 % of the cases without this
+factor, and in 94 to 97 % with it.
 """
 
 MIN_PROBABILITY = 1e-4
 """No power law is claimed if the probability of a scatter at least as large as observed is below this."""
 
 _CONFIDENCE = 0.95
+# Relative rounding error of a separation.
 _ROUNDING = 1e-9
 # Slope of the log-likelihood per pair at which its maximisation stops.
 _TOLERANCE = 1e-12
@@ -55,9 +59,9 @@ class UncertaintyExponent(RecordedResult):
     separations
         (m,) ε, in units of the plane of initial conditions.
     pairs, uncertain
-        (m,) int64, number of pairs of starts at each separation, and of those with two different fates.
+        (m,) int64, number of pairs of starts at each separation, and of pairs with two different fates.
     used
-        (m,) bool, the separations in the fit; if there is no exponent, those of the last attempt.
+        (m,) bool, the separations in the fit; if there is no exponent, the separations of the last attempt.
     exponent
         α of f(ε) = A ε^α; NaN if the shares follow no power law or are too few.
     low, high
@@ -65,10 +69,10 @@ class UncertaintyExponent(RecordedResult):
     amplitude
         A; NaN without an exponent.
     misfit
-        χ² per degree of freedom of the used shares about the fitted line; NaN if they are too few for a fit.
+        χ² per degree of freedom of the used shares about the fitted line; NaN if the shares are too few for a fit.
     one_inside, both_inside
-        (m,) int64, number of pairs with one orbit, or with both orbits, still inside at the horizon, the only pairs that a longer
-        integration could change. The pairs of `one_inside` are part of `uncertain`. Empty if not known.
+        (m,) int64, number of pairs with one orbit, or with both orbits, still inside at the horizon. Only these pairs could
+        change in a longer integration. The pairs of `one_inside` are part of `uncertain`. Empty if not known.
     horizon
         Integration time of the orbits, dimensionless; NaN if not known.
     """
@@ -139,9 +143,9 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
 
     A and α maximise the binomial likelihood of k uncertain pairs out of n at each ε (for the law see Grebogi, McDonald, Ott &
     Yorke 1983, Phys. Lett. A 99, 415). The law holds for small ε. The largest separation is therefore left out as long as the
-    shares bend (`MAX_BEND`) or scatter too much (`MIN_PROBABILITY`), as they do where they saturate. From the first straight
-    range, the separations within a factor of `TRANSITION_FACTOR` of its largest one are also left out. Separations with too few
-    pairs (`MIN_EXPECTED_PAIRS`) never count. There is no exponent if too few separations remain (`MIN_SEPARATIONS`,
+    shares bend (`MAX_BEND`) or scatter too much (`MIN_PROBABILITY`), as shares do where they saturate. From the first straight
+    range, the separations within a factor of `TRANSITION_FACTOR` of its largest separation are also left out. Separations with
+    too few pairs (`MIN_EXPECTED_PAIRS`) never count. There is no exponent if too few separations remain (`MIN_SEPARATIONS`,
     `MIN_DECADES`).
 
     The 95 % interval is the wider of two: a normal interval from the binomial errors alone, and a Student t interval with these
@@ -225,7 +229,7 @@ def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
 
 
 def _with_enough_pairs(which: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Return those separations of `which` for which the law fitted to all of them expects enough uncertain and certain pairs."""
+    """Return the separations of `which` at which the law fitted to all of `which` expects enough uncertain and certain pairs."""
     which = which[k[which] < n[which]]
     if np.count_nonzero(k[which]) < MIN_SEPARATIONS:
         return which[:0]
@@ -277,7 +281,7 @@ def _measure_bend(x: np.ndarray, n: np.ndarray, k: np.ndarray) -> float:
 
 
 def _powers(x: np.ndarray, degree: int) -> np.ndarray:
-    """Return (m, degree + 1) powers of x, shifted to mean 0 and scaled to a range of length 1."""
+    """Return powers of x, shifted to mean 0 and scaled to a range of length 1, of shape (m, degree + 1)."""
     return np.vander((x - x.mean()) / np.ptp(x), degree + 1, increasing=True)
 
 

@@ -1,4 +1,4 @@
-"""Starts with the outcomes of their orbits, which measures count; their labels, and confidence intervals of shares."""
+"""Starts with the outcomes of their orbits, as measures count them, with their labels; confidence intervals of shares."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ Z_95 = 1.959963984540054
 """Half-width of the central 95 % of the normal distribution, in standard deviations."""
 
 _STARTS = "an EscapeMap, or a dataset of one, or Outcomes"
-# Attributes of datasets that contain results, not the way they were made.
-_FOUND = {"result", "outcomes", "worst_energy_error", "complete", "counts", "rounded_share"}
+# Attributes of datasets that contain results, not the provenance.
+_RESULT_ATTRIBUTES = {"result", "outcomes", "worst_energy_error", "complete", "counts", "rounded_share"}
 
 
 class Classified(Protocol):
@@ -72,9 +72,9 @@ class Starts:
     pixel_area
         Area of a pixel of a map, in units of the axes; 1 for other orbits.
     made_by
-        How they were made, in plain values; empty if it is not known.
+        How the outcomes were made, in plain values; empty if it is not known.
     complete
-        Whether all of them are computed.
+        Whether all outcomes are computed.
     """
 
     fate: np.ndarray
@@ -114,7 +114,7 @@ def read_starts(name: str, value: Any) -> Starts:
     Raises
     ------
     ValueError
-        If it is none of these, or a dataset of several maps; the message contains `name` as the parameter.
+        If `value` is none of these, or a dataset of several maps; the message contains `name` as the parameter.
     """
     if isinstance(value, Starts):
         return value
@@ -146,11 +146,11 @@ def checked_dataset(name: str, value: Any, arrays: Collection[str], legal: str) 
     name
         Name of the parameter, for messages.
     value
-        The dataset, of any version, or what was given instead of one.
+        The dataset, of any version, or what was given instead of a dataset.
     arrays
-        The names of the arrays, of which the first one is "fate".
+        The names of the arrays, of which the first is "fate".
     legal
-        What would be legal, for messages.
+        Description of what is legal, for messages.
     """
     dataset: Any = with_present_names(value) if hasattr(value, "data_vars") else {}
     missing = [each for each in arrays if each not in dataset]
@@ -168,7 +168,7 @@ def _read_dataset(dataset: xr.Dataset) -> Starts:
     """Return the starts of a dataset; its attributes contain the outcomes, except in files of earlier versions."""
     fate, escape_time, crossings = (np.asarray(dataset[each].values) for each in ("fate", "escape_time", "crossings"))
     t_max, outcomes = float(dataset.attrs.get("t_max", np.inf)), read_outcomes(dataset.attrs.get("outcomes", "[]"))
-    made_by = {name: each for name, each in plain_attributes(dataset.attrs).items() if name not in _FOUND}
+    made_by = {name: each for name, each in plain_attributes(dataset.attrs).items() if name not in _RESULT_ATTRIBUTES}
     complete = bool(dataset.attrs.get("complete", True))
     starts = Starts(fate, escape_time, crossings, t_max, outcomes, made_by=made_by, complete=complete)
     if fate.ndim == 1:

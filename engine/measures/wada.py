@@ -20,7 +20,7 @@ MIN_BASINS = 3
 COUNTS_BOUNDED = False
 """Whether bounded orbits are a basin. They are not: Wada is a property of the exits (Aguirre, Vallejo & Sanjuán 2001).
 
-The edge of an island of bounded orbits is far from other boundaries between exits, so that maps with islands would always fail.
+The edge of an island of bounded orbits is far from other boundaries between exits, so maps with islands would always fail.
 """
 
 # Percentage of the boundary pixels within `radius_99`.
@@ -38,14 +38,14 @@ class WadaTest(RecordedResult):
         The labels of the basins in increasing order.
     radius
         Smallest r for which every pixel of every slim boundary is within r pixels of each slim boundary: an integer, infinite
-        if a basin touches no other, NaN for fewer than three basins or without a boundary. A single pixel can decide it.
+        if a basin touches no other, NaN for fewer than three basins or without a boundary. A single pixel can decide the radius.
     radius_99
         Smallest r for which this holds for 99 % of the boundary pixels.
     boundary_pixels
         Number of pixels on any boundary.
     shares
-        (k,) share of these pixels within r = 0, 1, … k − 1 = `radius` pixels of every slim boundary; the last one is 1. Empty if
-        `radius` is NaN or infinite.
+        (k,) share of these pixels within r = 0, 1, … k − 1 = `radius` pixels of every slim boundary; the last share is 1. Empty
+        if `radius` is NaN or infinite.
     """
 
     basins: tuple[int, ...]
@@ -81,11 +81,11 @@ class WadaTest(RecordedResult):
 def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     """Measure how far the boundaries of all basins of an image are from being identical.
 
-    For each basin all others are merged into one. The slim boundary of this two-colour image consists of the pixels of either
-    colour with a pixel of the other colour above, below, left or right. Basins are Wada, up to the resolution, if each slim
-    boundary, dilated by a few pixels, contains all others (Daza, Wagemakers & Sanjuán 2018, Sci. Rep. 8, 9954). Instead of
-    deciding for a given radius, this function returns the smallest radius, and shares of the boundary pixels instead of the
-    image. Dilation uses the chessboard distance: radius r turns a pixel into a square with sides of 2r + 1.
+    For each basin all other basins are merged into one. The slim boundary of this two-colour image consists of the pixels of
+    either colour with a pixel of the other colour above, below, left or right. Basins are Wada, up to the resolution, if each
+    slim boundary, dilated by a few pixels, contains all other slim boundaries (Daza, Wagemakers & Sanjuán 2018, Sci. Rep. 8,
+    9954). Instead of deciding for a given radius, this function returns the smallest radius, and shares of the boundary pixels
+    instead of the image. Dilation uses the chessboard distance: radius r turns a pixel into a square with sides of 2r + 1.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
 
 
 def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
-    """Return (rows, columns) bool, the pixels that count and have a neighbour that counts and has another colour."""
+    """Return the pixels, (rows, columns), that count and have a neighbour that counts and has another colour."""
     slim = np.zeros(colours.shape, np.bool_)
     for before, after in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
         differs = (colours[before] != colours[after]) & valid[before] & valid[after]
@@ -137,7 +137,7 @@ def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
 
 
 def _largest_distances(labels: np.ndarray, valid: np.ndarray, basins: tuple[int, ...], boundary: np.ndarray) -> np.ndarray:
-    """Return the distance of each pixel of `boundary` from the furthest slim boundary; infinite if a basin has none."""
+    """Return the distance of each pixel of `boundary` from the furthest slim boundary; infinite if a basin has no boundary."""
     from scipy import ndimage
 
     distances = np.zeros(np.count_nonzero(boundary))

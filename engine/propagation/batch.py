@@ -24,9 +24,12 @@ LARGEST_TILE = 2048
 """Largest number of orbits per tile."""
 
 STEP_BUDGET = 2_000_000
-"""Largest number of steps of lanes per kernel call of 20 to 50 ms; cancellation and progress are handled between calls."""
+"""Largest number of steps of all lanes in one kernel call, which takes 20 to 50 ms.
 
-# With fewer orbits the lanes are not full enough: a worker returns these orbits, and they are combined with others.
+Cancellation and progress are handled between calls.
+"""
+
+# With fewer active orbits, too many lanes are empty: a worker returns these orbits, to be combined with other orbits.
 _FULL_LANES = LANES - 2 * VECTOR
 
 
@@ -51,13 +54,13 @@ class OrbitBatch:
     outside
         (n,) int8: number of the exit beyond which the start lies; 0 if it lies inside.
     evidence
-        (n,) int8 codes, see `Evidence`: why an orbit is bounded although it was not integrated to t_max; 0 for all others.
+        (n,) int8 codes, see `Evidence`: why an orbit is bounded although it was not integrated to t_max; 0 for all other orbits.
     remainder
         (n, 2) rounding errors of x and y of `state`, see `engine.integrator.kernels.propagate.Orbits`.
     tested
         (n,) time of the last test for evidence; 0 before the first test.
     digits
-        (n,) digits to which averages agreed in that test; infinite before the first test; see `BoundedOrbitSearch`.
+        (n,) digits to which averages agreed in the last test; infinite before the first test; see `BoundedOrbitSearch`.
     """
 
     state: np.ndarray
@@ -74,7 +77,7 @@ class OrbitBatch:
 
     @classmethod
     def empty(cls, curve_row: np.ndarray) -> OrbitBatch:
-        """Return orbits (n,) whose starts are set later."""
+        """Return n orbits whose starts are set later."""
         n = curve_row.size
         counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
         fate = np.full(n, Fate.NOT_COMPUTED, np.int8)
@@ -85,13 +88,13 @@ class OrbitBatch:
 
     @classmethod
     def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
-        """Return orbits at t = 0. `mark_outside` finds the outside starts."""
+        """Return orbits at t = 0. `mark_outside` finds the starts outside."""
         batch = cls.empty(curve_row)
         batch.set_starts(np.arange(curve_row.size), states)
         return batch
 
     def set_starts(self, which: np.ndarray, states: np.ndarray) -> None:
-        """Set the states (m, 4) of the orbits `which` (m,) at t = 0; orbits with a non-finite state are forbidden."""
+        """Set the orbits `which` (indices) to `states`, (m, 4), at t = 0; orbits with a non-finite state are forbidden."""
         self.state[which] = states
         self.fate[which[~np.isfinite(states).all(axis=1)]] = Fate.FORBIDDEN
 
@@ -110,9 +113,9 @@ class OrbitBatch:
         *,
         execution: Execution = DEFAULT_EXECUTION,
     ) -> np.ndarray:
-        """Set `outside` and `fate` of those starts among `which` (indices) that lie outside the exits.
+        """Set `outside` and `fate` of the starts among `which` (indices) that lie outside the exits.
 
-        Returns the indices that were tested: all, unless it was cancelled.
+        Returns the indices that were tested: all, unless the test was cancelled.
         """
         tested = [which[:0]]
         for part, channel in run_parts(
@@ -150,17 +153,17 @@ class OrbitBatch:
         self.evidence[images] = np.where(on_evidence, Evidence.MIRRORED, Evidence.NONE)
 
     def reopen(self, which: np.ndarray) -> None:
-        """Make the orbits `which` (indices), which are bounded or undecided, undecided again, so that they can be continued."""
+        """Make bounded orbits among `which` (indices) undecided again, so that they can be continued."""
         self.fate[which], self.evidence[which] = Fate.NOT_COMPUTED, Evidence.NONE
         self.last_crossings[which] = 0
 
     def final_evidence(self) -> np.ndarray:
-        """Return (n,) int8: the `Evidence` of each orbit, including `Evidence.INTEGRATED`."""
+        """Return the `Evidence` of each orbit, including `Evidence.INTEGRATED`; int8, of shape (n,)."""
         integrated = (self.fate == Fate.BOUNDED) & (self.evidence == Evidence.NONE)
         return np.where(integrated, np.int8(Evidence.INTEGRATED), self.evidence)
 
     def for_kernels(self, pending: np.ndarray) -> Orbits:
-        """Return the arrays that `propagate` changes in place; pending (n,) uint8: 1 for the orbits to propagate."""
+        """Return the arrays that `propagate` changes in place. `pending`, uint8 (n,), is 1 for the orbits to propagate."""
         return Orbits(self.state, self.t, self.crossings, self.last_crossings, self.fate, pending, self.remainder)
 
     @property
@@ -173,16 +176,16 @@ class OrbitBatch:
         return replace(self, **{field.name: getattr(self, field.name)[which] for field in fields(self)})
 
     def put(self, which: np.ndarray, orbits: OrbitBatch) -> None:
-        """Replace the orbits `which` (indices) by others."""
+        """Replace the orbits `which` (indices) by `orbits`."""
         for field in fields(self):
             getattr(self, field.name)[which] = getattr(orbits, field.name)
 
 
 def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
-    """Return (n,) int8: the number of the exit beyond which each start (n, 4) lies, 0 for none; runs in a worker."""
+    """Return the number of the exit beyond which each start lies, 0 for none; int8, of shape (n,). Runs in a worker."""
     x, y = np.ascontiguousarray(states[:, :2].T)
     with np.errstate(invalid="ignore"):
-        # At the centre of a body V = −∞, so that a start of any energy has an infinite momentum.
+        # At the centre of a body V = −∞, so a start of any energy has an infinite momentum there.
         energy = np.where(np.isinf(states[:, 2:]).any(axis=1), np.inf, potential.energy(states))
     return find_outside_starts(potential, x, y, energy, curves, curve_row)
 
@@ -231,7 +234,7 @@ def _advance_tile(
 
 
 class OrbitPool:
-    """Orbits that wait for a worker, in the order of their propagation.
+    """Queue of the orbits that wait for a worker.
 
     Parameters
     ----------
@@ -247,7 +250,7 @@ class OrbitPool:
 
     @property
     def waiting(self) -> int:
-        """Number of orbits that wait."""
+        """Number of waiting orbits."""
         return self._waiting.size
 
     def take(self) -> np.ndarray:
@@ -313,7 +316,7 @@ def propagate_batch(
     running: set[Future[Tile]] = set()
 
     def keep_workers_busy() -> None:
-        # Tiles are queued ahead only while there are full ones.
+        # Tiles are queued ahead only while enough orbits for a full tile wait.
         while pool.waiting and len(running) < (2 * workers if pool.waiting > LARGEST_TILE else workers):
             tile = Tile.copy_from(batch, pool.take())
             least = _FULL_LANES if pool.waiting and tile.orbits.size > _FULL_LANES else 0

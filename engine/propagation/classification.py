@@ -55,7 +55,7 @@ class Outcomes(OrbitResult):
 
 
 def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
-    """Return the outcomes of a batch in its current state and units; energy errors are relative to `energy` (n,)."""
+    """Return the outcomes of a batch so far, in the units of its states; energy errors are relative to `energy` (n,)."""
     orbit = (batch.fate >= Fate.BOUNDED) | (batch.fate == Fate.NOT_COMPUTED)
     crossings = np.where(orbit, batch.crossings + batch.last_crossings, 0).astype(np.int32)
     decided, error = batch.fate >= Fate.BOUNDED, np.full(batch.fate.size, np.nan)
@@ -85,7 +85,7 @@ def classify_orbits(
     energy
         h, finite, at most 1e9 in magnitude, dimensionless.
     states
-        (n, 4) x, y, px, py; finite, with that energy to within 1e-9 in units of the well.
+        (n, 4) x, y, px, py; finite, with this energy to within 1e-9 in units of the well.
     t_max
         Largest integration time, 0 < t_max ≤ 1e8, dimensionless; by default as in `MapSpec`.
     execution

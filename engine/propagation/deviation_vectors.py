@@ -10,13 +10,13 @@ from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import fixed_step_size, kernels_of
 from engine.systems.potential import Potential
 
-# They are fixed, so that an orbit always has the same SALI, orthonormal, and generic, so that symmetry confines none to a
-# subspace.
+# The initial vectors are fixed, so an orbit always has the same SALI. They are orthonormal, and generic, so no symmetry confines
+# them to a subspace.
 DEVIATION_VECTORS = read_only(np.array([[1.0, 2.0, 3.0, 4.0], [4.0, -3.0, 2.0, -1.0]]) / np.sqrt(30.0))
 
 
 def attach_deviations(states: np.ndarray) -> np.ndarray:
-    """Append the initial deviation vectors, and infinity as the smallest SALI so far, to states (n, 4); return (n, 13)."""
+    """Append the initial deviation vectors, and infinity as the smallest SALI so far, to n states; return (n, 13)."""
     vectors = np.broadcast_to(DEVIATION_VECTORS.ravel(), (len(states), DEVIATION_VECTORS.size))
     return np.column_stack([states, vectors, np.full(len(states), np.inf)])
 
@@ -43,14 +43,14 @@ def propagate_deviations(
 
     Returns
     -------
-    (n, 13); the smallest SALI of an orbit no longer changes once its coordinates have become infinite.
+    The orbits, (n, 13). The smallest SALI of an orbit no longer changes once its coordinates have become infinite.
     """
     steps = max(1, round(duration / fixed_step_size(potential)))
     return map_tiles(_propagate_tile, potential, orbits, steps, shape=orbits.shape[1:], execution=execution)
 
 
 def _propagate_tile(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
-    """Return (lanes, 13) rows of a tile (13, lanes) after some steps."""
+    """Return the rows of a tile (13, lanes) after some steps, of shape (lanes, 13)."""
     with np.errstate(invalid="ignore"):
         kernels_of(potential).fixed_step_sali(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
     return tile.T

@@ -20,7 +20,10 @@ CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
 MIN_REGULAR_TIME = 1000.0
-"""Shortest orbit, in units of the well, that can be called regular without evidence of a torus; weak chaos takes this long."""
+"""Shortest orbit, in units of the well, that can be called regular without evidence of a torus.
+
+Weak chaos takes this long to show.
+"""
 
 
 class Fate(IntEnum):
@@ -36,8 +39,8 @@ class Fate(IntEnum):
 class Regularity(IntEnum):
     """Character of a bounded orbit.
 
-    ``NOT_APPLICABLE``: it escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to the
-    threshold. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be sticky. ``NOT_JUDGED``: not computed yet.
+    ``NOT_APPLICABLE``: the orbit escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to
+    the threshold. ``NO_SIGN_OF_CHAOS``: neither happened until t_max; the orbit may be sticky. ``NOT_JUDGED``: not computed yet.
     """
 
     NOT_APPLICABLE = 0
@@ -89,7 +92,7 @@ def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
 
 
 def renumber(fates: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """Replace the outcome k ≥ 1 by ``numbers[k]`` in fates of any shape, numbers (outcomes + 1,); other codes stay."""
+    """Replace each outcome k ≥ 1 by ``numbers[k]``, (outcomes + 1,), in fates of any shape; other codes stay."""
     renumbered: np.ndarray = np.where(fates > 0, numbers[np.maximum(fates, 0)], fates)
     return renumbered
 

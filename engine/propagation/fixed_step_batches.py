@@ -64,7 +64,7 @@ def run_tiles(
     execution: Execution = DEFAULT_EXECUTION,
     tiles_per_task: int = 1,
 ) -> Iterator[tuple[int, Any]]:
-    """Run a function on tiles of states in parallel; yield the first state of each tile and its result, without repeated lanes.
+    """Run a function on tiles of states in parallel; yield each tile's first row and its result, without repeated lanes.
 
     The parameters are those of `map_tiles`; `work` may return any sequence with one entry per lane.
     """
@@ -97,7 +97,7 @@ def _run_on_each(work: Callable[..., Any], potential: Potential, tiles: list[np.
 
 
 def _lanes_per_tile(count: int, workers: int) -> int:
-    """Return a multiple of `VECTOR`, at most `LANES`, with which each worker gets equally many tiles of equal duration."""
+    """Return how many lanes, whole SIMD vectors and at most `LANES`, give each worker equally many tiles of equal duration."""
     tiles_per_worker = max(1, math.ceil(count / (workers * LANES)))
     share = max(1, math.ceil(count / (tiles_per_worker * workers)))
     return fill_vectors(share)
@@ -109,6 +109,6 @@ def fill_vectors(count: int) -> int:
 
 
 def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:
-    """Return (columns, lanes) up to `lanes` states from row `begin`; the last one is repeated to fill whole SIMD vectors."""
+    """Return up to `lanes` states from row `begin`, (columns, lanes); the last state is repeated to fill whole SIMD vectors."""
     lanes = min(lanes, fill_vectors(len(states) - begin))
     return states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

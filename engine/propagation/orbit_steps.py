@@ -26,7 +26,7 @@ class OrbitSteps:
     outcomes
         The `Outcomes` of this orbit, equal to the bit to those in a map.
     steps
-        (m, 5) x, y, px, py, t at the start of each step; none for a start outside.
+        (m, 5) x, y, px, py, t at the start of each step; (0, 5) for a start outside.
     t_end
         Time of the escape, or t_max; 0 for a start outside.
     """
@@ -37,7 +37,7 @@ class OrbitSteps:
 
 
 def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_max: float, execution: Execution) -> OrbitSteps:
-    """Integrate one orbit until it escapes or to `t_max` and keep its steps; all quantities are in units of the well.
+    """Integrate one orbit until it escapes or reaches `t_max`, and keep its steps; all quantities are in units of the well.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
     t_max
         Largest integration time, above 0, dimensionless.
     execution
-        The cancellation of the computation. The orbit is integrated in this thread.
+        How to cancel the computation. The orbit is integrated in this thread.
 
     Raises
     ------

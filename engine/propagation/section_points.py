@@ -43,7 +43,7 @@ def find_section_points(
 
 
 def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
-    """Apply `find_section_points` to a tile of states (4, lanes), a multiple of `VECTOR`, which it changes; runs in a worker."""
+    """Apply `find_section_points` to a tile (4, lanes) of whole SIMD vectors, which is changed; runs in a worker."""
     points = np.full((tile.shape[1], count, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
     steps = int(np.ceil(duration / fixed_step_size(potential)))

@@ -11,8 +11,9 @@ from engine.propagation.fixed_step_batches import map_tiles
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 
-# A tile takes some milliseconds and a task less than 0.1 s, so that cancelling a computation takes effect soon.
-_TILES_PER_TASK, _STEPS_PER_TILE = 8, 100
+# A tile takes some milliseconds and a task less than 0.1 s, so cancelling a computation takes effect soon.
+_TILES_PER_TASK = 8
+_STEPS_PER_TILE = 100
 
 
 def integrate_speed(
@@ -40,7 +41,7 @@ def integrate_speed(
     curve_row
         (n,) the row of `curves` of each orbit.
     duration
-        Duration, above 0, dimensionless.
+        Largest duration of an orbit, above 0, dimensionless.
     power
         Exponent of the speed, above 0.
     execution
@@ -70,9 +71,9 @@ def integrate_speed(
 def _integrate_tile(
     potential: Potential, tile: np.ndarray, curves: np.ndarray, gates: np.ndarray, duration: float, power: float
 ) -> np.ndarray:
-    """Return (lanes, ROWS + 1) orbits and their integrals after some steps; runs in a worker.
+    """Return orbits and their integrals after some steps, of shape (lanes, ROWS + 1); runs in a worker.
 
-    tile (ROWS + 2, lanes): orbits with the rows of `ROWS`, their integrals so far, and their rows of curves.
+    `tile`, (ROWS + 2, lanes), holds the `ROWS` rows of the orbits, their integrals so far, and their rows of `curves`.
     """
     orbits, integral, curve_row = tile[:ROWS].copy(), tile[ROWS].copy(), tile[ROWS + 1].astype(np.int64)
     with np.errstate(invalid="ignore"):

@@ -17,11 +17,11 @@ from engine.systems.well_units import WellUnits, nearest_power_of_two
 
 
 class Coordinate(Enum):
-    """A coordinate of a start; the value is its name.
+    """A coordinate of a start. The value of each member is its name.
 
-    `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is its angle from the direction away
-    from the origin, or at the origin from the +y axis: 0 is radially outward, π/2 tangential, counterclockwise. `SPEED` is v,
-    which is always determined by the energy.
+    `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is the angle of the velocity from
+    the outward radial direction, or at the origin from the +y axis: 0 is radially outward, π/2 tangential, counterclockwise.
+    `SPEED` is v, which the energy always determines.
     """
 
     X = "x"
@@ -45,16 +45,16 @@ class Coordinate(Enum):
 
     @property
     def parity(self) -> int | None:
-        """1 if x → −x leaves the coordinate unchanged, −1 if it changes its sign, None otherwise."""
+        """1 if x → −x leaves the coordinate unchanged, −1 if its sign changes, None otherwise."""
         return {"x": -1, "px": -1, "beta": -1, "theta": None, "v": 1}.get(self.value, 1)
 
     @property
     def is_free(self) -> bool:
-        """Whether starts can be displaced along it at constant energy."""
+        """Whether starts can be displaced along the axis at constant energy."""
         return self is not Coordinate.H
 
     def unit(self, units: WellUnits) -> float:
-        """Return the unit of the coordinate in which its values are of the order of the size of the well."""
+        """Return the unit of the coordinate, in which values inside the well are of order 1."""
         momentum = {"px": units.momentum, "py": units.momentum, "v": units.momentum}
         return {"x": units.length, "y": units.length, **momentum, "h": units.energy}.get(self.value, 1.0)
 
@@ -68,7 +68,7 @@ class Coordinate(Enum):
         return self
 
     def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
-        """Set the coordinates (n,) of starts on this axis."""
+        """Set this coordinate of n starts to `along`, of shape (n,)."""
         start[self] = along
 
 
@@ -77,7 +77,7 @@ MOMENTA = (Coordinate.PX, Coordinate.PY)
 ANGLES = (Coordinate.THETA, Coordinate.BETA)
 STATE = (*POSITIONS, *MOMENTA)
 
-# Values of a parameter below this, as a share of its range, are rounding errors of 0, and are too small for a coefficient.
+# Values of a parameter below this share of its range are taken as 0: they are rounding errors, too small for a coefficient.
 _ROUNDING = 1e-12
 
 
@@ -88,7 +88,7 @@ class Direction:
     Parameters
     ----------
     key
-        Its name, an identifier such as "u".
+        Name of the direction, an identifier such as "u".
     x, y, px, py
         Change of each coordinate of a start per unit along the axis, finite, not all 0.
 
@@ -132,20 +132,20 @@ class Direction:
 
     @property
     def is_free(self) -> bool:
-        """True, because starts can be displaced along it at constant energy."""
+        """True, because starts can be displaced along the direction at constant energy."""
         return True
 
     def unit(self, units: WellUnits) -> float:
-        """Return the unit of the axis, a power of 2, in which its values are of the order of the size of the well."""
+        """Return the unit of the axis, a power of 2, in which values inside the well are of order 1."""
         return 1.0 / nearest_power_of_two(float(np.hypot.reduce([v / c.unit(units) for c, v in self.components.items()])))
 
     def in_well_units(self, units: WellUnits) -> Direction:
-        """Return the direction for a state and an axis in units of the well."""
+        """Return the direction with both the states and the axis in units of the well."""
         unit = self.unit(units)
         return Direction(self.key, **{c.value: value * unit / c.unit(units) for c, value in self.components.items()})
 
     def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
-        """Move starts (n,) by these distances (n,) along the axis."""
+        """Move n starts along the axis by the distances `along`, of shape (n,)."""
         for coordinate, component in self.components.items():
             start[coordinate] = start[coordinate] + component * along
 
@@ -189,22 +189,22 @@ class _SystemAxis:
 
 @dataclass(frozen=True)
 class ParameterAxis(_SystemAxis):
-    """A parameter of a system as an axis, with a potential for each of its values.
+    """An axis along which a parameter of a system varies, with a potential at each value.
 
     Parameters
     ----------
     key
         Name of the parameter: omega_1, omega_2, epsilon, or a letter of the system's formula.
     low, high
-        Its range in the default window, dimensionless, low < high, within `System.range_of`.
+        Range of the parameter in the default window, dimensionless, low < high, within `System.range_of`.
     system
-        The system, or its potential; exits are numbered at the value of the parameter in this system.
+        The system, or its potential. Exits have the numbers that they have at this system's own value of the parameter.
 
     Raises
     ------
     ValueError
         If the system has no such parameter, or the range is empty or not legal. Whether the system has a potential at each value
-        is not checked here, because this takes seconds for some formulas; `potential` checks it.
+        is not checked here, because the check takes seconds for some formulas; `potential` makes it.
     """
 
     key: str
@@ -236,7 +236,7 @@ class ParameterAxis(_SystemAxis):
             raise ValueError(f"parameter {self.key} from {low:g} to {high:g}: must be between {lowest:g} and {highest:g}")
 
     def potential(self, value: float) -> Potential:
-        """Return the potential at a value of the parameter; ValueError if there is none."""
+        """Return the potential at a value of the parameter; raise ValueError if the system has none there."""
         is_zero = abs(value) < _ROUNDING * (self.high - self.low)
         return self.system.with_parameter(self.key, 0.0 if is_zero else value).potential
 
@@ -247,14 +247,14 @@ class ParameterAxis(_SystemAxis):
 
 @dataclass(frozen=True)
 class HeldParameter(_SystemAxis):
-    """A parameter with one value: the axis of a map that is one row or column of a map along the parameter.
+    """A parameter held at one value, as an axis of a single row or column of a map along the parameter.
 
     Parameters
     ----------
     key
         Name of the parameter.
     value
-        Its value, at which the potential of the map is taken.
+        Value of the parameter in the potential of this row or column.
     """
 
     key: str

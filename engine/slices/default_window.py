@@ -29,25 +29,30 @@ from engine.systems.well_units import WellUnits
 
 # Margin of the default window on each side, as a share of the size of the interior.
 _MARGIN = 0.03
-# If the sides of an interior, in units of the well, differ by more than this factor, their scales differ.
+# If the sides of an interior, in units of the well, differ by more than this factor, each side of the window has its own scale.
 _LARGEST_ASPECT = 4.0
-# Share of the momenta, of points between the edges, that the window shows for a system with gaps, where momenta are unbounded.
+# For a system with gaps, near which momenta are unbounded, the window shows the momenta of this share of points between edges.
 _SHOWN_MOMENTA = 0.9
+# Number of positions from which the range of momenta is found. Lines have four times as many points, rays half as many.
 _SCAN_POINTS = 801
-# The interior is searched up to the first distance from the origin, in units of the distance of the nearest exit saddle. If it is
-# larger, it is searched up to twice as far until it ends, or up to the second distance, in units of that of the outermost exit
-# saddle.
+# First radius of the search for the interior, in units of the distance of the nearest exit saddle from the origin. The radius
+# is doubled while the interior reaches further.
 _SEARCH_LENGTHS = 4.0
+# Doubling ends at the latest when the radius exceeds this many times the distance of the outermost exit saddle.
 _SEARCH_SADDLE_DISTANCES = 2.0
-# The corresponding distance in units of that of the outermost body or critical point, for systems whose saddles are not exits.
+# For systems whose saddles are not exits, the radius in units of the distance of the outermost body or critical point.
 _SEARCH_BODY_DISTANCES = 2.5
+# Number of rays from the origin on which the interior is searched.
 _RAYS = 180
-# Points along a side of the lattice on which the interior of an oblique slice is searched, and number of refinements.
-_SCAN_SIDE, _SCANS = 201, 3
+# Points along a side of the lattice on which the interior of an oblique slice is searched.
+_SCAN_SIDE = 201
+# Number of lattices, each around the interior found on the last.
+_SCANS = 3
 # Number of values of a parameter at which the interior is searched.
 _VALUES = 9
-# Number of tested points of a line of pixels, and largest distance of its pixels from 0 as a share of the window.
+# Number of tested points of a line of pixels.
 _LINE_POINTS = 65
+# The middle of a window is at 0 if it is closer to 0 than this share of the window.
 _CENTRED = 1e-9
 _EMPTY = "must be at least about 1e-5 above the minimum of the well; fixed values must lie inside the well"
 
@@ -58,7 +63,7 @@ Range = tuple[float, float]
 def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window:
     """Find a window that shows the whole interior: all starts that are neither forbidden nor outside.
 
-    On a slice of one energy it is a square in units of the well, unless the interior is much longer than wide.
+    On a slice of one energy, the window is a square in units of the well, unless the interior is much longer than wide.
 
     Parameters
     ----------
@@ -79,7 +84,7 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
         try:
             found += _axis_ranges(each, plane, energy)
         except ValueError as error:
-            # Along a parameter, other values may have exits.
+            # The potentials at other values of the parameter may have exits.
             problem = error
     if problem is not None and not found:
         raise problem
@@ -108,7 +113,7 @@ def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: t
     Parameters
     ----------
     potential, plane, energy
-        As in `default_window`.
+        Potential, slice, and h or its range (lowest, highest).
     resolution
         (columns, rows) of the map.
     """
@@ -127,7 +132,7 @@ def _is_centred(low: float, high: float, count: int) -> bool:
 
 
 def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, place: int, others: Range) -> bool:
-    """Return whether all starts with 0 on axis `place` and values of a range on the other axis stay on x = 0 or y = 0."""
+    """Return whether all starts at 0 on axis `place`, and in `others` on the other axis, stay on x = 0 or y = 0."""
     line = plane if plane.parameter is None else plane.line(plane.parameter.low)
     points = [np.linspace(*others, _LINE_POINTS)] * 2
     points[place] = np.zeros(_LINE_POINTS)
@@ -147,7 +152,7 @@ def _exact_unit(axis: Axis, potential: Potential) -> float:
 
 
 def _potentials(potential: Potential, plane: Slice) -> list[Potential]:
-    """Return the potentials over which a window extends: those along a parameter, otherwise the potential of the map."""
+    """Return the potentials whose interiors a window shows: those along a parameter, otherwise the potential of the map."""
     axis = plane.parameter
     if axis is None:
         return [potential]
@@ -155,7 +160,7 @@ def _potentials(potential: Potential, plane: Slice) -> list[Potential]:
 
 
 def _axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[list[Range]]:
-    """Return the ranges of both axes over the interior of a slice as a list of one pair; an empty list without an interior."""
+    """Return the ranges of both axes over the interior of a slice, as a list of one pair; an empty list without an interior."""
     units = potential.units
     well, level, scaled = potential.in_well_units, highest_energy(energy) / units.energy, plane.in_well_units(units)
     if any(isinstance(axis, Direction) for axis in plane.axes):
@@ -187,7 +192,7 @@ def _edges(axis: Axis, energy: Energy, low: float, high: float) -> Range:
 
 
 def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[Range]:
-    """Return the ranges of both axes over the interior of a slice with a direction, from a lattice, in units of the well."""
+    """Search a lattice for the ranges of both axes over the interior of a slice with a direction, in units of the well."""
     reach = 2.0 * _search_radius(potential, highest_energy(energy))
     reaches = [reach * _exact_unit(axis, potential) for axis in plane.axes]
     ranges = [_edges(axis, energy, -each, each) for axis, each in zip(plane.axes, reaches, strict=True)]
@@ -207,7 +212,7 @@ def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[
 
 
 def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[Coordinate, Range]:
-    """Return the ranges of x and y over the interior of a slice; for a coordinate that is not an axis, its value twice."""
+    """Return the ranges of x and y over the interior of a slice. A coordinate that is not an axis has its value as both ends."""
     if {Coordinate.X, Coordinate.Y} == set(plane.axes):
         points = _interior_points(potential, energy)
         return dict(zip((Coordinate.X, Coordinate.Y), map(_rounded_range, points), strict=True))
@@ -234,7 +239,7 @@ def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ra
 
 
 def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate, Range]) -> Range:
-    """Return the range of a momentum of the starts between these positions, limited near gaps, where it is unbounded."""
+    """Return the range of a momentum of starts between these positions; near gaps, where momenta are unbounded, it is cut off."""
     x, y = (np.linspace(*ranges[coordinate], _SCAN_POINTS) for coordinate in (Coordinate.X, Coordinate.Y))
     value = potential.value(x, y)
     bottom = np.quantile(value[np.isfinite(value)], 1.0 - _SHOWN_MOMENTA) if potential.gaps else np.min(value)
@@ -264,7 +269,7 @@ def _run_around_middle(allowed: np.ndarray) -> slice:
 
 
 def _interior_interval(potential: Potential, energy: float, axis: Coordinate, held: dict[Coordinate, float]) -> np.ndarray:
-    """Return (n,) x or y of the interior on a line of constant y or x, with a resolution of about a thousandth."""
+    """Return x or y of the interior on a line of constant y or x, of shape (n,), to about a thousandth of the radius."""
     radius = _search_radius(potential, energy)
     line = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
     x, y = (line if axis is coordinate else np.full_like(line, held[coordinate]) for coordinate in (Coordinate.X, Coordinate.Y))
@@ -285,7 +290,7 @@ def _search_radius(potential: Potential, energy: float) -> float:
     if potential.escape_radius is not None:
         return _shown_radius(potential, potential.escape_radius)
     distances = np.hypot(*potential.saddles.T)
-    # Units of the well are rounded and are not used here: edges found on the scanned points must not depend on the user's units.
+    # The units of the well are rounded. They are not used here, so that the edges found do not depend on the user's units.
     nearest, outermost = (float(distances.min()), float(distances.max())) if distances.size else (1.0, 0.0)
     radius = _SEARCH_LENGTHS * nearest
     # The search does not begin at the outermost saddle, which may be so far away that the points miss the interior.
@@ -295,7 +300,7 @@ def _search_radius(potential: Potential, energy: float) -> float:
 
 
 def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return x, y, and whether points on rays from the origin are inside, (rays, n); in a well, up to where a ray leaves it."""
+    """Return x, y and whether points on rays from the origin are inside, (rays, n). In a well, a ray ends where it leaves."""
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
     radius = np.linspace(0.0, farthest, _SCAN_POINTS // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
@@ -312,7 +317,7 @@ def _shown_radius(potential: Potential, escape_radius: float) -> float:
 
 
 def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return (n,) x and y of points of the interior of the (x, y) plane, on rays from the origin, and of the exits."""
+    """Return x and y of the points of rays from the origin that are inside, and of the exits, each of shape (n,)."""
     x, y, inside = _interior_on_rays(potential, energy, _search_radius(potential, energy))
     x, y = x[inside], y[inside]
     if x.size == 0 or not x.min() < x.max():

@@ -15,17 +15,17 @@ _CONTOUR_SAMPLES = 201
 
 
 def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy, window: Window) -> list[np.ndarray]:
-    """Trace the boundary of the forbidden region of a slice: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
+    """Trace the boundary of the forbidden region of a slice, such as V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
 
     `energy` is ignored on a slice with an axis h. Returns the pieces of the curve in a window, each (n, 2).
     """
-    # With an axis h, the required energy is the energy that is missing.
+    # On a slice with an axis h, `required_energy` is relative to the h of each point, so the boundary is at 0.
     level = None if plane.energy_axis is not None else common_energy(energy)
     return trace_equipotentials(potential, plane, (level or 0.0,), window)[0]
 
 
 def trace_equipotentials(potential: Potential, plane: Slice, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
-    """Return the zero-velocity curves of several energies on a slice of one energy, as a list of (n, 2) pieces for each."""
+    """Trace the curves on which `Slice.required_energy` has these values. Returns the pieces of each curve, each (n, 2)."""
     import contourpy
 
     x, ordinate = (

@@ -1,8 +1,8 @@
 """The potentials along a parameter of a system, with exits that keep their numbers.
 
-Finding and classifying critical points takes a tenth of a second, so that it is done at a few values of the parameter, the nodes.
-Between two nodes with the same exits, saddles are continued by Newton's method, which takes a millisecond. If the exits of two
-neighbouring nodes cannot be matched, exits appear or disappear between them, and nodes are inserted.
+Finding and classifying critical points takes a tenth of a second, so this is done at a few values of the parameter only, the
+nodes. Between two nodes with the same exits, Newton's method continues the saddles in a millisecond. If the exits of two
+neighbouring nodes cannot be matched, exits appear or disappear between the nodes, and further nodes are inserted.
 """
 
 from __future__ import annotations
@@ -20,21 +20,25 @@ from engine.slices.axes import ParameterAxis
 from engine.systems.outcomes import Exit
 from engine.systems.potential import Potential
 
-# Nodes divide the range of the axis into `_PARTS` parts, and the distance from the value of the system to the farther end of the
-# range into at most `_MOST_PARTS`. A part whose ends have different exits is halved up to `_HALVINGS` times.
-_PARTS, _MOST_PARTS, _HALVINGS = 8, 24, 12
+# Nodes divide the range of the axis into this many parts.
+_PARTS = 8
+# Nodes divide the distance from the system's own value to the farther end of the range into at most this many parts.
+_MOST_PARTS = 24
+# A part whose ends have different exits is halved up to this many times.
+_HALVINGS = 12
 _NEWTON_STEPS = 20
 # Number of potentials along the axis that `find_members` finds.
-_TRIED = 112
-# Newton's method has converged when its last step is this small. It may move a saddle by this share of the distance to the
-# nearest other saddle.
-_CONVERGED, _LARGEST_SHARE = 1e-12, 0.5
-# Saddles closer than this, relative to the distance from the origin, are the same.
+_SCAN_VALUES = 112
+# Newton's method has converged when its last step is below this share of the distance from the origin.
+_CONVERGED = 1e-12
+# Newton's method may move a saddle by this share of the distance to the nearest other saddle.
+_LARGEST_SHARE = 0.5
+# Two saddles are the same if their distance is below this share of their distance from the origin.
 _SAME = 1e-7
 
 
 MOST_FOUND = 120
-"""Largest number of potentials of a family whose critical points are searched, which takes about 10 s."""
+"""Largest number of potentials of a family whose critical points are searched. This many take about 10 s."""
 
 
 class ManyExitsError(ValueError):
@@ -50,14 +54,14 @@ class Member:
     potential
         The potential.
     numbers
-        (outcomes + 1,) int8: the fate in the family for each fate of the potential; entry 0 is 0.
+        Fate in the family of each fate of the potential, int8, of shape (outcomes + 1,); entry 0 is 0.
     """
 
     potential: Potential
     numbers: np.ndarray
 
     def numbers_at(self, energy: float) -> np.ndarray:
-        """Return `numbers` at an energy: an exit of several channels has the lowest of their numbers in the family."""
+        """Return `numbers` at an energy, where an exit of several channels has the lowest number of these channels."""
         numbers = self.numbers.copy()
         for merged in self.potential.well.merged_exits(energy):
             channels = list(merged.channels)
@@ -66,15 +70,15 @@ class Member:
 
     @property
     def of_others(self) -> np.ndarray:
-        """The fates in the family of the outcomes that follow the exits."""
+        """The fates in the family of the outcomes that are not exits."""
         return self.numbers[self.potential.channels + 1 :]
 
 
 class ParameterFamily:
-    """The potentials along one axis. `parameter_family` makes it once for each axis.
+    """Finds the potentials along one axis and numbers their outcomes. `parameter_family` returns the one family of an axis.
 
-    Outcomes keep the numbers that they have at the value of the system. Exits that do not exist there get the next numbers in the
-    order in which they appear, first towards higher and then towards lower values.
+    Outcomes keep the numbers that they have at the system's own value of the parameter. Exits that do not exist there get the
+    next numbers in the order in which they appear, first towards higher and then towards lower values.
 
     Parameters
     ----------
@@ -86,17 +90,17 @@ class ParameterFamily:
 
     def __init__(self, axis: ParameterAxis, most_found: int = MOST_FOUND) -> None:
         self._axis, self._most_found = axis, most_found
-        self._own = axis.system.value_of(axis.key)
-        self._reach = max(abs(axis.low - self._own), abs(axis.high - self._own))
+        self._own_value = axis.system.value_of(axis.key)
+        self._reach = max(abs(axis.low - self._own_value), abs(axis.high - self._own_value))
         self._step = max((axis.high - axis.low) / _PARTS, self._reach / _MOST_PARTS)
-        self._found = 0
+        self._found_count = 0
         # Potentials inside parts whose ends have different exits.
-        self._others: dict[float, Member] = {}
+        self._between_nodes: dict[float, Member] = {}
         self._nodes: dict[float, Member] = {}
-        self._matched: dict[tuple[float, float], list[int] | None] = {}
+        self._node_matches: dict[tuple[float, float], list[int] | None] = {}
         self._lock = threading.Lock()
-        first = axis.potential(self._own)
-        self._nodes[self._own] = Member(first, read_only(np.arange(len(first.outcomes) + 1, dtype=np.int8)))
+        first = axis.potential(self._own_value)
+        self._nodes[self._own_value] = Member(first, read_only(np.arange(len(first.outcomes) + 1, dtype=np.int8)))
         self.outcomes = first.outcomes
         """The outcomes of all potentials of the family that have been found so far."""
         self._extend_to(axis.high)
@@ -117,7 +121,7 @@ class ParameterFamily:
 
     def _member(self, value: float) -> Member:
         self._extend_to(value)
-        for known in (self._nodes, self._others):
+        for known in (self._nodes, self._between_nodes):
             if value in known:
                 return known[value]
         values = sorted(self._nodes)
@@ -125,12 +129,12 @@ class ParameterFamily:
         low, high = values[above - 1], values[above]
         between = self._between(value, low, high)
         if between is None:
-            between = self._others[value] = self._linked(value, min(low, high, key=lambda node: (abs(node - value), node)))
+            between = self._between_nodes[value] = self._linked(value, min(low, high, key=lambda node: (abs(node - value), node)))
         return between
 
     def _extend_to(self, value: float) -> None:
-        """Add nodes, away from the value of the system, until they enclose a value."""
-        sign = math.copysign(1.0, value - self._own)
+        """Add nodes, away from the system's own value, until they enclose a value."""
+        sign = math.copysign(1.0, value - self._own_value)
         while True:
             ends = sorted(self._nodes)
             end = ends[-1] if sign > 0 else ends[0]
@@ -143,9 +147,9 @@ class ParameterFamily:
 
         If the system has no potential at the node, return the value to reach.
         """
-        distance = abs(end - self._own)
+        distance = abs(end - self._own_value)
         further = self._step * (math.floor(distance / self._step * (1.0 + _CONVERGED)) + 1)
-        node = self._own + sign * (further if distance < self._reach else 2.0 * distance)
+        node = self._own_value + sign * (further if distance < self._reach else 2.0 * distance)
         try:
             self._axis.potential(node)
         except ValueError:
@@ -153,7 +157,7 @@ class ParameterFamily:
         return node
 
     def _connect(self, known: float, new: float) -> None:
-        """Add a node; if its exits differ from those of the last node, first insert nodes between them."""
+        """Add a node at `new`, next to the node `known`; if their exits differ, first insert nodes between them."""
         potential = self._axis.potential(new)
         for _ in range(_HALVINGS):
             if _match(self._nodes[known].potential, potential) is not None:
@@ -167,9 +171,9 @@ class ParameterFamily:
         self._nodes[new] = self._linked(new, known)
 
     def _linked(self, value: float, node: float) -> Member:
-        """Find the potential at a value; its exits get the numbers of the same exits at a node, and new numbers otherwise."""
-        self._found += 1
-        if self._found > self._most_found:
+        """Find the potential at a value. Its exits get the numbers of the same exits at a node, and new numbers otherwise."""
+        self._found_count += 1
+        if self._found_count > self._most_found:
             raise ManyExitsError(
                 f"parameter {self._axis.key}: its exits change too often up to {value:.6g}; choose a smaller range"
             )
@@ -186,10 +190,10 @@ class ParameterFamily:
         return Member(potential, read_only(numbers))
 
     def _matches(self, low: float, high: float) -> list[int] | None:
-        """Return `_match` of two nodes."""
-        if (low, high) not in self._matched:
-            self._matched[low, high] = _match(self._nodes[low].potential, self._nodes[high].potential)
-        return self._matched[low, high]
+        """Match the exits of two nodes, once for each pair of nodes."""
+        if (low, high) not in self._node_matches:
+            self._node_matches[low, high] = _match(self._nodes[low].potential, self._nodes[high].potential)
+        return self._node_matches[low, high]
 
     def _between(self, value: float, low: float, high: float) -> Member | None:
         """Continue the saddles of two nodes to a value between them; None if the exits of the nodes differ."""
@@ -227,7 +231,7 @@ def parameter_family(axis: ParameterAxis) -> ParameterFamily:
 
 
 def find_members(axis: ParameterAxis) -> None:
-    """Find potentials along a whole axis, to measure how long the lines of a map take, and to store their points on disk.
+    """Find potentials along a whole axis, to time the lines of a map and to store the critical points on disk.
 
     Raises
     ------
@@ -235,18 +239,18 @@ def find_members(axis: ParameterAxis) -> None:
         If the exits change too often.
     """
     family = parameter_family(axis)
-    for value in np.linspace(axis.low, axis.high, _TRIED).tolist():
+    for value in np.linspace(axis.low, axis.high, _SCAN_VALUES).tolist():
         try:
             family.member(value)
         except ManyExitsError:
             raise
         except ValueError:
-            # The system has no potential there, so that the line of the map remains empty.
+            # The system has no potential there, so the line of the map remains empty.
             continue
 
 
 def _match(first: Potential, last: Potential) -> list[int] | None:
-    """Return, for each exit saddle of the first potential, the index of its continuation in the last; None if not one to one."""
+    """Return the index of the last potential's saddle for each exit saddle of the first; None unless they match one to one."""
     if first.channels != last.channels:
         return None
     found = [_nearest(last.saddles, place) for place in _continue(last, first.saddles)]
@@ -255,7 +259,7 @@ def _match(first: Potential, last: Potential) -> list[int] | None:
 
 
 def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
-    """Return (n, 2) the critical points of a potential near those of another one, by Newton's method; NaN where there is none."""
+    """Continue critical points of another potential to this one by Newton's method; (n, 2), NaN where there is none."""
     start = points = np.array(points)
     if not len(points):
         return points
@@ -274,7 +278,7 @@ def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
 
 
 def _separation(points: np.ndarray) -> np.ndarray:
-    """Return (n,) the distance of each point to the nearest other point or to the origin."""
+    """Return the distance of each point to the nearest other point or to the origin, of shape (n,)."""
     others = np.concatenate([points, np.zeros((1, 2))])
     distances = np.hypot(*np.moveaxis(points[:, None] - others, -1, 0))
     distances[np.arange(len(points)), np.arange(len(points))] = np.inf
@@ -283,7 +287,7 @@ def _separation(points: np.ndarray) -> np.ndarray:
 
 
 def _nearest(points: Sequence[np.ndarray] | np.ndarray, place: np.ndarray) -> int | None:
-    """Return the index of the point at a place; None if there is none."""
+    """Return the index of the point at a place; None if no point is there."""
     if not len(points) or not np.isfinite(place).all():
         return None
     distances = np.hypot(*(np.asarray(points) - place).T)

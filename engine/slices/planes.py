@@ -16,9 +16,8 @@ from engine.systems.potential import Potential
 class Plane(Slice, Enum):
     """The named slices. Coordinates that are not axes are 0, and the momentum determined by the energy is positive.
 
-    The first three are those of Zotos (2014), the fourth is the section of Hénon & Heiles (1964), Astron. J. 69, 73. The last
-    one, with orbits launched at right angles to the radius, is that of Aguirre, Vallejo & Sanjuán (2001), Phys. Rev. E 64,
-    066208.
+    The first three slices are from Zotos (2014), the fourth is the section of Hénon & Heiles (1964), Astron. J. 69, 73. In the
+    last slice, of Aguirre, Vallejo & Sanjuán (2001), Phys. Rev. E 64, 066208, orbits start at right angles to the radius.
     """
 
     X_Y = Coordinate.X, Coordinate.Y
@@ -41,7 +40,7 @@ SECTION = Plane.X_PX
 
 
 def checked_slice(value: Any) -> Slice:
-    """Return a slice, given as one or by the title or the key of a named slice: "(x, px)" or "x_px"."""
+    """Return a slice, given as a `Slice` or as the title or the key of a named slice: "(x, px)" or "x_px"."""
     if isinstance(value, Slice):
         return next((plane for plane in Plane if _fields(plane) == _fields(value)), value)
     for plane in Plane if isinstance(value, str) else ():
@@ -73,7 +72,8 @@ def start_states(
 
     Returns
     -------
-    (n, 4), n = 1 for numbers: x, y, px, py; the momentum determined by the energy is NaN where the start is forbidden.
+    x, y, px, py of each start, of shape (n, 4), n = 1 for numbers. Where a start is forbidden, the momentum determined by the
+    energy is NaN.
 
     Raises
     ------

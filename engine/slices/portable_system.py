@@ -47,7 +47,7 @@ class PortableSystem:
     module
         WebAssembly with the functions of its structure, see `engine.integrator.jit.webassembly`.
     table
-        (m,) the coefficients in the form that the functions take.
+        (m,) the coefficients, as the functions of `module` take them.
     backward
         (m,) the coefficients of the system backward in time, whose orbits have the opposite velocities.
     exits
@@ -102,14 +102,14 @@ class PortableSystem:
 
 
 def _energy_surface(units: WellUnits) -> dict[str, object]:
-    """Return all directions of the velocity at all positions, as a slice with a third axis, the angle."""
+    """Return the energy surface as a slice of positions with the angle of the velocity as third axis."""
     launched = Slice(*SPACE.axes, Coordinate.SPEED).to_dict(units)
     turned = [float(column == slice_starts.ANGLE) for column in range(slice_starts.COORDINATES)]
     return {**launched, "motion": [*launched["motion"], turned]}
 
 
 def _circles(well: Potential) -> list[dict[str, object]]:
-    """Return the ends that are not over saddles: their rows for the kernels, and their gates."""
+    """Return the rows for the kernels and the gates of the ends that are not over saddles."""
     return [
         {"side": end.side, "radius": end.radius, "row": end.row.tolist(), "gate": exit_gates(end.row[None, None])[0].tolist()}
         for end in well.ends
@@ -117,16 +117,16 @@ def _circles(well: Potential) -> list[dict[str, object]]:
 
 
 def _polynomial_data(form: Any) -> dict[str, object] | None:
-    """Return V in the form of the interior test, as lists; None for an expression."""
+    """Return a polynomial V as the interior test takes it, with lists for arrays; None for an expression."""
     if not isinstance(form, PolynomialForm):
         return None
     return {name: array.tolist() for name, array in tabulate_polynomial(form)._asdict().items()}
 
 
 def make_portable_system(potential: Potential, highest: float) -> PortableSystem:
-    """Return a potential as data, with exits for energies up to `highest`, in its own units.
+    """Return a potential as data, with exits for energies up to `highest`, in units of the potential.
 
-    This takes up to a second when the structure of a potential is used first, and when exits are not cached.
+    This takes up to a second for the first potential of a structure, and when exits are not cached.
     """
     well = potential.in_well_units
     definition, setting = well.form.definition, well.well.setting

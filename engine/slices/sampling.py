@@ -18,8 +18,11 @@ from engine.systems.potential import Potential
 LARGEST_SAMPLE = 10_000_000
 """Largest number of starts of one sample."""
 
-# Largest and smallest number of points drawn at once; with fewer than this share inside, a window counts as without interior.
-_MOST, _LEAST = 1_000_000, 1_000
+# Largest number of points drawn at once.
+_MOST = 1_000_000
+# Smallest number of points drawn at once.
+_LEAST = 1_000
+# A window with a smaller share of points inside counts as without interior.
 _SMALLEST_SHARE = 1e-4
 # On the energy surface, each point (x, y) with its speed stands for all directions of the velocity.
 _LAUNCHED = Slice(*SPACE.axes, Coordinate.SPEED)
@@ -37,8 +40,8 @@ def sample_starts(
 ) -> np.ndarray:
     """Draw random starts inside all exits.
 
-    On the energy surface they have the microcanonical measure δ(H − h) dx dy dpx dpy: with two degrees of freedom x and y are
-    uniform where V ≤ h, and so is the direction of the velocity. On a slice they are uniform in the coordinates of its axes.
+    On the energy surface, starts have the microcanonical measure δ(H − h) dx dy dpx dpy: with two degrees of freedom, positions
+    are uniform where V ≤ h, and the directions of the velocity are uniform. On a slice, starts are uniform in both axes.
 
     Parameters
     ----------
@@ -57,7 +60,7 @@ def sample_starts(
 
     Returns
     -------
-    (count, 4) x, y, px, py, all with this energy to rounding.
+    x, y, px, py of each start, of shape (count, 4), with this energy to rounding.
 
     Raises
     ------
@@ -94,16 +97,16 @@ def sample_starts(
 def _draw(
     potential: Potential, h: float, plane: Slice | None, window: Window, size: int, random: np.random.Generator
 ) -> np.ndarray:
-    """Return (n, 4) the starts inside among `size` random points of a window; without a plane, on the energy surface."""
+    """Draw `size` random points of a window, or of the energy surface without a plane, and return the starts inside, (n, 4)."""
     x = random.uniform(window.x_low, window.x_high, size)
     ordinate = random.uniform(window.ordinate_low, window.ordinate_high, size)
     states = (plane or _LAUNCHED).states(potential, h, x, ordinate)
     states = states[np.isfinite(states).all(axis=1)]
     states = states[find_outside_channels(potential, h, *np.ascontiguousarray(states[:, :2].T)) == 0]
-    return states if plane is not None else _turned(states, random)
+    return states if plane is not None else _turn_randomly(states, random)
 
 
-def _turned(states: np.ndarray, random: np.random.Generator) -> np.ndarray:
+def _turn_randomly(states: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """Return states with velocities in random directions."""
     speed: Any = np.hypot(states[:, 2], states[:, 3])
     angle = random.uniform(0.0, 2.0 * np.pi, len(states))

@@ -31,10 +31,10 @@ class Slice:
     Parameters
     ----------
     abscissa, ordinate
-        The axes: two different coordinates, a `Direction`, or a `ParameterAxis`, at most one.
+        The two axes, which must differ: coordinates, `Direction`s, and at most one `ParameterAxis`.
     solved
-        The coordinate that the energy determines: a momentum, or with an angle the speed. The default, None, is the speed if an
-        angle is used, px if py is used, and otherwise py.
+        The coordinate that the energy determines: a momentum, or the speed if an angle is used. None, the default, stands for the
+        speed if an angle is used, px if py is used, and otherwise py.
     sign
         Sign of this momentum, 1 or −1; 1 for the speed.
     fixed
@@ -140,7 +140,7 @@ class Slice:
 
     @property
     def parameter_axis(self) -> int | None:
-        """0 if the abscissa is a parameter, 1 if the ordinate is one; None if all starts have one potential."""
+        """0 if the abscissa is a parameter, 1 if the ordinate is; None if all starts have one potential."""
         return next((place for place, axis in enumerate(self.axes) if isinstance(axis, ParameterAxis)), None)
 
     @property
@@ -184,11 +184,11 @@ class Slice:
         }
 
     def axis_units(self, units: WellUnits) -> tuple[float, float]:
-        """Return the units of both axes in which their coordinates are of the order of the size of the well."""
+        """Return the unit of each axis, in which coordinates inside the well are of order 1."""
         return self.abscissa.unit(units), self.ordinate.unit(units)
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
-        """Convert a result from units of the well; its `x` and `ordinate`, numbers or arrays, are positions on this slice."""
+        """Convert a result from units of the well. Its `x` and `ordinate`, numbers or arrays, are positions on this slice."""
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
         for coordinate in (x, ordinate):
@@ -197,7 +197,7 @@ class Slice:
         return replace(units.restore(result), x=x, ordinate=ordinate)  # type: ignore[type-var]
 
     def in_well_units(self, units: WellUnits) -> Slice:
-        """Return the slice in units of a well; itself if it has neither fixed values nor directions."""
+        """Return the slice in units of a well: the slice itself if it has neither fixed values nor directions."""
         if not self.fixed and not any(isinstance(axis, Direction) for axis in self.axes):
             return self
         fixed = tuple((coordinate, value / coordinate.unit(units)) for coordinate, value in self.fixed)
@@ -220,15 +220,15 @@ class Slice:
         return energy if self.energy_axis is None else (x, ordinate)[self.energy_axis]
 
     def states(self, potential: Potential, energy: Any, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """Return (n, 4) the starts of points of the slice; parameters as in `start_states`."""
+        """Return the starts of points of the slice, of shape (n, 4), see `start_states`."""
         return compute_states(self, potential, energy, x, ordinate)
 
     def required_energy(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """Return the lowest energy of a start; with an axis h, the energy missing there, positive where it is forbidden."""
+        """Return the lowest energy of a start; with an axis h, relative to the h of its point: positive if forbidden."""
         return compute_required_energy(self, potential, x, ordinate)
 
     def of_system(self, system: System) -> Slice:
-        """Return the slice with its parameter in another system; ValueError if that system lacks it or its range."""
+        """Return the slice with its parameter in another system; ValueError if that system lacks the parameter or the range."""
         if self.parameter is None or self.parameter.system == system:
             return self
         abscissa, ordinate = (replace(a, system=system) if isinstance(a, ParameterAxis) else a for a in self.axes)
@@ -245,16 +245,16 @@ class Slice:
         return Slice(abscissa, ordinate, self.solved, self.sign, self.fixed)
 
     def system_at(self, system: System, x: float, ordinate: float) -> System:
-        """Return the system of a point: `system`, or the one at the point's value of a parameter."""
+        """Return the system of a point: `system`, or the system at the point's value of a parameter."""
         axis = self.parameter
         return system if axis is None else system.with_parameter(axis.key, (x, ordinate)[self.parameter_axis or 0])
 
     def potential_at(self, potential: Potential, x: float, ordinate: float) -> Potential:
-        """Return the potential of a point: `potential`, or the one at its value of a parameter; ValueError if there is none."""
+        """Return the potential of a point: `potential`, or that at the point's value of a parameter; ValueError without one."""
         return potential if self.parameter is None else self.system_at(self.parameter.system, x, ordinate).potential
 
     def energy_groups(self, rows: int, columns: int) -> np.ndarray:
-        """Return (rows · columns,) the number of the energy of each pixel, row by row: its place along an axis h, otherwise 0."""
+        """Return the number of the energy of each pixel, (rows · columns,): its place along an axis h, otherwise 0."""
         groups = np.zeros((rows, columns), np.int64)
         if self.energy_axis == 0:
             groups += np.arange(columns)
@@ -266,7 +266,7 @@ class Slice:
     def mirrored_axes(self) -> tuple[bool, bool] | None:
         """For each axis, whether its sign changes under x → −x; None if the mirror image is a different slice."""
         parities = [axis.parity for axis in self.axes]
-        # A coordinate that changes its sign is its own mirror image at 0.
+        # A coordinate whose sign x → −x changes is its own mirror image if it is 0.
         held = [coordinate.parity for coordinate, value in self.fixed if value or coordinate.parity != -1]
         if None in parities or any(parity != 1 for parity in (self.decided.parity, *held)):
             return None
@@ -297,7 +297,7 @@ class Slice:
 
 
 def _coordinates(values: Mapping[Coordinate, float]) -> list[float]:
-    """Return coordinates in the columns of `engine.integrator.kernels.slice_starts`; those not given are 0."""
+    """Return coordinates in the columns of `engine.integrator.kernels.slice_starts`; missing coordinates are 0."""
     held = {"angle" if coordinate in ANGLES else coordinate.key: value for coordinate, value in values.items()}
     return [held.get(name, 0.0) for name in ("x", "y", "px", "py", "angle", "h")]
 

@@ -1,4 +1,4 @@
-"""Conditions on the coordinates of a slice, so that each point is one start."""
+"""Conditions on the coordinates of a slice under which each point is one start."""
 
 from __future__ import annotations
 
@@ -49,6 +49,6 @@ def _moves_state(axis: Axis) -> bool:
 
 
 def _rows_of(axes: tuple[Axis, Axis]) -> np.ndarray:
-    """Return (2, 4) the directions of the axes in (x, y, px, py); zeros for axes of other kinds."""
+    """Return the directions of the axes in (x, y, px, py), of shape (2, 4); zeros for axes of other kinds."""
     parts = [axis.components if isinstance(axis, Direction) else {axis: 1.0} for axis in axes]
     return np.array([[part.get(coordinate, 0.0) for coordinate in STATE] for part in parts])

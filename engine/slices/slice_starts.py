@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-    """Return (n, 4) the starts at points of a slice; for the parameters see `start_states`."""
+    """Return the starts at points of a slice, of shape (n, 4), see `start_states`."""
     if plane.parameter is not None:
         states = np.full((*np.shape(x), len(STATE)), np.nan)
         for here, line, each in _lines(plane, x, ordinate):
@@ -25,7 +25,7 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
     start = _coordinates(plane, x, ordinate)
     with np.errstate(over="ignore", invalid="ignore"):
         # An overflow far from the origin gives a forbidden start.
-        # With the mass as factor of H, the kinetic energy is ½(px² + py²).
+        # In the mass times H, the kinetic energy is ½(px² + py²).
         value = potential.mass * potential.value(start[Coordinate.X], start[Coordinate.Y])
         energies = potential.mass * plane.energies(energy, x, ordinate)
         found = kernel.decided_momentum(energies, value, _held_momentum(plane, start), plane.sign)
@@ -41,7 +41,7 @@ def compute_states(plane: Slice, potential: Potential, energy: Any, x: np.ndarra
 
 
 def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-    """Return the lowest energy of a start; with an axis h, the energy missing there, positive where the start is forbidden."""
+    """Return the lowest energy of a start; with an axis h, relative to the h of its point: positive if forbidden."""
     if plane.parameter is not None:
         required = np.full(np.shape(x), np.inf)
         for here, line, each in _lines(plane, x, ordinate):
@@ -55,7 +55,7 @@ def compute_required_energy(plane: Slice, potential: Potential, x: np.ndarray, o
 
 
 def _lines(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> Iterator[tuple[np.ndarray, Slice, Potential]]:
-    """Yield, for each value of the parameter with a system, the positions of its points, their slice and their potential."""
+    """Yield the mask of the points, their slice and their potential for each value of the parameter that has a potential."""
     axis, place = plane.parameter, plane.parameter_axis
     assert axis is not None
     assert place is not None
@@ -78,7 +78,7 @@ def _coordinates(plane: Slice, x: np.ndarray, ordinate: np.ndarray) -> dict[Coor
 
 
 def _held_momentum(plane: Slice, start: Mapping[Coordinate, np.ndarray]) -> Any:
-    """Return the momentum that the energy does not determine; 0 if it determines the speed."""
+    """Return the momentum that the energy does not determine; 0 if the energy determines the speed."""
     if plane.decided is Coordinate.SPEED:
         return 0.0
     (held,) = (start[momentum] for momentum in MOMENTA if momentum is not plane.decided)

@@ -19,7 +19,10 @@ _ALIASES = {
     "eps": "epsilon",
 }
 _SIGNS = {"+": 1, "-": -1}
-_RANGE, _COMPONENTS = 2, len(STATE)
+# Number of values in the text of a parameter.
+_RANGE = 2
+# Number of values in the text of a direction.
+_COMPONENTS = len(STATE)
 
 
 def write_slice(chosen: Slice) -> tuple[str, str]:
@@ -27,7 +30,7 @@ def write_slice(chosen: Slice) -> tuple[str, str]:
 
     Returns
     -------
-    The axes, or the key of a named slice, and the fixed values; the second text is empty if all are the default ones.
+    The axes, or the key of a named slice, and the fixed values. The second text is empty if all values are the defaults.
     """
     if isinstance(chosen, Plane):
         return chosen.key, ""
@@ -38,7 +41,7 @@ def write_slice(chosen: Slice) -> tuple[str, str]:
 
 
 def read_slice(axes: str, held: str, system: System) -> Slice:
-    """Return the slice given by two texts, whose parameters are those of a system.
+    """Return the slice given by two texts, in which parameters of `system` can be axes.
 
     Parameters
     ----------
@@ -66,7 +69,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
     solved, sign = None, 1
     for part in held.split(",") if held else ():
         name, _, value = part.partition("=")
-        coordinate = _COORDINATES.get(_known(name))
+        coordinate = _COORDINATES.get(_without_alias(name))
         if coordinate is None:
             raise ValueError(f"fix={short_repr(part)}: must be one of {', '.join(_COORDINATES)} with a number, such as y=0.1")
         if value in _SIGNS:
@@ -77,7 +80,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
 
 
 def default_range(system: System, name: str) -> tuple[float, float]:
-    """Return a legal range of a parameter: from half of its value in a system to twice its value, or from −1 to 1 about 0."""
+    """Return a legal range of a parameter: from half to twice its value in a system, or from −1 to 1 if this value is 0."""
     value = system.value_of(name)
     low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
     lowest, highest = system.range_of(name)
@@ -94,7 +97,7 @@ def _write_axis(axis: Axis) -> str:
 
 def _read_axis(text: str, system: System) -> Axis:
     name, _, numbers = text.partition("=")
-    key = _known(name)
+    key = _without_alias(name)
     if key in AXIS_NAMES and not numbers:
         return _COORDINATES[key]
     values = [_number("axes", text, number) for number in numbers.split(":")] if numbers else []
@@ -107,7 +110,7 @@ def _read_axis(text: str, system: System) -> Axis:
     raise ValueError(f"axes={short_repr(text)}: must be one of {legal}, or a name with a range or with four components")
 
 
-def _known(name: str) -> str:
+def _without_alias(name: str) -> str:
     stripped = name.strip()
     return _ALIASES.get(stripped, stripped)
 

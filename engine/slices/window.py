@@ -15,7 +15,7 @@ from engine.integrator.kernels.slice_starts import interval_centre
 class Window:
     """A rectangle of a slice, including its edges, dimensionless.
 
-    Raises ValueError if an edge is not finite or beyond ±1e9, or a lower edge is not below the upper edge.
+    Raises ValueError if an edge is not finite or lies beyond ±1e9, or a lower edge is not below the upper edge.
     """
 
     x_low: float
@@ -38,7 +38,7 @@ class Window:
         return Window(*(x_factor * edge for edge in x), *(ordinate_factor * edge for edge in ordinate))
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return x (columns,) and ordinate (rows,) of the pixel centres, which are exactly symmetric if the window is."""
+        """Return x and ordinate of the pixel centres, (columns,) and (rows,), exactly symmetric if the window is symmetric."""
         x = interval_centre(self.x_low, self.x_high, np.arange(columns), columns)
         return x, interval_centre(self.ordinate_low, self.ordinate_high, np.arange(rows), rows)
 
@@ -48,7 +48,7 @@ type GivenWindow = Window | tuple[float, float, float, float]
 
 
 def checked_window(window: Any) -> Window:
-    """Return a `Window`, given as one or as (x_low, x_high, ordinate_low, ordinate_high)."""
+    """Return a `Window`, given as a `Window` or as (x_low, x_high, ordinate_low, ordinate_high)."""
     if isinstance(window, Window):
         return window
     try:

@@ -34,7 +34,7 @@ def map_job(spec: MapSpec) -> Job[EscapeMap]:
 
 
 def members_job(axis: ParameterAxis | None) -> Job[None] | None:
-    """Return the job that finds the potentials along a parameter of a typed formula, within limits; None for others."""
+    """Return the job that finds the potentials along a parameter of a typed formula, within limits; None for other axes."""
     if axis is None or axis.system.case != TYPED:
         return None
     return Job(find_members, (axis,), queue=Queue.LIMITED)
@@ -52,7 +52,7 @@ def sweep_job(spec: SweepSpec) -> Job[Sweep]:
 
 
 def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
-    """Return the cached map that can be resumed and whose t_max is smaller by the least amount."""
+    """Return the cached map with the largest t_max up to that of the job; None unless it can be resumed."""
     (spec,) = job.arguments
     maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
     # Energies are compared first, because this is cheap and there may be thousands of maps.

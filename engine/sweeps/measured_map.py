@@ -19,7 +19,10 @@ from engine.slices.window import Window
 from engine.systems.outcomes import Outcome
 
 MOST_JUDGED = 2000
-"""Largest number of bounded starts, drawn at random, that are judged as regular or chaotic; it gives a 95 % interval of ± 2 %."""
+"""Largest number of bounded starts, drawn at random, that are judged as regular or chaotic.
+
+This number gives a 95 % interval of ± 2 %.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +34,7 @@ class MeasuredMap:
     frame
         The map.
     box
-        Only the starts in this box count; None for all.
+        Only the starts in this box count; None for all starts.
     execution
         How additional orbits are computed.
     effort
@@ -60,7 +63,7 @@ class MeasuredMap:
         return compute_statistics(self.starts)
 
     def find_characters(self) -> np.ndarray:
-        """Return (n,) `Regularity` codes of bounded starts that count, from new orbits, as many as `effort` allows."""
+        """Return the `Regularity` codes, (n,), of as many bounded starts that count as `effort` allows, from new orbits."""
         place = np.s_[:, :] if self.box is None else read_starts("frame", self.frame).place(self.box)
         counts = np.zeros(self.frame.fate.shape, bool)
         counts[place] = self.starts.fate == Fate.BOUNDED
@@ -75,7 +78,7 @@ class MeasuredMap:
         return characters
 
     def _keep(self, pixels: np.ndarray) -> EscapeMap:
-        """Return the map with fates only for these pixels (n,) and their mirror images, which share an orbit with them."""
+        """Return the map with fates only for n pixels and their mirror images, whose orbits are not computed again."""
         frame = self.frame
         kept = np.zeros(frame.fate.size, bool)
         kept[pixels] = True
@@ -85,7 +88,7 @@ class MeasuredMap:
 
 @dataclass(frozen=True)
 class SweepPoint:
-    """The measurement at one value.
+    """The measurement at one value of a sweep.
 
     Attributes
     ----------
@@ -96,7 +99,7 @@ class SweepPoint:
     measures
         Names of `MEASURES`.
     numbers
-        The fate in the sweep for each fate of the map, from 0 on, as in `ParameterFamily`.
+        The fate in the sweep for each fate of the map, from 0 on, see `Member.numbers`.
     outcomes
         The outcomes of the sweep.
     """

@@ -97,9 +97,9 @@ _ALL = (
         ),
         curve=Curve("percentage of starts"),
         other_variables=_describe_shares,
-        help="The shares of the interior starts that escape through each exit, and of those that stay, against the energy or a "
-        "parameter. Just above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one after "
-        "the other as the energy rises.",
+        help="The shares of the interior starts that escape through each exit, and of the starts that stay, against the energy "
+        "or a parameter. Just above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one "
+        "after the other as the energy rises.",
     ),
     Measure(
         "escape_times", "Escape time", "how long orbits stay",
@@ -142,8 +142,8 @@ _ALL = (
         ),
         curve=Curve("entropy", least_top=0.72, level=(math.log(2.0), "ln 2")),
         sentence=_describe,
-        help="How mixed the basins are in boxes of 5 by 5 pixels: S_b over all boxes, S_bb over those with more than one fate. "
-        "A smooth boundary between two basins gives S_bb at most ln 2, the dashed line; above it, boundaries are fractal "
+        help="How mixed the basins are in boxes of 5 by 5 pixels: S_b over all boxes, S_bb over the boxes with more than one "
+        "fate. A smooth boundary between two basins gives S_bb at most ln 2, the dashed line; above it, boundaries are fractal "
         "at the scale of a box. Below it there is no conclusion.",
         terms={
             "Basin entropy": "How mixed the fates of the starts are in small boxes, by Gibbs's formula; zero where all fates are "
@@ -228,7 +228,7 @@ _ALL = (
         _find_chaotic_share,
         (
             Quantity(
-                "chaotic_share", "share of chaotic orbits among the bounded ones", attrgetter("share", "low", "high"),
+                "chaotic_share", "share of chaotic orbits among the bounded orbits", attrgetter("share", "low", "high"),
                 Bars.INTERVAL, "of the bounded orbits",
             ),
         ),

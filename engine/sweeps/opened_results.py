@@ -30,8 +30,11 @@ _READERS: dict[Any, Callable[[xr.Dataset], Result]] = {
     Sweep: Sweep,
     Potential: lambda dataset: read_potential(dataset.attrs),
 }
-# Flags of finished energies in the stores of earlier versions, and the name of their curves; both are opened as plain datasets.
-_FORMER_FLAGS, _FORMER_CURVES = "done", "Curves"
+# Variable of stores of earlier versions that marks finished energies. Such stores are opened as plain datasets.
+_FORMER_FLAGS = "done"
+# Former kind of result. Its files are opened as plain datasets.
+_FORMER_CURVES = "Curves"
+# File by which the folder of a Zarr store is recognised.
 _ZARR = "zarr.json"
 # First bytes of HDF5 files, and thus of NetCDF 4 files.
 _HDF5 = b"\x89HDF"
@@ -64,7 +67,7 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
     OSError
         If the file does not exist or cannot be read.
     ValueError
-        If the file or folder contains no result, or another kind of result; xarray can open it.
+        If the file or folder contains no result, or another kind of result; xarray can open such a file.
 
     Examples
     --------
@@ -135,8 +138,8 @@ def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
         name = kind.held_as.get(each.name, each.name)
         if each.name in values:
             continue
-        if each.name in _HELD_OTHERWISE:
-            values[each.name] = _HELD_OTHERWISE[each.name](dataset)
+        if each.name in _FIELD_READERS:
+            values[each.name] = _FIELD_READERS[each.name](dataset)
         elif name in dataset.variables:
             values[each.name] = read_field(hints[each.name], dataset[name].values)
         elif name in dataset.attrs:
@@ -148,8 +151,8 @@ def _read_fields(kind: Any, dataset: xr.Dataset) -> Any:
 
 
 def _read_made_by(result: RecordedResult, dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the attributes that were not computed."""
-    computed = {"result", "outcomes", *result.numbers(), *(each.name for each in fields(result))} - _REQUESTED
+    """Return the attributes that say how a result was made, without its numbers."""
+    computed = {"result", "outcomes", *result.numbers(), *(each.name for each in fields(result))} - _REQUEST_NUMBERS
     return {name: value for name, value in plain_attributes(dataset.attrs).items() if name not in computed}
 
 
@@ -167,12 +170,12 @@ def _with_names_of_axes(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.rename({abscissa: "x", ordinate: "ordinate"})
 
 
-# Fields that are stored as several attributes or variables.
-_HELD_OTHERWISE: Mapping[str, Callable[[xr.Dataset], Any]] = {
+# Readers of fields that are stored as several attributes or variables.
+_FIELD_READERS: Mapping[str, Callable[[xr.Dataset], Any]] = {
     "spec": read_spec,
     "potential": lambda dataset: read_potential(dataset.attrs) if "terms" in dataset.attrs else None,
     "outcomes": lambda dataset: read_outcomes(dataset.attrs.get("outcomes", "[]")),
     "made_by": lambda dataset: {},
 }
-# Facts about the request and the result that files contain only once.
-_REQUESTED = {"potential", "energy", "t_max"}
+# Facts about the request that are also numbers of the result; files contain them only once.
+_REQUEST_NUMBERS = {"potential", "energy", "t_max"}

@@ -1,4 +1,4 @@
-"""Plans: the estimated cost of a sweep."""
+"""Estimates of the cost of sweeps."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from engine.maps.spec import MapSpec
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.warmup import prepare_for_evidence, prepare_for_maps
 
-# Plans are based on maps with these sides at this number of values. The smaller maps show the cost that is independent of the
-# size.
+# Sides in pixels of the maps on which plans are based. The smaller maps show the cost that is independent of the size.
 _COARSE_SIDES = (48, 96)
+# Number of values at which these maps are computed.
 _PLANNED_VALUES = 12
 
 MOST_CORES = 1_000_000
@@ -37,7 +37,7 @@ class SweepPlan:
     seconds
         Wall time in seconds if all cores are busy throughout.
     bytes
-        Size of the arrays of the maps before compression, an upper bound for a store of them.
+        Size of the arrays of the maps before compression, an upper bound for the size of their store.
     cores
         Number of workers.
     """
@@ -71,12 +71,12 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
     cores
         Number of workers, 1 or more; by default that of `execution`.
     execution
-        How the sweep will run. Only its number of workers is used; they are assumed to be as fast as this core.
+        How the sweep will run. Only the number of its workers is used; all are assumed to be as fast as this core.
 
     Returns
     -------
     The plan, with the number of `orbits`, the wall time in `seconds` if all `cores` are busy, and the `bytes` of the arrays of
-    the maps; `describe` gives it in a sentence.
+    the maps; `describe` puts these numbers in a sentence.
 
     Raises
     ------

@@ -15,17 +15,17 @@ from engine.sweeps.measures import MEASURES
 if TYPE_CHECKING:
     import xarray as xr
 
-# Effort for the maps of sweeps, which makes measures about ten times faster than for a single map.
+# Share of the usual number of additional orbits. A sweep measures many maps.
 _EFFORT = 0.1
 
 
 def measure_map(frame: EscapeMap, name: str, box: Window | None = None, *, execution: Execution = DEFAULT_EXECUTION) -> Any:
-    """Return the result of the measure `name` of a complete map, or of a box in it; None if it is not defined."""
+    """Return the result of the measure `name` of a complete map, or of a box in it; None if the measure is not defined."""
     return MEASURES[name].compute(MeasuredMap(frame, box, execution))
 
 
 def compute_point(point: SweepPoint, *, frame: EscapeMap | None = None, execution: Execution = DEFAULT_EXECUTION) -> xr.Dataset:
-    """Measure one value.
+    """Measure the map at one value of a sweep.
 
     Parameters
     ----------

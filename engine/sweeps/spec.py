@@ -1,4 +1,4 @@
-"""The request of a sweep: maps at many energies, or at many values of a parameter, and the measures of each."""
+"""The request of a sweep: maps at many energies, or at many values of a parameter, and the measures of each map."""
 
 from __future__ import annotations
 
@@ -43,21 +43,21 @@ class SweepSpec:
     Parameters
     ----------
     potential
-        The `Potential`; along a parameter, the potential of its system.
+        The `Potential`; along a parameter, the potential of the parameter's system.
     plane
         A slice of one energy and one potential, such as (x, y) or (x, px).
     values
-        Energies h, or values of the parameter; finite, dimensionless, 1 to 10 000 of them. They are sorted and made unique.
+        1 to 10 000 energies h, or values of the parameter; finite, dimensionless. They are sorted and made unique.
     resolution
         Columns and rows of the map at each value, each 1 to 4096.
     window
-        As in `MapSpec`, for all values. None for the default window of each map, which contains the whole interior. For the
+        The window of all maps, see `MapSpec`. None for the default window of each map, which contains the whole interior. For the
         measure "maps", whose arrays have common axes, None means the default window of the highest energy. In the three cases the
-        interior grows with h on both planes, so that this window contains those of all other energies.
+        interior grows with h on both planes, so this window contains the windows of all other energies.
     t_max
         Integration time, dimensionless, 0 < t_max ≤ 1e8; by default as in `MapSpec`.
     use_evidence
-        As in `MapSpec`.
+        Whether orbits may be called bounded before t_max on evidence, see `MapSpec`.
     measures
         Names of `MEASURES` to compute for each map; "maps" stores the arrays of the map itself.
     along
@@ -109,7 +109,7 @@ class SweepSpec:
         if (self.along is None) != (self.energy is None):
             raise ValueError(f"energy={short_repr(self.energy)}: must be given along a parameter, and None along the energy")
         if self.along is not None:
-            # This validates the parameter, which must be one of the system of the potential.
+            # This validates the parameter, which must belong to the system of the potential.
             MapSpec(self.potential, Slice(Coordinate.X, self.along), self.energy or 0.0)
         plane, values, measures = _checked_plane(self.plane), _checked_values(self.values), _checked_measures(self.measures)
         if checked_count("refine", self.refine, 0, MOST_REFINED) and "shares" not in measures:
@@ -178,7 +178,7 @@ class SweepSpec:
         return value if self.energy is None else self.energy
 
     def _common_window(self) -> GivenWindow | None:
-        """Return the window of all maps; None if each has its default window."""
+        """Return the window of all maps; None if each map has its default window."""
         if self.window is None and "maps" in self.measures:
             return map_window(self.potential, self.plane, self.values[-1], self.resolution)
         return self.window

@@ -29,16 +29,16 @@ _OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
 
 @contextmanager
 def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore]:
-    """Open the store of a request, which is new or contains some of its values, and lock it for this process.
+    """Open the store of a request, new or with some of its values, and lock this store for this process.
 
     Raises
     ------
     ValueError
         If the folder contains another sweep or other files, or its parent folder does not exist.
     OSError
-        If it cannot be written to.
+        If the store cannot be written to.
     BlockingIOError
-        If another process has locked it.
+        If another process has locked the store.
     """
     require_package("zarr", "files")
     if not path.parent.exists():
@@ -60,7 +60,7 @@ class SweepStore:
             self._open()
 
     def read(self) -> xr.Dataset:
-        """Return all values in ascending order; they are read from the disk on access."""
+        """Return all values in ascending order; arrays are read from the disk on access."""
         # This import is slow.
         import xarray as xr
 
@@ -72,7 +72,7 @@ class SweepStore:
         return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(axis)
 
     def append(self, point: xr.Dataset) -> None:
-        """Add a value. Its arrays are on the disk before it counts, in case of power failure or a full disk."""
+        """Add a value. Its arrays are on the disk before the value counts, in case of power failure or a full disk."""
         import zarr
 
         how: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
@@ -110,7 +110,7 @@ class SweepStore:
 
 
 def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, but: Sequence[str] = ()) -> None:
-    """Raise a ValueError that names the difference if attributes belong to another sweep; those of files have other types."""
+    """Raise a ValueError that names the difference if attributes, which have other types in files, belong to another sweep."""
     # A default window follows from the other differences.
     for name, value in sorted(wanted.items(), key=lambda item: item[0] == "window"):
         if name not in {*but, *_WORDS} and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
@@ -118,7 +118,7 @@ def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, 
 
 
 def _consolidate(path: Path) -> None:
-    """Collect the metadata of all arrays in one file, an extension of format 3; without it xarray warns and opens more slowly."""
+    """Collect the metadata of all arrays in one file, an extension of format 3. Otherwise xarray warns and opens more slowly."""
     import zarr
 
     with warnings.catch_warnings():

@@ -33,20 +33,20 @@ class Sweep(Result):
     Attributes
     ----------
     dataset
-        The measures along the first dimension, which is named "h" or after the parameter; shares also have the dimension
-        "outcome", 0 for bounded orbits, and maps those of their axes. The attributes are the request.
+        The measures along the first dimension, which is named "h" or after the parameter. Shares also have the dimension
+        "outcome", 0 for bounded orbits, and maps have those of their axes. The attributes are the request.
     """
 
     dataset: xr.Dataset = field(repr=False)
 
     @property
     def name(self) -> str:
-        """The name of what varies."""
+        """The name of the energy, "h", or of the parameter."""
         return str(self.dataset.attrs["axis"])
 
     @property
     def symbol(self) -> str:
-        """The symbol of what varies."""
+        """The symbol of the energy or of the parameter."""
         return str(self.dataset.attrs["symbol"])
 
     @property
@@ -56,7 +56,7 @@ class Sweep(Result):
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """What shares are of, after bounded orbits."""
+        """The outcomes whose shares are measured, besides bounded orbits."""
         return read_outcomes(self.dataset.attrs["outcomes"])
 
     @property
@@ -69,7 +69,7 @@ class Sweep(Result):
         return np.asarray(self.dataset[name].values)
 
     def interval(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the 95 % interval of a measure, or one standard error away; without errors, the measure itself."""
+        """Return the ends of the 95 % interval of a measure, or of its standard error; without errors, the measure twice."""
         if f"{name}_low" in self.dataset:
             return self[f"{name}_low"], self[f"{name}_high"]
         error = self[f"{name}_error"] if f"{name}_error" in self.dataset else 0.0
@@ -91,19 +91,19 @@ class Sweep(Result):
         return self.dataset
 
     def describe(self) -> str:
-        """Describe how much is measured."""
+        """Return the number of measured values, in a sentence."""
         attributes = self.dataset.attrs
         return f"{self.values.size} of {attributes['count']} values of {self.symbol} on {attributes['plane']}."
 
 
-class Kept(Protocol):
-    """Where the measured values are: in memory, or in a store."""
+class PointStorage(Protocol):
+    """Keeps the measured values, in memory or in a store."""
 
     def read(self) -> xr.Dataset:
-        """Return all of them, in ascending order."""
+        """Return all values, in ascending order."""
 
     def append(self, point: xr.Dataset) -> None:
-        """Add one."""
+        """Add one value."""
 
 
 @shows_progress("sweep")
@@ -124,9 +124,9 @@ def compute_sweep(
     measure: Callable[[SweepPoint], xr.Dataset] | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> Sweep:
-    """Compute the maps of a sweep one after the other, each on all workers, and what is measured on them.
+    """Compute the maps of a sweep one after the other, each on all workers, and their measures.
 
-    The order is from coarse to fine, so that curves take shape early, and ascending in a store.
+    Values are measured from coarse to fine, so that curves take shape early, but in ascending order into a store.
 
     Parameters
     ----------
@@ -136,8 +136,8 @@ def compute_sweep(
         Folder of a Zarr group (format 3): new, empty, or of an earlier call with the same request, which is resumed. Each value
         is on the disk before the next one is computed, and only the map of one value is in memory. None for a sweep in memory.
     earlier
-        A sweep in memory whose values are not measured again, such as that of an interrupted call, which `on_frame` received, or
-        of a file (`open_result`); its request must be the same but for `values` and `refine`.
+        A sweep in memory whose values are not measured again: that of an interrupted call, which `on_frame` received, or of a
+        file (`open_result`). Its request must be the same except for `values` and `refine`.
     on_frame
         Called in this thread after each value with the values so far.
     measure
@@ -147,7 +147,7 @@ def compute_sweep(
 
     Returns
     -------
-    The `Sweep`, whose maps are bit-identical to those of `compute_map`. That of a store is read from it on access.
+    The `Sweep`, whose maps are bit-identical to those of `compute_map`. With a store, it is read from the disk on access.
 
     Raises
     ------
@@ -157,8 +157,8 @@ def compute_sweep(
         When no exit is defined at one of the values, `earlier` is of another request, or the store holds another sweep or other
         files.
     OSError
-        When the store cannot be written to; finished values stay valid. BlockingIOError when another process computes into it,
-        with one sentence that names the process.
+        When the store cannot be written to; finished values stay valid. BlockingIOError when another process computes into the
+        store, with one sentence that names the process.
 
     Examples
     --------
@@ -183,14 +183,14 @@ def compute_sweep(
 
 def _measure_all(
     spec: SweepSpec,
-    kept: Kept,
+    kept: PointStorage,
     order: Sequence[float],
     *,
     on_frame: Callable[[Sweep], None] | None,
     measure: Callable[[SweepPoint], xr.Dataset] | None,
     execution: Execution,
 ) -> Sweep:
-    """Measure the values that are missing, those of the request in the given order, and keep them."""
+    """Measure the missing values, those of the request in the given order, and keep them."""
     found = kept.read()
     while (value := _next_value(spec, found, order)) is not None:
         part = execution.part(found.sizes[spec.name], spec.count)
@@ -205,7 +205,7 @@ def _measure_all(
 
 
 class _InMemory:
-    """Measured values in memory."""
+    """Keeps measured values in memory."""
 
     def __init__(self, spec: SweepSpec, earlier: Sweep | None) -> None:
         self._name, self._attributes = spec.name, spec.attributes()
@@ -215,7 +215,7 @@ class _InMemory:
         self._points.append(point)
 
     def read(self) -> xr.Dataset:
-        # Slow to import.
+        # This import is slow.
         import xarray as xr
 
         if not self._points:
@@ -228,7 +228,7 @@ class _InMemory:
 
 
 def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, object]) -> list[xr.Dataset]:
-    """Return the points of an earlier sweep: those of the values of the request, and then some to refine them."""
+    """Return the points of an earlier sweep at the values of the request, and as many further points as refine this sweep."""
     check_same_sweep("earlier", earlier.dataset.attrs, attributes, but=EXTENT)
     values = earlier.values.tolist()
     inside = [value for value in values if value not in spec.values]
@@ -237,7 +237,7 @@ def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, obje
 
 
 def _next_value(spec: SweepSpec, found: xr.Dataset, order: Sequence[float]) -> float | None:
-    """Return the value to measure next: those of the request, then where the shares change most; None at the end."""
+    """Return the next value: of the request, then in the middle of where shares change most; None at the end."""
     values = found[spec.name].values
     missing = (value for value in order if value not in values)
     if (first := next(missing, None)) is not None:

@@ -1,7 +1,7 @@
 """Compilation of kernels ahead of time, or their loading from the kernel cache.
 
-Numba compiles one function at a time, whatever the number of threads, so that the order matters: first the kernels of the first
-frame of a map, then those that look for evidence, which a complete map needs, then all others. Compilation in the background
+Numba compiles one function at a time, whatever the number of threads, so the order matters: first the kernels of the first frame
+of a map, then the kernels that look for evidence, which a complete map needs, then all others. Compilation in the background
 waits while kernels of maps are compiled.
 """
 
@@ -43,14 +43,14 @@ _MAP_KERNELS = ("step", "jets", "potential_value", "shoot", "propagate")
 
 
 class Compilations:
-    """The running compilations of kernels for maps."""
+    """Counts the running compilations of kernels for maps."""
 
     def __init__(self) -> None:
         self._running = 0
         self._changed = threading.Condition()
 
     def run(self, *calls: Callable[[], object]) -> None:
-        """Make the calls that compile the kernels for maps; compilation in the background waits meanwhile."""
+        """Make the calls that compile the kernels for maps; meanwhile, compilation in the background waits."""
         self._count(1)
         try:
             for call in calls:
@@ -84,7 +84,7 @@ def _known_kernels(potential: Potential) -> ModuleType | None:
 
 
 def is_ready_for_maps(potential: Potential) -> bool:
-    """Return whether the kernels of maps are compiled; potentials with equal powers and number of channels share them."""
+    """Return whether the kernels of maps are compiled. Potentials with equal powers and number of channels share kernels."""
     kernels = _known_kernels(potential)
     return kernels is not None and all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
@@ -165,7 +165,7 @@ def _open_energy(potential: Potential) -> float:
 
 
 def _start(potential: Potential) -> np.ndarray:
-    """Return (1, 4) a state of low energy in the middle of a well or, without a well, at the typical radius."""
+    """Return a state of low energy in the middle of a well or, without a well, at the typical radius, of shape (1, 4)."""
     if potential.well.is_minimum and potential.escape_radius is None:
         return SECTION.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
     return SECTION.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))

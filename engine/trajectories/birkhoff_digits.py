@@ -27,7 +27,7 @@ class BirkhoffDigits(RecordedResult):
     Attributes
     ----------
     windows
-        (m,) increasing window lengths T, dimensionless, with the orbit bounded for 2T. Empty for a shorter orbit.
+        (m,) increasing window lengths T, dimensionless; the orbit is bounded for 2T. Empty if the orbit is too short.
     digits
         (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is 8 or more.
     time_unit
@@ -65,8 +65,8 @@ def compute_birkhoff_digits(
     Returns
     -------
     The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for 2T ≤
-    t_max. There are fewer if the averages cannot be compared: on an orbit along an axis one coordinate is always 0. There are
-    none around bodies, because the fixed steps of the averages cannot pass close to them.
+    t_max. There are fewer windows if the averages cannot be compared: on an orbit along an axis one coordinate is always 0. There
+    are none around bodies, because the fixed steps of the averages cannot pass close to a body.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
     orbit = OrbitBatch.from_starts(start, np.zeros(1, np.int64))
     orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []
-    # Units of the well are rounded and are not used here: verdicts must not depend on the user's units.
+    # The units of the well are rounded. They are not used here, because verdicts must not depend on the user's units.
     unit = potential.well.exact_time_unit
     windows = [window * unit for window in WINDOWS]
     for window in windows:

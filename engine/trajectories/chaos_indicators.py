@@ -32,25 +32,35 @@ On tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30.
 """
 
 REGULAR_SALI = 1e-5
-"""A SALI above this is no sign of chaos. Between it and `CHAOS_THRESHOLD` lie few tori, and orbits that become chaotic later."""
+"""A SALI above this is no sign of chaos.
+
+Between this value and `CHAOS_THRESHOLD` lie few tori, and orbits that become chaotic later.
+"""
 
 CHAOTIC_POWER = 2.0
-"""A deviation vector that grew beyond t to this power is chaotic. On tori ln|w|/ln t stayed below 1.5 from t = 100 to 1e5."""
+"""An orbit is chaotic if a deviation vector grew by more than t to this power, t in units of the well.
+
+On tori ln|w|/ln t stayed below 1.5 from t = 100 to 1e5.
+"""
 
 REGULAR_POWER = 1.5
 """Fastest growth from t/10 to t, as a power of t, that is no sign of chaos. On a torus a deviation vector grows like t."""
 
 CHAOTIC_DIGITS = dict(zip(WINDOWS, (1.0, 2.0, 3.0, 4.0), strict=True))
-"""Numbers of digits by window T; an orbit with fewer is chaotic. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
+"""Numbers of digits by window length T; an orbit whose averages agree to fewer digits is chaotic.
 
+The smallest values on tori were 1.4, 2.2, 3.8 and 6.8.
+"""
+
+# Number of samples from which the growth of a deviation vector is fitted.
 _GROWTH_FIT_SAMPLES = 200
 
 
 class Verdict(StrEnum):
-    """Conclusion about a bounded orbit; the last one is about an orbit that escapes.
+    """Conclusion about a bounded orbit or, for ``CHAOTIC_INSIDE``, about an orbit that escapes.
 
     ``NO_SIGN``: like a regular orbit until the end of the integration, but without evidence of a torus.
-    ``UNDECIDED``: too short to tell, or in between.
+    ``UNDECIDED``: too short to tell, or between regular and chaotic values.
     """
 
     REGULAR = "regular"
@@ -71,7 +81,7 @@ class IndicatorVerdict:
     value
         SALI, the exponent per unit of time, or the digits of the longest window; NaN if not available.
     conclusion
-        The `Verdict` for a bounded orbit, ``CHAOTIC_INSIDE`` for one that is chaotic before it escapes, otherwise None.
+        The `Verdict` for a bounded orbit, ``CHAOTIC_INSIDE`` for an orbit that is chaotic before it escapes, otherwise None.
     sentence
         The conclusion and its reason in words.
     """
@@ -82,7 +92,7 @@ class IndicatorVerdict:
     sentence: str
 
 
-_Judged = tuple[Verdict | None, str]
+_Judgement = tuple[Verdict | None, str]
 _Digits = BirkhoffDigits | None
 
 
@@ -95,7 +105,7 @@ class Indicator:
     name
         The name in texts.
     value
-        Its value at the end of an orbit.
+        Returns the value of the indicator at the end of an orbit.
     judge
         Returns the verdict on a bounded orbit, and its reason in words.
     judge_inside
@@ -103,13 +113,13 @@ class Indicator:
     applies
         Returns whether an orbit has this indicator.
     of_deviations
-        Whether it is computed from deviation vectors, which can show chaos; other indicators recognise tori.
+        Whether the indicator is computed from deviation vectors, which can show chaos; other indicators recognise tori.
     """
 
     name: str
     value: Callable[[Orbit, _Digits], float]
-    judge: Callable[[Orbit, _Digits], _Judged]
-    judge_inside: Callable[[Orbit], _Judged | None] = lambda orbit: None
+    judge: Callable[[Orbit, _Digits], _Judgement]
+    judge_inside: Callable[[Orbit], _Judgement | None] = lambda orbit: None
     applies: Callable[[Orbit, _Digits], bool] = lambda orbit, digits: True
     of_deviations: bool = False
 
@@ -128,15 +138,15 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
     Returns
     -------
     An `IndicatorVerdict` each for SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
-    given, the digits; `OrbitVerdict.findings` contains them. An orbit that escapes is chaotic while inside if SALI or the growth
-    of a deviation vector reached the threshold of chaos before. Otherwise it gets values but no conclusion, and so does a start
-    outside: no escaping orbit is regular, and an orbit that escapes early may not show its chaos.
+    given, `digits`; `OrbitVerdict.findings` contains these results. An orbit that escapes is chaotic while inside if SALI or the
+    growth of a deviation vector reached the threshold of chaos before. Other escaping orbits and starts outside get values but no
+    conclusion: no escaping orbit is regular, and an orbit that escapes early may not show its chaos.
     """
     return tuple(_evaluate(indicator, orbit, digits) for indicator in INDICATORS if indicator.applies(orbit, digits))
 
 
 def _evaluate(indicator: Indicator, orbit: Orbit, digits: BirkhoffDigits | None) -> IndicatorVerdict:
-    judged: _Judged
+    judged: _Judgement
     if orbit.fate == Fate.BOUNDED:
         judged = indicator.judge(orbit, digits)
     elif orbit.fate >= 1:
@@ -155,8 +165,8 @@ def _describe_end(orbit: Orbit) -> str:
     return f"{outcome_of(orbit.fate, orbit.outcomes).event} at t = {format_time(orbit.escape_time)}"
 
 
-def _judge_sali_inside(orbit: Orbit) -> _Judged | None:
-    """Return the verdict on an orbit that escapes, whose history ends there; None if it is not chaotic."""
+def _judge_sali_inside(orbit: Orbit) -> _Judgement | None:
+    """Return the verdict on an escaping orbit from its SALI until the escape; None if this shows no chaos."""
     least = float(np.min(orbit.sali))
     if not is_chaotic(least):
         return None
@@ -166,8 +176,8 @@ def _judge_sali_inside(orbit: Orbit) -> _Judged | None:
     )
 
 
-def _judge_growth_inside(orbit: Orbit) -> _Judged | None:
-    """Return the verdict from the growth of a deviation vector; None if it is not chaotic."""
+def _judge_growth_inside(orbit: Orbit) -> _Judgement | None:
+    """Return the verdict on an escaping orbit from the growth of a deviation vector; None if this shows no chaos."""
     t_end = float(orbit.t[-1])
     log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
     if t_end < MIN_GROWTH_TIME * orbit.time_unit or log_growth <= _growth_limit(t_end, orbit.time_unit):
@@ -184,7 +194,7 @@ def _growth_limit(t_end: float, time_unit: float) -> float:
     return CHAOTIC_POWER * float(np.log(t_end / time_unit))
 
 
-def _judge_sali(orbit: Orbit, digits: _Digits) -> _Judged:
+def _judge_sali(orbit: Orbit, digits: _Digits) -> _Judgement:
     value, t_end = float(orbit.sali[-1]), float(orbit.t[-1])
     if is_chaotic(value):
         verdict, reason = Verdict.CHAOTIC, f"{format_number(CHAOS_THRESHOLD)} or below: the two deviation vectors are aligned"
@@ -197,7 +207,7 @@ def _judge_sali(orbit: Orbit, digits: _Digits) -> _Judged:
     return verdict, f"SALI is {format_number(value, 2)}, {reason}."
 
 
-def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judged:
+def _judge_exponent(orbit: Orbit, digits: _Digits) -> _Judgement:
     t_end = float(orbit.t[-1])
     log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
     if t_end < MIN_GROWTH_TIME * orbit.time_unit:
@@ -237,7 +247,7 @@ def _fit_growth_power(orbit: Orbit) -> float:
     return float(slope)
 
 
-def _judge_halves(orbit: Orbit, digits: _Digits) -> _Judged:
+def _judge_halves(orbit: Orbit, digits: _Digits) -> _Judgement:
     value, t_end = orbit.digits_of_halves, float(orbit.t[-1])
     if t_end < MIN_REGULAR_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
@@ -252,7 +262,7 @@ def _last_digits(orbit: Orbit, digits: _Digits) -> float:
     return float(digits.digits[-1]) if digits is not None and digits.digits.size else float("nan")
 
 
-def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judged:
+def _judge_digits(orbit: Orbit, digits: _Digits) -> _Judgement:
     if digits is None or not digits.digits.size:
         return Verdict.UNDECIDED, f"No windows to compare: {_reason_without_windows(orbit)}."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])

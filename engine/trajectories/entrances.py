@@ -14,7 +14,7 @@ from engine.systems.potential import Potential
 
 # Number of points along half a Lyapunov orbit at which the flux is summed.
 _PLACES = 2001
-# Distance of the starts from the Lyapunov orbit, as a share of its length; on it, rounding would decide what is inside.
+# Distance of the starts from the Lyapunov orbit, as a share of its length. At distance 0, rounding would decide what is inside.
 _SHIFT = 1e-7
 
 
@@ -22,10 +22,10 @@ _SHIFT = 1e-7
 def sample_entrances(potential: Potential, energy: float, count: int, *, seed: int = 0) -> np.ndarray:
     """Draw random states on the Lyapunov orbits that move into the well, with the distribution of the flux.
 
-    They are the orbits that enter from outside; the share of each exit in them is its share of the flux. The times until they
-    leave are the gap times (Ezra, Waalkens & Wiggins 2009, J. Chem. Phys. 130, 164118). Their mean is
-    `EscapeFlux.mean_passage_time` if no volume is enclosed by orbits that never leave. The time of an orbit that is still inside
-    at t_max is NaN; if it is replaced by t_max, as in the example, the mean is a lower bound.
+    These are the orbits that enter from outside, through each exit in proportion to its flux. The times until they leave are the
+    gap times (Ezra, Waalkens & Wiggins 2009, J. Chem. Phys. 130, 164118). Their mean is `EscapeFlux.mean_passage_time` if no
+    volume is enclosed by orbits that never leave. The time of an orbit that is still inside at t_max is NaN; if NaN is replaced
+    by t_max, as in the example, the mean is a lower bound.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
 
     Returns
     -------
-    (count, 4) x, y, px, py, all with this energy to rounding, just inside the exits.
+    x, y, px, py of each state, of shape (count, 4), with this energy to rounding, just inside the exits.
 
     Raises
     ------
@@ -62,24 +62,24 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
 
 @checks_types(potential=Potential)
 def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Draw random states like `sample_entrances`, with the exit of each.
+    """Draw random states like `sample_entrances`, and return the exit of each.
 
     Parameters
     ----------
     potential, energy, count, seed
-        As in `sample_entrances`.
+        The potential, h, the number of states and the seed, see `sample_entrances`.
 
     Returns
     -------
     entrances
         (count,) int64, number of the exit through which each orbit enters.
     states
-        (count, 4) states as in `sample_entrances`.
+        (count, 4) x, y, px, py of each state, see `sample_entrances`.
 
     Raises
     ------
     ValueError
-        As in `sample_entrances`.
+        If a parameter is out of range, all exits are closed at this energy, or the frame rotates.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def sample_entrances_by_exit(potential: Potential, energy: float, count: int, *,
 
 
 class _HalfOrbit:
-    """Half a Lyapunov orbit, the line across its exit, with the flux ∫ p·dq up to each time and states that cross it inward."""
+    """Draws states that cross half a Lyapunov orbit, the line across its exit, inward, with the distribution of the flux."""
 
     def __init__(self, potential: Potential, orbit: LyapunovOrbit) -> None:
         # The import is slow and seldom needed.
@@ -122,7 +122,7 @@ class _HalfOrbit:
         self._inward = self._find_side()
 
     def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
-        """Draw (count, 4) states, uniform in the flux: along the line as p·dq, and in the momentum along it."""
+        """Draw states, (count, 4), uniform in the flux: in p·dq along the line, and in the component of the momentum along it."""
         times = np.interp(random.uniform(0.0, self.flux[-1], count), self.flux, self.times)
         points, along, inward = self._frame(times)
         points = points + _SHIFT * self._length * inward

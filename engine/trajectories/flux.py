@@ -20,9 +20,11 @@ from engine.slices.planes import SPACE
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 
-# Rows and columns of the points between which the edge of the interior is searched, and halvings of the distance to it. The
-# middle one of each three rows serves to estimate the error.
-_ROWS, _COLUMNS = 513, 256
+# Rows of points between which the edge of the interior is searched. The middle row of each three serves to estimate the error.
+_ROWS = 513
+# Columns of these points.
+_COLUMNS = 256
+# Halvings of the distance between a point inside and the next point outside.
 _HALVINGS = 40
 
 
@@ -81,7 +83,7 @@ class EscapeFlux(RecordedResult):
 
     @property
     def shares(self) -> np.ndarray:
-        """(n,) shares of the exits in the flux, which are those of escapes if orbits forget their start before they leave."""
+        """(n,) share of each exit in the flux. Escapes have these shares if orbits forget their start before they leave."""
         return self.flux / self.total if self.flux.size else self.flux
 
     @property
@@ -93,7 +95,7 @@ class EscapeFlux(RecordedResult):
     def mean_passage_time(self) -> float:
         """Volume over flux: the mean time from entrance to exit of all entering orbits; infinite if all exits are closed.
 
-        It is exact if orbits that never leave occupy no volume; otherwise their volume is included.
+        The mean is exact if orbits that never leave occupy no volume; otherwise their volume is included.
         """
         return self.volume / self.total if self.flux.size else math.inf
 
@@ -109,7 +111,7 @@ class EscapeFlux(RecordedResult):
 
 @checks_types(potential=Potential)
 def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
-    """Compute the flux through all open exits and the volume of the energy surface inside them.
+    """Compute the flux through all open exits and the volume of the energy surface inside the exits.
 
     The flux through an exit is the action ∮ p·dq of its Lyapunov orbit, the smallest of all curves that close the exit (Waalkens,
     Burbanks & Wiggins 2005, J. Phys. A 38, L759; for two degrees of freedom MacKay 1990, Phys. Lett. A 145, 425). With two
@@ -129,7 +131,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     Raises
     ------
     ValueError
-        If `energy` is not finite or below the bottom of the well, the exits are not defined at it (see `find_lyapunov_orbits`),
+        If `energy` is not finite or below the bottom of the well, the exits are not defined there (see `find_lyapunov_orbits`),
         or the frame rotates.
 
     Examples
@@ -166,7 +168,7 @@ def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
     within, _ = bisect(lambda middle: ~_is_inside(potential, h, middle, y[row]), within, beyond, _HALVINGS)
     np.add.at(lengths, row, np.where(inside[row, column], within, -within))
     area = float(lengths.sum()) * height
-    # The lengths behave like square roots at their ends, so that a third of the rows has 3^1.5 times the error.
+    # The lengths behave like square roots at their ends, so a third of the rows gives 3^1.5 times the error.
     return area, abs(area - 3.0 * height * float(lengths[1::3].sum())) / (3.0**1.5 - 1.0)
 
 

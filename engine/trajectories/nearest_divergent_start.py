@@ -20,18 +20,21 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import LENGTH
 
-# Smallest distance, a few hundred units in the last place of coordinates of order 1. Lengths and times are in units of the well.
+# Smallest distance, in units of the well: a few hundred units in the last place of coordinates of order 1.
 _MIN_DISTANCE = 1e-13
+# Number of directions in which neighbours lie.
 _DIRECTIONS = 16
+# Number of neighbours while their distance grows by a factor of 10.
 _STARTS_PER_DECADE = 80
-# Rings are classified in batches of this size, from the inside out. An orbit that escapes late has a divergent start on one of
-# the first rings, so that many neighbours further out, some of them bounded for much longer, need not be integrated.
+# Rings are classified in batches of this many starts, from the inside out. An orbit that escapes late has a divergent start on
+# one of the first rings, so many neighbours further out, some of them bounded for much longer, need not be integrated.
 _BATCH_SIZE = 128
 # Two refinements into 10 sections reduce the gap between two rings, a factor of at most 1.6, to less than 1 %.
 _REFINEMENTS = 2
 _SECTIONS = 10
 # Neighbours are integrated for this multiple of the escape time of the given start, but at least for `_SHORTEST_HORIZON`.
 _HORIZON_FACTOR = 3.0
+# In units of the well.
 _SHORTEST_HORIZON = 1000.0
 
 
@@ -74,7 +77,7 @@ def find_divergent_start(
     furthest: float | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> DivergentStart | None:
-    """Find the nearest neighbour of a start with a different outcome; if the start is bounded, the nearest with any outcome.
+    """Find the nearest neighbour of a start with a different outcome; for a bounded start, the nearest with any outcome.
 
     Neighbours lie on rings around the start: 16 directions on rings that grow by a factor of 1.6, or, with an axis h, the two
     directions of constant energy on rings that grow by a factor of 1.06. Between the first ring with a divergent start and the
@@ -103,7 +106,7 @@ def find_divergent_start(
     Returns
     -------
     The `DivergentStart`, or None if no neighbour within `furthest` is divergent. A distance of 1e-13 length units is an upper
-    bound: the search does not look any closer.
+    bound: the search begins there.
 
     Raises
     ------
@@ -144,7 +147,7 @@ def find_divergent_start(
 
 
 def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:
-    """Return the energy h of the start; ValueError unless it and the coordinates are finite numbers."""
+    """Return the energy h of the start; ValueError unless h and the coordinates are finite numbers."""
     for name, value in zip(plane.axis_names, (x, ordinate), strict=True):
         checked_number(name, value)
     if plane.energy_axis is not None:
@@ -166,7 +169,7 @@ class _Bracket:
 
 
 class _Search:
-    """Search around the start `centre` (2,) = x, ordinate, at energy `h`, in units of the well."""
+    """Searches around the start `centre` (2,) = x, ordinate, at energy `h`, in units of the well."""
 
     def __init__(
         self,
@@ -211,7 +214,7 @@ class _Search:
         return _Bracket(float(radii[ring]), float(radii[ring + 1]), directions[found], fate[ring, found])
 
     def classify(self, points: np.ndarray, t_max: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return fates and escape times (…) of points (…, 2)."""
+        """Return fates and escape times, both (…), of points (…, 2)."""
         x, ordinate = points.reshape(-1, 2).T
         states = self.plane.states(self.potential, self.h, x, ordinate)
         exists = np.isfinite(states).all(axis=1)
@@ -223,12 +226,12 @@ class _Search:
 
 
 def _directions(plane: Slice) -> np.ndarray:
-    """Return (m, 2) unit vectors; with an axis h, the two directions of constant energy."""
+    """Return unit vectors, (m, 2); with an axis h, the two directions of constant energy."""
     if not all(plane.free_axes):
         along = np.array(plane.free_axes, float)
         return np.array([along, -along])
     angle = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    # They are rounded, so that the neighbours of mirror images are exact mirror images.
+    # The vectors are rounded, so that the neighbours of mirror images are exact mirror images.
     return np.round(np.column_stack([np.cos(angle), np.sin(angle)]), 12)
 
 

@@ -1,4 +1,4 @@
-"""The verdict on one orbit, on which all texts about it are based: escaped or bounded, until when, and regular or chaotic."""
+"""The verdict on one orbit: escaped or bounded, until when, and regular or chaotic. All texts on orbits are based on it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from engine.trajectories.birkhoff_digits import BirkhoffDigits
 from engine.trajectories.chaos_indicators import INDICATORS, IndicatorVerdict, Verdict, evaluate_indicators
 from engine.trajectories.trajectory import Orbit
 
-_OF_DEVIATIONS = {indicator.name for indicator in INDICATORS if indicator.of_deviations}
+_DEVIATION_INDICATORS = {indicator.name for indicator in INDICATORS if indicator.of_deviations}
 
 
 @with_former_fields
@@ -32,22 +32,22 @@ class OrbitVerdict(OrbitResult):
     t_end
         Time of the escape, or time until which the orbit is integrated, dimensionless.
     crossings
-        Upward crossings of y = 0 until then.
+        Upward crossings of y = 0 until `t_end`.
     evidence
         The reason why the orbit is called bounded: ``INTEGRATED`` holds only until `t_end`, ``CLOSED`` for ever, and
-        ``QUASI_PERIODIC`` is evidence of a torus, on which the orbit would stay for ever. ``NONE`` if it is not bounded.
+        ``QUASI_PERIODIC`` is evidence of a torus, on which the orbit would stay for ever. ``NONE`` for other orbits.
     character
         If the orbit is bounded, what its indicators show until `t_end`: "regular", "chaotic", "no sign of chaos" (like a regular
-        orbit but without evidence of a torus), or "undecided". If it is not, "chaotic while inside" or None.
+        orbit but without evidence of a torus), or "undecided". For other orbits, "chaotic while inside" or None.
     indicators
-        The indicators that determine the character, with their values; empty if none does.
+        The indicators that determine the character, with their values; empty if no indicator does.
     outcomes
         The outcomes of the potential, see `Potential.outcomes`; empty if they are not known.
     exits_unknown
-        The reason why the exits over saddles are not known at its energy, see `Orbit`; empty if they are known.
+        The reason why the exits over saddles are not known at the energy, see `Orbit`; empty if they are known.
     findings
         The indicators one by one: SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
-        given, the digits of windows. Each has a `name`, its `value` at the end of the orbit, NaN if not available, a
+        given, the digits of windows. Each indicator has a `name`, a `value` at the end of the orbit, NaN if not available, a
         `conclusion`, one of the words of `character` or None, and a `sentence` with the reason.
     """
 
@@ -64,7 +64,7 @@ class OrbitVerdict(OrbitResult):
 
     @property
     def is_bounded_for_ever(self) -> bool:
-        """Whether its energy proves that the orbit can never escape."""
+        """Whether the energy proves that the orbit can never escape."""
         return self.evidence is Evidence.CLOSED
 
     @property
@@ -73,7 +73,7 @@ class OrbitVerdict(OrbitResult):
         return "not known" if self._may_have_left else name_fate(self.fate, self.outcomes)
 
     def describe(self) -> str:
-        """Describe the verdict in one sentence, and in a second sentence why exits are not known, if so."""
+        """Describe the verdict in one sentence; if exits are not known, a second sentence says why."""
         unknown = f" Exits are not known at this energy: {self.exits_unknown}." if self.exits_unknown else ""
         return self._describe_fate() + unknown
 
@@ -139,11 +139,11 @@ class OrbitVerdict(OrbitResult):
 def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerdict:
     """Judge an orbit by its energy, its outcome and its chaos indicators.
 
-    A bounded orbit is regular or chaotic if an indicator concludes so and none concludes the opposite. Otherwise it shows no sign
-    of chaos until the end if none of its deviation vectors does, and is undecided if one does. It is bounded for ever if its
-    energy is below every saddle. Birkhoff averages that agree as on an invariant torus are evidence for that in a well at rest
-    (`Potential.tori_are_evidence`), unless another indicator shows chaos. An escaping orbit is chaotic while inside if an
-    indicator says so.
+    A bounded orbit is regular or chaotic if an indicator concludes so and no indicator concludes the opposite. If no indicator
+    concludes either, the orbit shows no sign of chaos if all indicators of deviation vectors say so. In all other cases it is
+    undecided. The orbit is bounded for ever if its energy is below every saddle. Birkhoff averages that agree as on an invariant
+    torus are evidence that it is bounded for ever in a well at rest (`Potential.tori_are_evidence`), unless another indicator
+    shows chaos. An escaping orbit is chaotic while inside if an indicator says so.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def _combine(indicators: Sequence[IndicatorVerdict]) -> Verdict:
     decided = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(one.conclusion for one in indicators)
     if len(decided) == 1:
         return decided.pop()
-    of_deviations = {one.conclusion for one in indicators if one.name in _OF_DEVIATIONS}
+    of_deviations = {one.conclusion for one in indicators if one.name in _DEVIATION_INDICATORS}
     return Verdict.NO_SIGN if not decided and of_deviations == {Verdict.NO_SIGN} else Verdict.UNDECIDED
 
 

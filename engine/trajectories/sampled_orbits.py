@@ -25,6 +25,7 @@ from engine.trajectories.trajectory import MAX_ORBIT_TIME
 if TYPE_CHECKING:
     import xarray as xr
 
+# Number of components of a state.
 _STATE = 4
 
 
@@ -65,7 +66,7 @@ class SampledOrbits(OrbitResult):
         return {name: getattr(self, name) for name in ("fate", "escape_time", "crossings", "energy")}
 
     def to_xarray(self) -> xr.Dataset:
-        """Return all orbits with the dimensions (orbit, t), or (orbit, sample) if each has its own times.
+        """Return all orbits with the dimensions (orbit, t), or (orbit, sample) if each orbit has its own times.
 
         The dataset can be written as NetCDF and Zarr.
         """
@@ -82,7 +83,7 @@ class SampledOrbits(OrbitResult):
 def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: Execution = DEFAULT_EXECUTION) -> SampledOrbits:
     """Integrate many orbits, of any energies, and return their states at chosen times.
 
-    The states are those of the Taylor series of the steps, without interpolation; fates and escape times are those of
+    The states are evaluated from the Taylor series of the steps, without interpolation; fates and escape times are those of
     `classify_orbits`.
 
     Parameters
@@ -92,7 +93,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     states
         (n, 4) x, y, px, py at t = 0; finite, dimensionless.
     times
-        (m,) times for all orbits, or (n, m) times of each; ascending, from 0 to at most 1e7, the last one above 0; dimensionless.
+        (m,) times for all orbits, or (n, m) times of each; ascending, from 0 to at most 1e7, the last above 0; dimensionless.
     execution
         How the computation runs.
 
@@ -140,7 +141,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
 
 
 def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
-    """Return (4, m) states of one orbit, and its outcome, in units of the well."""
+    """Return the states of one orbit, of shape (4, m), and its outcome, in units of the well."""
     curves = exit_curves(potential, float(potential.energy(start)))
     recorded = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION)
     path = np.full((_STATE, times.size), np.nan)
@@ -172,7 +173,7 @@ def _checked_starts(states: Any) -> np.ndarray:
 
 
 def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.ndarray:
-    """Return (n, m) times."""
+    """Return the times of all orbits, of shape (n, m)."""
     rows = np.array(np.broadcast_to(times, (count, times.size))) if times.ndim == 1 else times
     has_shape = rows.ndim == 2 and len(rows) == count and rows.size > 0
     if not has_shape:

@@ -49,7 +49,7 @@ def compute_separation(
 ) -> Separation:
     """Compute the distance of two orbits at 2000 evenly spaced times.
 
-    Both states come from the dense output of their own integration at the same times, so that small distances are accurate to the
+    Both states come from the dense output of their own integration at the same times, so small distances are accurate to the
     rounding of the states, about 1e-16.
 
     Parameters

@@ -13,18 +13,21 @@ from engine.slices.window import Window
 SPACING = 1 / 200
 """Largest distance between neighbouring points as a share of the window's side, before straight parts are thinned."""
 
-# Curves in a window extend beyond its edges by this share of its sides.
+# Curves in a window extend beyond the window's edges by this share of its sides.
 _WINDOW_MARGIN = 0.1
 
-# Largest distance of a point from the chord of its neighbours, and the part of it that thinning may remove, as shares of the
-# spacing.
-_MAX_SAGITTA, _THINNING_TOLERANCE = 0.05, 0.025
-# Largest difference in passage time between neighbouring points of an arc.
+# Largest distance of a point from the chord of its neighbours, as a share of the spacing.
+_MAX_SAGITTA = 0.05
+# Largest distance by which thinning may change a curve, as a share of the spacing.
+_THINNING_TOLERANCE = 0.025
+# Largest difference in passage time between neighbouring points of an arc, in units of the well.
 _MAX_TIME_GAP = 0.3
-# Orbits of a tube have phases from 0 to 1. Initial number of intervals, and smallest widths to which intervals are refined, each
-# for all images before the next. Below the last width, rounding errors of the start states are visible.
+# Orbits of a tube have phases from 0 to 1. Initial number of intervals of the phase.
 _FIRST_INTERVALS = 512
+# Smallest widths to which intervals are refined, each for all images before the next. Below the last width, rounding errors of
+# the start states are visible.
 _MIN_WIDTHS = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+# Largest number of parts into which an interval is split at once.
 _MAX_PARTS = 8
 
 
@@ -53,7 +56,7 @@ class PointSpacing:
         return cls(coarse, fine, low - _WINDOW_MARGIN * sides, high + _WINDOW_MARGIN * sides)
 
     def between(self, points: np.ndarray) -> np.ndarray:
-        """Return (n − 1,) largest allowed distances between neighbours of the points (n, 2)."""
+        """Return the largest allowed distances between neighbours of n points (n, 2), of shape (n − 1,)."""
         if self.low is None or self.high is None:
             return np.full(len(points) - 1, self.fine)
         # Between two points, a curve may bulge by as much as their distance.
@@ -64,7 +67,7 @@ class PointSpacing:
         return spacing
 
     def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
-        """Yield the (m, 2) lines of a piece within the window, without points that follow from their neighbours."""
+        """Yield the lines of a piece in the window, each (m, 2), without points close to the line between their neighbours."""
         import shapely
 
         line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
@@ -76,7 +79,7 @@ class PointSpacing:
 def refine_passages(
     find_passages: Callable[[np.ndarray], np.ndarray], count: int, spacing: PointSpacing, max_orbits: int
 ) -> np.ndarray:
-    """Return (n, count, 3) passages of orbits of rising phase, refined until curves are smooth or `max_orbits` are added."""
+    """Return passages (n, count, 3) of orbits of rising phase, refined until curves are smooth or `max_orbits` are added."""
     phases = np.linspace(0.0, 1.0, _FIRST_INTERVALS + 1)
     passages = find_passages(phases)
     for min_width, passage in itertools.product(_MIN_WIDTHS, range(count)):
@@ -93,14 +96,14 @@ def refine_passages(
 
 
 def _subdivide(phases: np.ndarray, width: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return for each new phase its interval and its value, if intervals are split into equal `parts` (n,)."""
+    """Return the interval and the value of each new phase, if intervals are split into equal `parts` (n,)."""
     interval = np.repeat(np.arange(parts.size), parts - 1)
     position = np.arange(interval.size) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1) + 1
     return interval, phases[interval] + width[interval] * position / parts[interval]
 
 
 def _affordable(parts: np.ndarray, width: np.ndarray, min_width: float, max_orbits: int) -> np.ndarray:
-    """Limit `parts` (n,) so that no part is narrower than `min_width` and at most `max_orbits` are added, widest first."""
+    """Limit `parts` (n,) to widths of `min_width` or more and to `max_orbits` new orbits, the widest intervals first."""
     parts = np.minimum(parts, np.maximum(width / min_width, 1.0)).astype(int)
     widest_first = np.argsort(-width, kind="stable")
     parts[widest_first[np.cumsum(parts[widest_first] - 1) > max_orbits]] = 1
@@ -108,7 +111,7 @@ def _affordable(parts: np.ndarray, width: np.ndarray, min_width: float, max_orbi
 
 
 def _parts_needed(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
-    """Return (n − 1,) the number of parts into which to split the intervals between (n, 3) x, px, time; 1 keeps an interval."""
+    """Return into how many parts to split each interval between points (n, 3) x, px, time; 1 keeps an interval."""
     allowed = spacing.between(points[:, :2])
     exists = np.isfinite(points[:, 0])
     step = np.diff(points, axis=0)
@@ -122,9 +125,10 @@ def _parts_needed(points: np.ndarray, spacing: PointSpacing) -> np.ndarray:
 
 
 def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Return the distance of each inner point from the chord of its neighbours; from the farther one where the curve reverses.
+    """Return the distance of each inner point from the chord of its neighbours, or the farther neighbour at a reversal.
 
-    step, length: (n − 1, 2) and (n − 1,) differences between neighbouring points and their lengths; NaN distances become 0.
+    `step`, (n − 1, 2), and `length`, (n − 1,), are the differences between neighbouring points and their lengths. NaN distances
+    become 0.
     """
     before, after = step[:-1], step[1:]
     area = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
@@ -135,7 +139,7 @@ def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
 
 
 def split_curve(curve: np.ndarray, spacing: PointSpacing, closed: bool) -> list[np.ndarray]:
-    """Return the (m, 2) pieces, m ≥ 2, of a curve (n, 3) between its gaps; a closed curve's last and first piece are joined."""
+    """Return the pieces, (m, 2), m ≥ 2, of a curve (n, 3) between gaps; last and first piece of a closed curve are joined."""
     step = np.diff(curve, axis=0)
     short = np.hypot(step[:, 0], step[:, 1]) <= 2.0 * spacing.between(curve[:, :2])
     joined = short & (np.abs(step[:, 2]) <= 2.0 * _MAX_TIME_GAP)

@@ -38,7 +38,7 @@ MOST_IMAGES = 6
 """Largest number of images; later ones are too fine and too many to plot."""
 
 ORBITS_PER_IMAGE = 20_000
-"""Orbits integrated per channel and image at most, about 0.3 s of work; finer structure is left out."""
+"""Largest number of orbits integrated per channel and image, about 0.3 s of work; finer structure is left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ class StableManifolds(Result):
     potential, energy
         The `Potential` and h, dimensionless.
     arcs
-        Sorted by channel, then image.
+        The arcs, sorted by channel, then by image.
     images
         Number of images computed for each tube.
     truncated
@@ -136,8 +136,8 @@ def find_stable_manifolds(
 
     On one side of an arc of image n, orbits leave through its channel after exactly n − 1 upward crossings of y = 0, the start
     not counted. On the other side they turn back before that exit, and leave later or never. Where the Lyapunov orbit itself
-    crosses y = 0 (channel 1 of Case II), orbits cross it more often the longer they stay near that orbit; images are then
-    numbered along the curve, which starts at the orbit's own point, and the number of crossings is not fixed.
+    crosses y = 0 (channel 1 of Case II), orbits that stay near it for longer cross y = 0 more often. In this case, images are
+    numbered along the curve, which starts at the Lyapunov orbit's own point, and the number of crossings is not fixed.
 
     Parameters
     ----------
@@ -149,15 +149,15 @@ def find_stable_manifolds(
         Number of successive intersections of each tube with the section, 1 to 6.
     window
         Part of (x, px) to resolve in a zoom, given as in `MapSpec`: the spacing of points follows from its size, as far as the
-        number of orbits allows, and curves beyond it are left out. None for the whole plane.
+        number of orbits allows, and curves beyond the window are left out. None for the whole plane.
     execution
         How the computation runs.
 
     Returns
     -------
     The `StableManifolds`, without arcs at or below the escape energy. An arc ends where the tube, backward in time, leaves
-    through an exit. It then winds infinitely often around the section of another manifold, and only the first few turns are
-    given. Points lie on the manifold to 1e-10.
+    through an exit. Near this end it winds infinitely often around the section of another manifold, and only the first few turns
+    are given. Points lie on the manifold to 1e-10.
 
     Raises
     ------
@@ -211,7 +211,7 @@ def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
 
 
 def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, execution: Execution) -> tuple[list[ManifoldArc], bool]:
-    """Return the arcs of one channel, and whether any of them is incomplete."""
+    """Return the arcs of one channel, and whether any arc is incomplete."""
     try:
         tube = UnstableManifold.from_orbit(orbit)
     except ValueError as error:
@@ -233,6 +233,6 @@ def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: PointSpacing, executi
 
 
 def _arc(channel: int, image: int, line: np.ndarray) -> ManifoldArc:
-    """Return the arc of the stable manifold that follows from a line (m, 2) of the unstable one by reversing its momenta."""
+    """Return the arc of the stable manifold that follows from a line (m, 2) of the unstable manifold by reversing momenta."""
     x, px = line.T
     return ManifoldArc(channel, image, read_only(x.copy()), read_only(-px))

@@ -27,11 +27,13 @@ from engine.systems.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.trajectories.birkhoff_digits import BirkhoffDigits, compute_birkhoff_digits
 
 MAX_ORBIT_TIME = 1e7
-"""Largest t_max of `integrate_orbit`; its samples then take 3 GB."""
+"""Largest t_max of `integrate_orbit`, for which its samples take 3 GB."""
 
-# In units of the well.
+# Interval between samples, in units of the well, unless this gives too few or too many samples.
 _SAMPLE_INTERVAL = 0.02
+# Smallest number of intervals between samples.
 _MIN_SAMPLES = 400
+# Largest number of intervals between samples, unless there are more integrator steps.
 _MAX_SAMPLES = 500_000
 
 
@@ -50,13 +52,13 @@ class Orbit(OrbitResult):
         (n,) smaller alignment index min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, 0 to √2; in units of the well.
     lyapunov_exponent
         (n,) finite-time maximal Lyapunov exponent ``(1/t) ln(|w1(t)|/|w1(0)|)`` of the first deviation vector, per unit of time;
-        NaN at t = 0. It decays like ln t / t along regular orbits and converges to a positive value along chaotic ones.
+        NaN at t = 0. It decays like ln t / t along regular orbits and converges to a positive value along chaotic orbits.
     r2
         (n,) R² = x² + y².
     fate
-        Channel k ≥ 1, or a `Fate`, never `Fate.FORBIDDEN`.
+        k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k, or a `Fate`, never `Fate.FORBIDDEN`.
     escape_time
-        Time of the outward crossing of the Lyapunov orbit; NaN if the orbit does not escape.
+        Time of the passage through the exit, of the collision or of the passage of the escape radius; NaN without an outcome.
     crossings
         Upward crossings of y = 0 before the escape or t_max; the start is not counted.
     energy_error
@@ -64,13 +66,13 @@ class Orbit(OrbitResult):
     energy
         h of the initial state.
     evidence
-        ``CLOSED`` if its energy is below every saddle, ``INTEGRATED`` if it is bounded until t_max, ``NONE`` if not bounded.
+        ``CLOSED`` if the energy is below every saddle, ``INTEGRATED`` if the orbit is bounded until t_max, otherwise ``NONE``.
     time_unit
         Unit of time of the well before rounding, 1/ω, in which the chaos indicators measure the length of an orbit.
     potential
         The `Potential`; None for an orbit that was not integrated here, whose path cannot be drawn.
     exits_unknown
-        The reason why the exits over saddles are not known at its energy; empty if they are known. If they are not, no fate is an
+        The reason why the exits over saddles are not known at this energy; empty if they are known. With a reason, no fate is an
         exit, and `Fate.BOUNDED` only means that the orbit has no other outcome by t_max.
     """
 
@@ -108,11 +110,11 @@ class Orbit(OrbitResult):
         return {name: value for name, value in super().numbers().items() if name != "exits_unknown" or value}
 
     def find_section_crossings(self) -> np.ndarray:
-        """Return (n, 2) x and px at the upward crossings of y = 0, dimensionless, in order of time; n equals `crossings`.
+        """Return x and px at the upward crossings of y = 0, (n, 2), dimensionless, in order of time; n equals `crossings`.
 
-        The start is not counted. Between two samples on different sides of y = 0 the Taylor series of the first is used. If steps
-        are shorter than the distance of the samples, as near a body, the series of the step is used. Raises ValueError if the
-        orbit has no potential.
+        The start is not counted. Between two samples on different sides of y = 0, the Taylor series of the first sample is used.
+        If steps are shorter than the distance of the samples, as near a body, the series of the step is used. Raises ValueError
+        if the orbit has no potential.
 
         Examples
         --------
@@ -133,7 +135,7 @@ class Orbit(OrbitResult):
         return find_crossings(kernels, path, every_time) * [units.length, units.momentum]
 
     def compute_birkhoff_digits(self, *, execution: Execution = DEFAULT_EXECUTION) -> BirkhoffDigits:
-        """Compute the digits to which averages over two consecutive windows of the orbit agree, for windows to half its length.
+        """Compute the digits to which averages over two consecutive windows agree, for windows up to half as long as the orbit.
 
         The computation runs in this thread. Raises CancelledError if it is cancelled, and ValueError if the orbit has no
         potential.
@@ -158,11 +160,11 @@ class Orbit(OrbitResult):
 def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, execution: Execution = DEFAULT_EXECUTION) -> Orbit:
     """Integrate one orbit until it escapes or up to `t_max`.
 
-    Fate, escape time and crossings are identical to those of a map pixel with the same start. The deviation vectors obey eq. 4 of
-    Zotos (2014), and SALI is its eq. 9. The growth of the first vector gives the finite-time Lyapunov exponent (Benettin,
-    Galgani, Giorgilli & Strelcyn 1980, Meccanica 15, 9; Skokos 2010, Lect. Notes Phys. 790, 63). The deviation vectors have no
-    influence on the integration steps. If the exits are not defined at its energy, see `find_lyapunov_orbits`, the orbit is
-    integrated without them, and `Orbit.exits_unknown` has the reason.
+    Fate, escape time and crossings are identical to those of a map pixel with the same start. The deviation vectors obey eq. 4
+    and SALI eq. 9 of Zotos (2014). The growth of the first vector gives the finite-time Lyapunov exponent (Benettin, Galgani,
+    Giorgilli & Strelcyn 1980, Meccanica 15, 9; Skokos 2010, Lect. Notes Phys. 790, 63). The deviation vectors have no influence
+    on the integration steps. If the exits are not defined at the energy, see `find_lyapunov_orbits`, the orbit is
+    integrated without exits, and `Orbit.exits_unknown` has the reason.
 
     Parameters
     ----------
@@ -171,7 +173,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     state
         (4,) x, y, px, py; finite, dimensionless. Its energy determines the exits.
     t_max
-        Longest integration time, 0 < t_max ≤ 1e7, dimensionless. Beyond about 1e5 samples are up to one integration step apart
+        Longest integration time, 0 < t_max ≤ 1e7, dimensionless. Above about 1e5, samples are up to one integration step apart
         and take about 300 bytes per time unit.
     execution
         How the computation runs.
@@ -220,7 +222,7 @@ def _find_evidence(potential: Potential, energy: float, fate: int) -> Evidence:
 def _sample_orbit(
     potential: Potential, start: np.ndarray, recorded: OrbitSteps, execution: Execution
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from 0 to the end, all in units of the well."""
+    """Return times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from start to end, all in units of the well."""
     steps, t_end = recorded.steps, recorded.t_end
     if t_end == 0.0:
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
@@ -239,7 +241,7 @@ def _sample_orbit(
 
 
 def _starts_of_short_steps(times: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Return the starts (m,) of the steps in those intervals between samples that contain whole steps, as near a body.
+    """Return the starts of the steps in intervals between samples that contain a whole step, as near a body.
 
     Deviation vectors are carried over each interval by one series, which is valid for about one step.
     """

@@ -20,7 +20,7 @@ from engine.systems.potential import Potential
 
 # Largest displacement from the Lyapunov orbit at which orbits of the tube start. When the tube has grown to the size of the well,
 # the distance of such an orbit from the manifold scales with the third power of the displacement: 4e-8 for 1e-2, 3e-11 for 1e-3,
-# and thus 3e-13 for this one.
+# and thus 3e-13 for this value.
 _MAX_DISPLACEMENT = 2e-4
 # Between two section passages an orbit may stay near another Lyapunov orbit; stays longer than this many periods are not needed.
 _MAX_PERIODS_PER_PASSAGE = 12.0
@@ -40,7 +40,7 @@ class UnstableManifold:
 
     A displacement from a fixed point of the Lyapunov orbit, in the unstable direction, grows by the multiplier per period. The
     displacements between one size and the multiplier times that size therefore give each orbit of the branch once (a fundamental
-    domain). They are parametrised by a phase from 0 to 1; both ends give the same orbit.
+    domain). Their parameter is a phase from 0 to 1; both ends give the same orbit.
 
     Attributes
     ----------
@@ -99,8 +99,8 @@ class UnstableManifold:
     def _displacement_after_period(self, left_eigenvector: np.ndarray) -> float:
         """Return the displacement of the orbit of phase 0 after one period, which nonlinear terms change.
 
-        The product of left_eigenvector (4,), which belongs to the multiplier, with a displacement is proportional to the
-        unstable component.
+        `left_eigenvector`, (4,), belongs to the multiplier: its product with a displacement is proportional to the unstable
+        component.
         """
         kernels = kernels_of(self.potential)
         (start,) = self.start_states(np.array([self.min_displacement]))
@@ -147,12 +147,12 @@ class UnstableManifold:
         return passages
 
     def displacements(self, phases: np.ndarray) -> np.ndarray:
-        """Return (n,) displacements of the orbits with phases (n,), in geometric progression."""
+        """Return the displacements of the orbits with these phases, (n,), in geometric progression."""
         displacements: np.ndarray = self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
         return displacements
 
     def start_states(self, displacements: np.ndarray) -> np.ndarray:
-        """Return (n, 4) states displaced by (n,) from the Lyapunov orbit's point of rest, projected back onto its energy."""
+        """Return n states displaced from the Lyapunov orbit's point of rest and projected back onto its energy, (n, 4)."""
         states: np.ndarray = self.orbit.start + displacements[:, None] * self.direction
         for _ in range(3):
             gradient = np.column_stack([*self.potential.gradient(states[:, 0], states[:, 1]), states[:, 2:]])
@@ -171,7 +171,7 @@ def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:
 def _passages(
     potential: Potential, tile: np.ndarray, count: int, curves: np.ndarray, gates: np.ndarray, duration: float
 ) -> np.ndarray:
-    """Return (lanes, count, 3) passages of the orbits in a tile (4, lanes)."""
+    """Return the passages of the orbits in a tile (4, lanes), of shape (lanes, count, 3)."""
     passages = np.full((tile.shape[1], count, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
     kernels_of(potential).find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, found)

@@ -24,7 +24,7 @@ from engine.propagation.speed_integrals import integrate_speed
 from engine.systems.potential import Potential
 
 DEFAULT_DURATION = 10.0
-"""Default τ in units of the well, about one and a half periods of the motion in it."""
+"""Default τ in units of the well, about one and a half periods of the motion in the well."""
 
 # Number of parts of the pixels that are computed one after the other.
 _PARTS = 16
@@ -93,11 +93,11 @@ def compute_lagrangian_descriptor(
     """Integrate M = ``∫ |v|^p dt`` along the orbit of each start of a complete map, over the time τ.
 
     ``|v|`` is the speed √(ẋ² + ẏ²) in the frame of the potential, which may rotate. M changes rapidly across the stable manifolds
-    of unstable periodic orbits if it is integrated forward in time, and across the unstable ones backward.
+    of unstable periodic orbits if integrated forward in time, and across the unstable manifolds if integrated backward.
 
     An integral ends where its orbit crosses an exit, collides or passes the escape radius. Beyond an exit the motion is
-    unbounded: in most wells orbits reach infinity within a finite time, so that the integral diverges, and their motion there
-    gives no information on the well. Therefore M also jumps where orbits begin to escape within τ.
+    unbounded: in most wells orbits reach infinity within a finite time, so the integral diverges, and their motion there gives no
+    information on the well. Therefore M also jumps where orbits begin to escape within τ.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def compute_lagrangian_descriptor(
 
 
 def checked_choices(potential: Potential, duration: float | None, power: float, direction: TimeDirection | str) -> dict[str, Any]:
-    """Return the parameters of `compute_lagrangian_descriptor` by name, with their defaults; ValueError for one out of range."""
+    """Return the parameters of `compute_lagrangian_descriptor` by name, with defaults; ValueError if one is out of range."""
     given = DEFAULT_DURATION * potential.units.time if duration is None else duration
     return {
         "duration": potential.checked_t_max(given, name="duration"),
@@ -174,14 +174,14 @@ def _checked_direction(direction: TimeDirection | str) -> TimeDirection:
 
 
 def _specs(spec: MapSpec, direction: TimeDirection) -> list[MapSpec]:
-    """Return the maps whose orbits run in the directions of time, in units of the well."""
+    """Return the maps whose orbits run in these directions of time, in units of the well."""
     past = replace(spec, backward=not spec.backward)
     ways = {TimeDirection.FORWARD: [spec], TimeDirection.BACKWARD: [past], TimeDirection.BOTH: [spec, past]}
     return [way.in_well_units() for way in ways[direction]]
 
 
 class _DescriptorRun:
-    """The computation of the integrals of the pixels of a map of one potential, or of a line, in units of the well."""
+    """Computes the integrals of the pixels of a map of one potential, or of a line, in units of the well."""
 
     def __init__(self, escape_map: EscapeMap, duration: float, power: float, direction: TimeDirection) -> None:
         self._given, self._duration, self._power, self._direction = escape_map.spec, duration, power, direction

@@ -20,10 +20,10 @@ from engine.propagation.deviation_vectors import attach_deviations, propagate_de
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
 
-# SALI is computed up to these times, with a test for tori after each. The SALI of strongly chaotic orbits falls early, and most
-# regular orbits are found to be on a torus, so that only few orbits are integrated to t_max.
+# SALI is computed up to these times, in units of the well, with a test for tori after each. The SALI of strongly chaotic orbits
+# falls early, and most regular orbits are found to be on a torus, so only few orbits are integrated to t_max.
 _SALI_TIMES = (1000.0, 5000.0, 20000.0)
-# Time after which the remaining orbits are judged again.
+# Time after which the remaining orbits are judged again, in units of the well.
 _INTERVAL = 5000.0
 
 
@@ -52,7 +52,7 @@ class RegularityMap(PixelAnalysis):
 
     @property
     def chaotic_share(self) -> float:
-        """Share of chaotic orbits among the bounded ones judged; NaN if there are none."""
+        """Share of chaotic orbits among the judged bounded orbits; NaN if there are none."""
         return self.share_of(Regularity.CHAOTIC)
 
     def describe(self) -> str:
@@ -66,7 +66,7 @@ class RegularityMap(PixelAnalysis):
         return f"{self.chaotic_share:.2%} of the bounded orbits are chaotic, {unsure:.2%} show no sign of chaos until t_max."
 
     def share_of(self, character: Regularity) -> float:
-        """Return the share of orbits of a character among the bounded ones judged; NaN if there are none."""
+        """Return the share of orbits of a character among the judged bounded orbits; NaN if there are none."""
         judged = ~np.isin(self.character, (Regularity.NOT_APPLICABLE, Regularity.NOT_JUDGED))
         return code_share(self.character[judged], character)
 
@@ -82,9 +82,9 @@ def compute_regularity(
     """Judge the bounded orbits of a complete map as regular or chaotic.
 
     Orbits with evidence of a torus are regular. Another orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014, eq. 9).
-    It is regular if its Birkhoff averages show a torus, over windows before t_max or over both halves of the orbit. Any other
-    orbit shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only because of
-    rounding, but runs to infinity here, is judged by its smallest SALI until then.
+    The orbit is regular if its Birkhoff averages show a torus, over windows before t_max or over both halves of the orbit. Any
+    other orbit shows no sign of chaos until t_max; Zotos (2014) calls it regular. An orbit that is bounded on the map only
+    because of rounding, but runs to infinity here, is judged by its smallest SALI until then.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def compute_regularity(
 
 
 class _RegularityClassification:
-    """Orbits of a map not judged yet, with their deviation vectors and the time that they have reached, in units of the well."""
+    """Judges the bounded orbits of a map by their deviation vectors and averages, in units of the well."""
 
     def __init__(self, given: EscapeMap) -> None:
         self._given_spec, escape_map = given.spec, given.in_well_units()
@@ -128,7 +128,7 @@ class _RegularityClassification:
         self._time = 0.0
 
     def stages(self, execution: Execution, _on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each judges orbits by one criterion, after integrating them as long as it needs."""
+        """Yield the stages, see `Staged`; each judges orbits by one criterion, after the integration that it needs."""
         for time, window in zip(_SALI_TIMES, WINDOWS, strict=False):
             if 2.0 * time > self._spec.t_max:
                 break

@@ -16,16 +16,16 @@ SHIFT = 1e-11
 """Shift of a start along x and along the ordinate, in units of the well: far above rounding errors and far below a pixel."""
 
 LARGEST_SHARE_OF_PIXEL = 0.01
-"""Largest shift as a share of the pixel, which limits it in deep zooms."""
+"""Largest shift as a share of the pixel; this limits the shift in deep zooms."""
 
 SECOND_TOLERANCE = 10.0 * TOLERANCE
-"""Tolerance of the second rerun. Its steps are a sixth longer, so that its errors are independent of those of the map."""
+"""Tolerance of the second rerun. Its steps are a sixth longer, so its errors are independent of those of the map."""
 
 LARGEST_DELAY = 0.01
 """Largest change of an escape time by a rerun, in units of the well.
 
 Near the boundary of a basin the escape time diverges like the logarithm of the distance. A shift by a fraction d of that distance
-changes it by about d. Below this limit, shifts of the same size in other directions therefore stay within the basin.
+changes the time by about d. Below this limit, shifts of the same size in other directions therefore stay within the basin.
 """
 
 
@@ -34,8 +34,8 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
 
     The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
     first shift is towards 0 in both coordinates, so that the points stay inside; the second changes the abscissa only. An axis h
-    is not shifted, so that the energy and its exits do not change; then the other coordinate is shifted first towards 0 and
-    second away from it.
+    is not shifted, so that the energy and its exits do not change. In this case, the other coordinate is shifted first towards 0
+    and second away from 0.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
 
     Returns
     -------
-    For each direction, (n,) x and (n,) ordinate of the shifted points.
+    For each direction, x and ordinate of the shifted points, (n,) each.
     """
     window, (columns, rows) = spec.find_window(), spec.resolution
     sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
@@ -74,7 +74,7 @@ def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[t
 
 @dataclass(frozen=True)
 class Perturbation:
-    """Parameters of the reruns: the starts and the tolerance of each, and the largest change of escape times."""
+    """Parameters of the reruns: the starts and the tolerance of each rerun, and the largest change of escape times."""
 
     starts: Callable[[MapSpec, np.ndarray, np.ndarray], tuple[tuple[np.ndarray, np.ndarray], ...]]
     tolerances: tuple[float, ...]
@@ -97,12 +97,12 @@ class Rerun:
     escape_time: np.ndarray
 
     def is_decided(self) -> np.ndarray:
-        """Return (n,) bool: whether the orbit has a fate."""
+        """Return whether each orbit has a fate, of shape (n,)."""
         decided: np.ndarray = self.batch.fate != Fate.NOT_COMPUTED
         return decided
 
     def has_changed(self) -> np.ndarray:
-        """Return (n,) bool: whether the outcome differs from the map's, or must because there are already more crossings."""
+        """Return whether each outcome differs from that of the map, or must because there are already more crossings."""
         batch, escaped = self.batch, self.fate >= 1
         other_fate = self.is_decided() & (batch.fate != self.fate)
         other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)

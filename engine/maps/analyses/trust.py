@@ -37,8 +37,8 @@ threshold. Along a regular orbit a shift grows like t, to about 1e-6 at t = 1e5.
 # Horizons are doubled in each stage, so that few orbits are integrated longer than needed. One horizon is FIRST_TEST_TIME.
 _FIRST_HORIZON = FIRST_TEST_TIME / 8.0
 _HORIZON_FACTOR = 2.0
-# A grid index on the coarsest lattice of `BoundedOrbitSearch`. The bounded pixels to test are few and lie around islands, so that
-# one round with all of them fills the lanes of the kernels better than one round per lattice.
+# A grid index on the coarsest lattice of `BoundedOrbitSearch`. The bounded pixels to test are few and lie around islands, so one
+# round with all of them fills the lanes of the kernels better than one round per lattice.
 _COARSEST_LATTICE_INDEX = 8
 
 
@@ -81,12 +81,12 @@ class TrustMap(PixelAnalysis):
 
     @property
     def doubtful_share(self) -> float:
-        """Share of doubtful pixels among the interior ones; NaN if there are none."""
+        """Share of doubtful pixels among the interior pixels; NaN if there are none."""
         return self._share(Trust.DOUBTFUL)
 
     @property
     def tested_share(self) -> float:
-        """Share of the pixels tested so far among the interior ones; NaN if there are none."""
+        """Share of the pixels tested so far among the interior pixels; NaN if there are none."""
         return self._share(Trust.CONFIRMED, Trust.DOUBTFUL)
 
     def describe(self) -> str:
@@ -111,8 +111,8 @@ def compute_trust(
 ) -> TrustMap:
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
-    A pixel is tested if one of its eight neighbours has another fate, or if both escape but with different numbers of crossings,
-    and also if it is bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different
+    A pixel is tested if one of its eight neighbours has another fate, or escapes likewise but after another number of crossings,
+    and also if the pixel is bounded without evidence. Its orbit is integrated twice more, from two starts shifted in different
     directions by 1e-11 length units of the well, but at most a hundredth of a pixel; the second time with ten times the
     tolerance. The pixel is doubtful if in either rerun its fate changes, or its crossings before the escape, or its escape time
     by more than 0.01 time units of the well. Crossings of bounded orbits are not compared, because orbits that are bounded on
@@ -178,7 +178,7 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
 
 
 def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
-    """Return (rows, columns) bool: whether pixels are bounded, above the escape energy, without evidence."""
+    """Return which pixels are bounded, above the escape energy, without evidence, of shape (rows, columns)."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
     without_evidence: np.ndarray = (escape_map.evidence == Evidence.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
@@ -186,7 +186,7 @@ def _find_without_evidence(escape_map: EscapeMap) -> np.ndarray:
 
 
 class TrustTest:
-    """Test of the pixels of a map by reruns, in units of the well; for `unlike` see `find_unlike_neighbours`."""
+    """Tests pixels of a map by reruns, in units of the well; for `unlike` see `find_unlike_neighbours`."""
 
     def __init__(self, given: EscapeMap, unlike: np.ndarray, perturbation: Perturbation) -> None:
         self._given_spec, escape_map = given.spec, given.in_well_units()
@@ -195,8 +195,8 @@ class TrustTest:
         without_evidence = _find_without_evidence(escape_map)
         codes[without_evidence | unlike] = Trust.NOT_TESTED
         self._codes = PixelCodes(escape_map, codes, Trust.NOT_TESTED)
-        # For the tested pixels: whether their reruns must stay together, whether they did not, and the time up to which both
-        # reruns have been compared.
+        # For the tested pixels: whether both reruns must stay together, whether they have not, and the time up to which they have
+        # been compared.
         self._without_evidence = without_evidence.ravel()[self._codes.pixels]
         self._chaotic = np.zeros(self._codes.pixels.size, bool)
         self._compared = 0.0
@@ -223,7 +223,7 @@ class TrustTest:
         return curves, reruns
 
     def stages(self, execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Yield the stages, see `Staged`; each integrates the undecided reruns to a horizon, or tests those inside there."""
+        """Yield the stages, see `Staged`; each integrates the undecided reruns to a horizon, or looks for evidence there."""
         reached = 0.0
         for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max):
             if not self._undecided.size:
@@ -259,10 +259,10 @@ class TrustTest:
         self._compared = time
 
     def _find_evidence(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark reruns of pixels bounded on the map as bounded if there is evidence, from their states at t = `reached`.
+        """Mark as bounded reruns of pixels that are bounded on the map, if their states at t = `reached` give evidence.
 
-        The evidence of the first rerun holds for both, because on a regular orbit their difference is far below the digits that
-        are compared.
+        The evidence of the first rerun holds for both reruns, because on a regular orbit their difference is far below the digits
+        that are compared.
         """
         first, undecided = self._reruns[0], self._undecided
         tested = undecided[(first.fate[undecided] == Fate.BOUNDED) & ~first.is_decided()[undecided]]

@@ -28,19 +28,24 @@ MIN_SEPARATION = 1e-10
 """Smallest distance of two starts, in units of the well, except in deep zooms, where the pixels themselves are small."""
 
 WORK = 1.5e8
-"""Default limit of the total integration time of all orbits, in units of the well, which is a few seconds of computation."""
+"""Default limit of the total integration time of all orbits, in units of the well: a few seconds of computation."""
 
-# In a deep zoom the smallest separation is this many decades below a pixel, but not below `_MIN_ZOOM_SEPARATION`, a few hundred
-# units in the last place of coordinates of order 1.
-_DECADES_BELOW_PIXEL, _MIN_ZOOM_SEPARATION = 4.0, 1e-13
-_MAX_SEPARATIONS, _MAX_PAIRS = 100, 100_000
-# After the requested pairs, each separation gets more pairs until the fitted law expects this many uncertain ones, which
-# determine a share to 7 %. Their number is limited to `_MAX_GROWTH` times as many pairs and by the total integration time.
-_WANTED_UNCERTAIN, _MAX_GROWTH = 200, 2000
+# In a deep zoom, the smallest separation is this many decades below a pixel.
+_DECADES_BELOW_PIXEL = 4.0
+# Lower limit of all separations, in units of the well: a few hundred units in the last place of coordinates of order 1.
+_MIN_ZOOM_SEPARATION = 1e-13
+_MAX_SEPARATIONS = 100
+_MAX_PAIRS = 100_000
+# After the requested pairs, each separation gets more pairs until the fitted law expects this many uncertain pairs, which
+# determine a share to 7 %.
+_WANTED_UNCERTAIN = 200
+# Each separation gets at most this many times as many pairs; the total integration time also limits their number.
+_MAX_GROWTH = 2000
 # Cost of a pair besides its integration, in time units of integration.
 _PAIR_COST = 20.0
+# Number of pairs drawn and integrated together.
 _CHUNK = 2**17
-# Times at which the integration stops, to regroup the few remaining orbits.
+# Times at which the integration stops, to regroup the few remaining orbits, in units of the well.
 _STAGES = (30.0, 300.0)
 # Drawing stops if less than this share of the points drawn in the window is interior.
 _MIN_YIELD = 1e-3
@@ -62,12 +67,13 @@ def compute_uncertainty_exponent(
     A start is ε-uncertain if a start at distance ε has a different fate. The share of such starts falls as f(ε) ~ ε^α, and the
     basin boundary has dimension 2 − α in the plane of initial conditions (Grebogi, McDonald, Ott & Yorke 1983, Phys. Lett. A 99,
     415; McDonald, Grebogi, Ott & Yorke 1985, Physica D 17, 125). Each ε has its own random pairs: the first start is uniform over
-    the interior of the window, and the second lies at distance ε in a random direction of the plane. On (x, h) both have the
-    energy of a row of pixels, and the second is displaced along x. Pairs with a forbidden or outside start are drawn again.
+    the interior of the window, and the second lies at distance ε in a random direction of the plane. On (x, h) both starts have
+    the energy of a row of pixels, and the second start is displaced along x. Pairs with a forbidden or outside start are drawn
+    again.
 
     Orbits are integrated to t_max, at most 1e4 time units of the well, and being inside at that time is a fate like a channel.
-    The result's `one_inside` and `both_inside` count the pairs that this can affect. Pairs of which both orbits escape number
-    ``pairs − one_inside − both_inside``, and the uncertain ones among them ``uncertain − one_inside``.
+    In the result, `one_inside` and `both_inside` count the pairs that this choice can affect. The number of pairs in which both
+    orbits escape is ``pairs − one_inside − both_inside``; ``uncertain − one_inside`` of these pairs are uncertain.
 
     Separations with few uncertain pairs get more pairs, as many as the law fitted to the first pairs suggests, within a fixed
     total integration time.
@@ -75,7 +81,7 @@ def compute_uncertainty_exponent(
     Parameters
     ----------
     spec
-        Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel of its resolution. The
+        Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel. The
         smallest ε is 1e-10 length units of the well or, in a deep zoom, four decades below a pixel, but not below 1e-13 units.
         Momenta are measured in units in which the unit of time of the well is 1.
     pairs
@@ -99,7 +105,7 @@ def compute_uncertainty_exponent(
     concurrent.futures.CancelledError
         If cancelled.
     ValueError
-        If a parameter is out of range, or the pixels are too small to resolve starts below them.
+        If a parameter is out of range, or the pixels are too small to resolve starts inside a pixel.
 
     Examples
     --------
@@ -126,7 +132,7 @@ def compute_uncertainty_exponent(
 
 
 def _separations(spec: MapSpec, count: int) -> np.ndarray:
-    """Return (count,) ε in units of the well, decreasing from the side of a pixel."""
+    """Return `count` separations ε in units of the well, decreasing from the side of a pixel."""
     given_window, spec = spec.find_window(), spec.in_well_units()
     window, (columns, rows) = spec.find_window(), spec.resolution
     sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
@@ -141,7 +147,7 @@ def _separations(spec: MapSpec, count: int) -> np.ndarray:
 
 
 class _PairSampler:
-    """Draws and integrates pairs of starts, and counts their outcomes for each separation (m,), in units of the well."""
+    """Draws and integrates pairs of starts, and counts their outcomes at each of m separations, in units of the well."""
 
     def __init__(
         self,
@@ -162,7 +168,7 @@ class _PairSampler:
         self.curves = exit_curves_at(spec.potential, self.row_energy, execution)
 
     def plan_more_pairs(self, work: float) -> np.ndarray:
-        """Return (m,) number of additional pairs at each separation, within the total integration time `work`."""
+        """Return the numbers of additional pairs at each separation, (m,), within the total integration time `work`."""
         if not self.uncertain.any() or np.any(self.uncertain == self.pairs):
             return np.zeros_like(self.pairs)
         if np.count_nonzero(self.uncertain) > 1:
@@ -180,7 +186,7 @@ class _PairSampler:
         return more
 
     def sample(self, wanted: np.ndarray, execution: Execution) -> None:
-        """Draw and integrate `wanted` (m,) more pairs and count their outcomes."""
+        """Draw and integrate `wanted` (m,) more pairs at each separation, and count their outcomes."""
         indices = np.repeat(np.arange(wanted.size), wanted)
         chunks = np.split(indices, range(_CHUNK, indices.size, _CHUNK)) if indices.size else []
         for done, chunk in enumerate(chunks):
@@ -190,7 +196,7 @@ class _PairSampler:
             self._count_outcomes(index, *batch.fate.reshape(2, -1))
 
     def _draw_chunk(self, wanted: np.ndarray) -> tuple[OrbitBatch, np.ndarray]:
-        """Return the orbits of `wanted` (m,) pairs, first starts before second starts, and the separation index of each pair."""
+        """Return the orbits of `wanted` (m,) pairs, all first before all second starts, and the separation index of each pair."""
         present = np.flatnonzero(wanted)
         drawn = [self._draw_pairs(index, int(wanted[index])) for index in present.tolist()]
         states = np.concatenate([states for states, _ in drawn], axis=1).reshape(-1, 4)
@@ -226,7 +232,7 @@ class _PairSampler:
             counts += np.bincount(index[which], minlength=counts.size)
 
     def _draw_pairs(self, index: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return (2, n, 4) states and (n,) energy rows of pairs at one separation, at most `count`."""
+        """Return the states, (2, n, 4), and energy rows, (n,), of at most `count` pairs at one separation."""
         states, rows = np.zeros((2, 0, 4)), np.zeros(0, np.int64)
         drawn = 0
         while rows.size < count and drawn * _MIN_YIELD < rows.size + 10:
@@ -246,7 +252,7 @@ class _PairSampler:
         return batch.state.reshape(2, -1, 4)[:, inside], rows[inside]
 
     def _draw_points(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return (2, 2 size) x and ordinate of all first and then all second starts, and (size,) energy rows of the pairs."""
+        """Return x and ordinate of all first, then all second starts, (2, 2 size), and the energy rows of the pairs, (size,)."""
         window, random, axis = self.spec.find_window(), self.random[index], self.spec.plane.energy_axis
         edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
         rows = np.zeros(size, np.int64)
