@@ -1,4 +1,4 @@
-"""One request at a time: a new request replaces the previous one, whose results are dropped."""
+"""One request at a time: a new request replaces the previous request, whose results are dropped."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Locked = Callable[[Callable[..., None]], Callable[..., None]]
 
 
 class LatestRequest:
-    """Requests results of jobs and calls, under the lock of the session, `show(result)` or, for errors, `fail(sentence)`."""
+    """Passes the results of the latest job to `show(result)`, and an error to `fail(sentence)`, both under the session's lock."""
 
     def __init__(self, jobs: JobSubmitter, show: Callable[[Any], None], fail: Callable[[str], None], locked: Locked) -> None:
         self._jobs, self._show, self._fail = jobs, show, fail
@@ -25,7 +25,7 @@ class LatestRequest:
         self._deliver = locked(self._on_result)
 
     def submit(self, job: Job[Any]) -> None:
-        """Request the result of a job, unless it is the current one."""
+        """Request the result of a job, unless the job is requested already."""
         if job == self._wanted:
             return
         self.cancel()
@@ -43,7 +43,7 @@ class LatestRequest:
         if job != self._wanted:
             return
         if isinstance(result, Exception):
-            # The same request may be made again.
+            # The same job may be submitted again.
             self._wanted = None
             self._fail(sentence(result))
         else:

@@ -77,7 +77,7 @@ class Explorer:
         self.maps = MapPresenter(context, self._document, self.links.history, alone=self.links.embedded)
         self.analyses = AnalysisPresenter(context, self.maps.view)
         self.comparison = ComparisonPresenter(
-            context, self.maps.view, lambda sentence: self.analyses.note(compared=sentence), self.links.refuse_comparison
+            context, self.maps.view, lambda sentence: self.analyses.show_notes(compared=sentence), self.links.refuse_comparison
         )
         self.orbits = OrbitPresenter(context, self.maps.view.marks, self.maps.view.well, self.maps.add_start)
         self.watch = WatchPresenter(context)

@@ -112,9 +112,9 @@ class OrbitPresenter:
     def _tell_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Show the verdict and the path of an orbit that has been tapped, because on a phone both are out of view."""
         for one, colour in zip(orbits, PALETTES[self._state.palette].orbits, strict=False):
-            if one.start == self._tapped and one.drawing is not None:
+            if one.start == self._tapped and one.curves is not None:
                 self._tapped = None
-                self._notice.show(one.headline(), path_picture(one.drawing, colour))
+                self._notice.show(one.headline(), path_picture(one.curves, colour))
 
     def close(self) -> None:
         """Cancel all requests at the end of the session."""
@@ -143,12 +143,12 @@ class OrbitPresenter:
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Show the orbits that are known; if only digits are new, update only the texts."""
         state = self._state
-        if [one.drawing for one in orbits] != [one.drawing for one in self._shown]:
+        if [one.curves for one in orbits] != [one.curves for one in self._shown]:
             self._interval, self._restricted = None, []
         self._shown = tuple(orbits)
         if state.chosen >= len(orbits) and orbits:
             return
-        drawn = [(one.start, one.drawing) for one in orbits], state.chosen, state.palette
+        drawn = [(one.start, one.curves) for one in orbits], state.chosen, state.palette
         with pn.io.hold():
             if drawn != self._drawn:
                 self._drawn = drawn
@@ -165,12 +165,12 @@ class OrbitPresenter:
         """Mark starts and sections on the maps."""
         self._marks.show_starts([one.start for one in self._shown])
         on_section = self._state.plane == SECTION
-        drawings = [one.drawing for one in self._shown]
+        drawings = [one.curves for one in self._shown]
         self._marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in drawings])
 
     def _draw(self) -> None:
         """Draw the orbits in the interval of time in view."""
-        drawings, chosen = self._restricted or [one.drawing for one in self._shown], self._state.chosen
+        drawings, chosen = self._restricted or [one.curves for one in self._shown], self._state.chosen
         drawing = drawings[chosen] if drawings else None
         duration = (0.0, float(drawing.orbit.t[-1])) if drawing is not None else None
         self._well.show_orbits(drawings, chosen)
@@ -192,7 +192,7 @@ class OrbitPresenter:
 
     def _brush(self, interval: Interval | None) -> None:
         """Restrict the curves to an interval of time; None shows the whole duration."""
-        drawings = [one.drawing for one in self._shown]
+        drawings = [one.curves for one in self._shown]
         if interval is None:
             self._on_restricted(drawings, None, [])
         else:
@@ -206,7 +206,7 @@ class OrbitPresenter:
         self, drawings: list[OrbitCurves | None], interval: Interval | None, restricted: list[OrbitCurves | None]
     ) -> None:
         # The orbits may have changed meanwhile.
-        if drawings == [one.drawing for one in self._shown]:
+        if drawings == [one.curves for one in self._shown]:
             self._interval, self._restricted = interval, restricted
             with pn.io.hold():
                 self._draw()

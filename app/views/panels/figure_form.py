@@ -155,7 +155,7 @@ class FigureForm:
 def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
     """Return the figures by title; they use the present results, even if the page changes afterwards."""
     choices: dict[str, Make] = {}
-    drawings = [one.drawing for one in shown.orbits if one.drawing is not None]
+    drawings = [one.curves for one in shown.orbits if one.curves is not None]
     frame = shown.whole_map
     if frame is not None:
         choices |= _map_choices(frame, shown, state)
@@ -163,7 +163,7 @@ def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
         energy = highest_energy(spec.energy)
         choices[WELL] = partial(well_figure_bytes, spec.potential, energy, drawings, state.colours)
     if drawings:
-        verdicts = [one.describe() for one in shown.orbits if one.drawing is not None]
+        verdicts = [one.describe() for one in shown.orbits if one.curves is not None]
         choices[ORBITS] = partial(orbits_figure_bytes, state.potential, drawings, state.colours, verdicts)
     if frame is not None:
         choices[STATISTICS] = partial(statistics_figure_bytes, frame, state.box)
