@@ -120,7 +120,7 @@ class MapRequests:
         self._subscription = self._jobs.request(job, on_result, on_error)
 
     def _deliver_frame(self, generation: int, frame: EscapeMap) -> None:
-        """Deliver a frame, or the error of a map without an interior. A crowded server skips the frames between first and last."""
+        """Deliver a frame, or an error if the interior is empty. A crowded server skips the frames between first and last."""
         try:
             # The ranges of the maps need this window. Finding it is slow, so it is found here and cached.
             replace(frame.spec, window=None).find_window()
@@ -144,7 +144,7 @@ class MapRequests:
             return self._generation
 
     def _deliver(self, callback: Callable[..., None], generation: int, *arguments: Any) -> None:
-        """Call back if the generation is current. The session may keep one waiting call, which an outdated call must not replace."""
+        """Pass on a result of the current generation: an outdated call would replace the only waiting call that the session keeps."""
         with self._generation_lock:
             if generation == self._generation:
                 callback(generation, *arguments)

@@ -52,7 +52,7 @@ class ChosenOrbit:
 
 
 class OrbitRequests:
-    """Requests the orbits of one session, then the Birkhoff digits of the bounded orbits, for which each orbit is integrated again.
+    """Requests the orbits of one session, then the Birkhoff digits of the bounded orbits, for which these are integrated again.
 
     Parameters
     ----------

@@ -117,7 +117,7 @@ class BasinMeasuresView:
 
     def _write(self) -> None:
         region = "In the box drawn on the maps" if self.whole.visible else "In the whole view"
-        described = [(measure, self._sentences[measure.name]) for measure in DESCRIBED_MEASURES if measure.name in self._sentences]
+        described = [(one, self._sentences[one.name]) for one in DESCRIBED_MEASURES if one.name in self._sentences]
         body = "".join(_rows_of(measure, self._results.get(measure.name), sentence) for measure, sentence in described)
         table = f"<table aria-label='measures'><caption>{region}</caption>{body}</table>" if body else ""
         details = (f"<p id='told-{one.name}' class='help-text' popover>{escape(sentence)}</p>" for one, sentence in described)
