@@ -34,18 +34,18 @@ PLACES = {
 
 EXPLANATIONS = {
     StartsFrom.TUBES: (
-        "Half of them start just inside a tube that leads to an exit, and leave at their next pass. The others, just outside, "
-        "turn back there."
+        "Half of the orbits start just inside a tube that leads to an exit, and leave at their next pass. The others start just "
+        "outside, and turn back."
     ),
     StartsFrom.EXITS: (
-        "They enter through the exits, as often as the flux says. The curve is the distribution of the times until they leave."
+        "Orbits enter through the exits, as often as the flux says. The curve is the distribution of the times until they leave."
     ),
 }
 """Explanations of the places whose names are not enough."""
 
 
 def places_for(potential: Potential) -> dict[StartsFrom, str]:
-    """Return the places that a system offers, with their phrases: exits over saddles, and their tubes in a frame without rotation."""
+    """Return the places of a system, with their phrases: exits need saddles, and tubes also a frame that does not rotate."""
     missing = set[StartsFrom]()
     if potential.escape_radius is not None:
         missing |= {StartsFrom.EXITS, StartsFrom.TUBES}
