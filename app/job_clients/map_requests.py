@@ -144,7 +144,7 @@ class MapRequests:
             return self._generation
 
     def _deliver(self, callback: Callable[..., None], generation: int, *arguments: Any) -> None:
-        """Pass on a result of the current generation: an outdated call would replace the only waiting call that the session keeps."""
+        """Pass on a result of the current generation. An outdated call would replace the only waiting call of the session."""
         with self._generation_lock:
             if generation == self._generation:
                 callback(generation, *arguments)

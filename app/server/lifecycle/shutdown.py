@@ -30,7 +30,7 @@ log = logging.getLogger(f"bokeh.{__name__}")
 def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
     """Stop gracefully on SIGTERM and Ctrl-C, even while the event loop is busy; call on the thread of the loop.
 
-    This replaces the handlers of Bokeh and asyncio, which wait for the event loop. Python writes the number of a signal to a socket
+    This replaces the handlers of Bokeh and asyncio, which wait for the event loop. Python writes a signal's number to a socket
     at once, and a thread waits there. Like all threads, it is delayed only while a C function keeps the interpreter lock.
     """
     loop = asyncio.get_running_loop()
