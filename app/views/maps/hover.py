@@ -1,4 +1,4 @@
-"""Hover text of a pixel, the same on all pictures, with the meaning of its colours."""
+"""Hover text of a pixel, which says what its colours mean, on all pictures alike."""
 
 from __future__ import annotations
 
@@ -22,12 +22,10 @@ _TEXT = (
     "{details}<div>($x{{custom}}, $y{{custom}})</div></div>"
 )
 
-
 _FATES = list(OUTCOMES.values())
 
-
 def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """Return a tool that shows the outcome of the orbit under the mouse; the caller adds images of fate codes to its renderers.
+    """Return a tool that shows the outcome of the orbit under the mouse; the caller sets images of fate codes as its renderers.
 
     source
         Columns ``fate`` and ``ends`` of `plots.pictures.image_columns.map_columns`.
@@ -37,7 +35,6 @@ def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> Hover
         tooltips=_TEXT.format(details=""), formatters=formatters, attachment="vertical", show_arrow=False, renderers=[]
     )
 
-
 def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> dict[str, CustomJSHover]:
     return {
         "@fate": CustomJSHover(args={"names": _FATES, "maps": source}, code=_FATE),
@@ -45,18 +42,17 @@ def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> 
         "$y": CustomJSHover(args={"range": ordinate}, code=_PLACE),
     }
 
-
 def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """Return a tool that describes the orbit under the mouse; the caller adds images to its renderers.
+    """Return a tool that describes the orbit under the mouse; the caller sets images as its renderers.
 
-    One formatter reads all columns, because Bokeh does not call formatters for NaN, the escape time of bounded orbits.
+    A single formatter reads all columns: Bokeh calls no formatter for NaN, such as the escape time of a bounded orbit.
 
     Parameters
     ----------
     source
         Columns of `plots.pictures.image_columns.map_columns` and of the layers.
     compared
-        Pixels of the view with which this one is compared.
+        Columns of the map of the other view.
     x, ordinate
         Ranges of the pictures.
     """
