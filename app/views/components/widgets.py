@@ -49,7 +49,7 @@ def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **
     """Return a button; `kind` is "default", "primary" (the main action of a section) or "light" (without a frame)."""
 
     def click(event: Any) -> None:
-        # Panel runs callbacks of widgets without the session's lock, but changes of Bokeh models need it. `hold` provides the lock.
+        # Panel runs callbacks of widgets without the session's lock, which changes of Bokeh models need. `hold` provides it.
         with pn.io.hold():
             on_click()
 

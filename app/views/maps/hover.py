@@ -24,16 +24,22 @@ _TEXT = (
 
 _FATES = list(OUTCOMES.values())
 
+
 def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
     """Return a tool that shows the outcome of the orbit under the mouse; the caller sets images of fate codes as its renderers.
 
+    Parameters
+    ----------
     source
         Columns ``fate`` and ``ends`` of `plots.pictures.image_columns.map_columns`.
+    x, ordinate
+        Ranges of the pictures.
     """
     formatters = _fate_and_place(source, x, ordinate)
     return HoverTool(
         tooltips=_TEXT.format(details=""), formatters=formatters, attachment="vertical", show_arrow=False, renderers=[]
     )
+
 
 def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> dict[str, CustomJSHover]:
     return {
@@ -41,6 +47,7 @@ def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> 
         "$x": CustomJSHover(args={"range": x}, code=_PLACE),
         "$y": CustomJSHover(args={"range": ordinate}, code=_PLACE),
     }
+
 
 def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
     """Return a tool that describes the orbit under the mouse; the caller sets images as its renderers.
