@@ -24,9 +24,9 @@ export function fateName(code, names, {ends}) {
  *
  * @param {number} pixel
  * @param {{maps: Columns, compared: Columns}} columns  of the maps, and of the map of the other view
- * @param {{bounded: number, first: number, firstEvidence: number}} codes  of bounded orbits, and the first codes of differences and evidence
- * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words  of evidence
- *   and fates by code; sentences of layers by column and code, empty if the map brings them; names of the numbers in other columns
+ * @param {{bounded: number, first: number, firstEvidence: number}} codes  of bounded orbits, first difference, first evidence
+ * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words
+ *   of evidence and fates by code, of layers by column and code (empty if the map has its own), of numbers by column
  */
 export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const fates = maps.fate[0]
