@@ -57,7 +57,7 @@ class BrowserListener(JSComponent):
     """Listens in the browser, and sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
 
     keys = param.List(default=list(KEYS))
-    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed so far; number, see `command`")
+    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number, see `command`")
     command = param.Dict(default={}, doc="name, as back or copy; text to copy; number that makes repeats differ")
 
     _esm = Path(__file__).with_suffix(".js")
