@@ -28,7 +28,7 @@ class CountedInput(JSComponent):
 
     label = param.String()
     disabled = param.Boolean()
-    shown = param.Dict(default={}, doc="value, and the number of the visitor's values that the server knew when it set this value")
+    shown = param.Dict(default={}, doc="value, and number of the visitor's values that the server knew when it set the value")
 
     def __init__(self, on_value: Callable[[Any, bool], None], value: Any, **options: Any) -> None:
         super().__init__(shown={"value": value, "count": 0}, **options)
