@@ -236,7 +236,7 @@ class AnalysisPresenter:
             low, high = default_range(state.system, name)
             along, energy = ParameterAxis(name, low, high, state.system), state.energy
         self._sweep_spec = SweepSpec(
-            state.potential, plane, _space_values(low, high), _SWEEP_RESOLUTION, t_max=state.t_max, measures=CURVES, along=along,
+            state.potential, plane, _sweep_values(low, high), _SWEEP_RESOLUTION, t_max=state.t_max, measures=CURVES, along=along,
             energy=energy, refine=REFINED_VALUES,
         )  # fmt: skip
         self.curves.show_running(True)
@@ -273,7 +273,7 @@ def _is_complete(result: Any) -> bool:
     return bool(getattr(result, "complete", True))
 
 
-def _space_values(low: float, high: float) -> list[float]:
+def _sweep_values(low: float, high: float) -> list[float]:
     """Return `SWEPT_VALUES` evenly spaced values from `low` to `high`, rounded to few digits."""
     spacing = (high - low) / (SWEPT_VALUES - 1)
     decimals = max(4, 2 - math.floor(math.log10(spacing)))

@@ -29,7 +29,7 @@ def well_spec(potential: Potential, energy: float) -> MapSpec:
 
 
 class WellView:
-    """Draws the whole interior at the energy of the map. On a slice with an axis h, it is the energy of the chosen orbit."""
+    """Draws the whole interior at the energy of the map; with an axis h, at the energy of the chosen orbit, or the highest."""
 
     def __init__(self) -> None:
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)

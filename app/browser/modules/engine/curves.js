@@ -32,8 +32,8 @@ export class LimitingCurves {
 }
 
 /**
- * Return the lowest energy at which a start exists, at each point of a lattice over a window, row by row. On a slice with an axis h,
- * it is relative to the h of the point, so the limiting curve is at 0.
+ * Return the lowest energy at which a start exists, at points of a lattice over a window, row by row. On a slice with an axis h, it
+ * is relative to the h of the point, so the limiting curve is at 0.
  *
  * @param {import("./integrator.js").Integrator} integrator
  * @param {import("./system.js").Slice} slice

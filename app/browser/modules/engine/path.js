@@ -24,8 +24,8 @@ const POINTS = 6
 const PORTION = 512
 
 /**
- * Return the path of the orbit of a point of a slice, until it escapes or for a duration in units of the well; null if the start is
- * not inside.
+ * Return the path of the orbit of a point of a slice, until it escapes or for a duration in units of the well; null for a start
+ * outside.
  *
  * @param {Integrator} integrator
  * @param {import("./system.js").Slice} slice
