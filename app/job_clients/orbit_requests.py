@@ -22,9 +22,18 @@ from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 @dataclass(frozen=True)
 class ChosenOrbit:
-    """A start with the curves of its orbit, or with the problem that it has no orbit. Both are missing while they are computed.
+    """A start, and what is known of its orbit.
 
-    The Birkhoff digits of a bounded orbit follow later.
+    Attributes
+    ----------
+    start
+        The start.
+    curves
+        The orbit with its curves; None until they are computed, and for a start without an orbit.
+    problem
+        Why the start has no orbit; empty for other starts.
+    digits
+        Birkhoff digits of a bounded orbit, which follow later; None for other orbits.
     """
 
     start: Start
@@ -34,7 +43,7 @@ class ChosenOrbit:
 
     @property
     def orbit(self) -> Orbit | None:
-        """The orbit, once it is computed."""
+        """The orbit; None until it is computed, or without an orbit."""
         return self.curves.orbit if self.curves is not None else None
 
     @property
@@ -43,11 +52,11 @@ class ChosenOrbit:
         return judge_orbit(self.orbit, self.digits) if self.orbit is not None else None
 
     def headline(self) -> str:
-        """Return the verdict in a few words, or the problem."""
+        """Return the verdict in a few words, the problem, or "Integrating …"."""
         return self.verdict.headline() if self.verdict is not None else self.problem or "Integrating …"
 
     def describe(self) -> str:
-        """Return the whole verdict, or the problem."""
+        """Return the whole verdict, the problem, or "Integrating …"."""
         return self.verdict.describe() if self.verdict is not None else self.problem or "Integrating …"
 
 
@@ -83,7 +92,7 @@ class OrbitRequests:
         state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
 
     def follow(self) -> None:
-        """Request the orbits of new starts, and cancel those of removed starts."""
+        """Request the orbits of new starts, and cancel the requests of removed starts."""
         self._orbits.follow([job for job in map(self._state.orbit_job, self._state.starts) if job is not None])
         self._update()
 
