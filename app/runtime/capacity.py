@@ -1,4 +1,4 @@
-"""The number of pages for which the processors suffice. It decides when work is postponed and new pages are refused.
+"""The number of pages for which the processors suffice, by which work is postponed and new pages are refused.
 
 Each open page reserves the processor time that an active visitor uses: otherwise a server would fill up while its visitors are
 still reading. Two values are measured: the processor time that other programs leave, and the use of the event loop.
@@ -40,13 +40,13 @@ WINDOW_SECONDS = 20
 """Time over which the use of the processors is averaged."""
 
 ACTING_SECONDS = 300.0
-"""Time after the visitor's last action in which a page counts in full."""
+"""Time for which a page counts in full after the visitor's last action."""
 
 IDLE_WEIGHT = 0.1
-"""Fraction of a page as which an idle page counts."""
+"""An idle page counts as this fraction of a page."""
 
 CONNECTION_SECONDS = 15.0
-"""Time after its last action in which a page without a connection counts, because it may be opening or reconnecting."""
+"""Time for which a page without a connection counts after its last action, because it may be opening or reconnecting."""
 
 
 class ProcessorTimes(NamedTuple):

@@ -26,7 +26,7 @@ MOST_AT_ONCE = 4000
 """Largest number of messages at once, after a pause."""
 
 REFUSED_COUNTS = 40
-"""Number of messages as which a refused message counts, because it causes a line in the log. The page itself sends none."""
+"""A refused message counts as this many messages, because it causes a line in the log. The page itself sends none."""
 
 BYTES_PER_MESSAGE = 16 * 1024
 """Number of bytes of a part of a message that count as one more message."""
