@@ -105,7 +105,7 @@ def _start_state() -> ProcessState:
 
 
 def _measure_load(state: ProcessState, watch: LoopWatch) -> None:
-    # The last line in the log of a stopping server is that it stops.
+    # The log of a stopping server ends with the line that it stops.
     if not state.stopping.is_set():
         watch.tick()
     state.adapt_to_load()

@@ -182,7 +182,7 @@ def _is_plain(value: Any) -> bool:
 
 
 def _is_real(value: Any) -> bool:
-    # NaN is not real.
+    # NaN is not real: the comparison is False.
     return isinstance(value, int | float) and abs(value) <= _LARGEST_NUMBER
 
 

@@ -1,4 +1,4 @@
-"""Reviews of systems, by jobs outside the event loop where they take time."""
+"""Reviews of systems, which jobs compute outside the event loop."""
 
 from __future__ import annotations
 

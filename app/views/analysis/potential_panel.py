@@ -28,7 +28,7 @@ from plots.texts.mathml import potential_formula, potential_symbol
 # Ends of the sliders of parameters. Their boxes, links and the command line allow wider ranges.
 _SLIDER_ENDS = (0.2, 2.0)
 _OTHER_SLIDER_ENDS = {"rotation": (-1.0, 1.0)}
-# Least distance of the ends of a letter's slider from 0; it grows to twice the value.
+# Distance of the ends of a letter's slider from 0; for values beyond half of it, the distance is twice the value.
 _LEAST_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (

@@ -76,7 +76,7 @@ class ProgressView:
         offered = [layer.title for layer in LAYERS.values() if layer.is_offered(frame)]
         self._frame = frame
         self._set(running=not frame.complete, label=next(iter(offered), STOP), sentence=sentence)
-        # The stylesheet leaves room for the long text of an offer.
+        # The stylesheet puts a button of class "stop" over the status line, where the text beside an offer needs the space.
         self.button.css_classes = ["solid", "offer" if offered else "stop"]
         self.button.styles = keep_place(shown=bool(offered) or not frame.complete)
         self.bar.value = int(100 * frame.progress)

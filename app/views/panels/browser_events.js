@@ -30,7 +30,7 @@ function key_of(event, keys) {
   const key = event.key === "=" ? "+" : named ? event.key : event.key.toLowerCase()
   const closes = key === "Escape" && comes_from(event, ".drawer")
   if (!keys.includes(key) || (comes_from(event, TYPING) && !closes)) return null
-  // Escape closes an open help text: the browser does so.
+  // The browser itself closes an open help text.
   if (key === "Escape" && event.composedPath().some(opens_text)) return null
   if (key === "Enter" && comes_from(event, PRESSED)) return null
   return key.startsWith("Arrow") && comes_from(event, MOVING) ? null : key
