@@ -88,7 +88,7 @@ class OrbitRequests:
         self._state, self._show, self._notify = state, show, notify
         self._orbits = RequestedResults(jobs, _curves_or_sentence, lambda arrived: self._update(), latest)
         self._digits = RequestedResults(jobs, _digits_or_sentence, self._take_digits, latest)
-        self._shown: tuple[ChosenOrbit, ...] = ()
+        self._last_orbits: tuple[ChosenOrbit, ...] = ()
         state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
 
     def follow(self) -> None:
@@ -113,8 +113,8 @@ class OrbitRequests:
         self._digits.follow([_digits_job(job) for job in bounded])
         orbits = tuple(map(self._orbit_of, self._state.starts))
         # Showing unchanged orbits again would delay a map that is requested at the same time.
-        if orbits != self._shown:
-            self._shown = orbits
+        if orbits != self._last_orbits:
+            self._last_orbits = orbits
             self._show(orbits)
 
     def _orbit_of(self, start: Start) -> ChosenOrbit:

@@ -38,7 +38,7 @@ class RequestedResults:
         self.found: dict[Job[Any], Any] = {}
         self._subscriptions: dict[Job[Any], Subscription | None] = {}
         # Values that are not handled yet; any thread may append to this queue.
-        self._arrived: deque[tuple[Job[Any], Any]] = deque()
+        self._new_values: deque[tuple[Job[Any], Any]] = deque()
         self._handle_later = latest(self._handle)
 
     def follow(self, wanted: Collection[Job[Any]]) -> None:
@@ -54,7 +54,7 @@ class RequestedResults:
 
     def _request(self, job: Job[Any]) -> None:
         def deliver(result: Any) -> None:
-            self._arrived.append((job, self._convert(job, result)))
+            self._new_values.append((job, self._convert(job, result)))
             self._handle_later()
 
         # A cached result is delivered before `request` returns, so the job is entered first.
@@ -65,8 +65,8 @@ class RequestedResults:
 
     def _handle(self) -> None:
         arrived: dict[Job[Any], Any] = {}
-        while self._arrived:
-            job, result = self._arrived.popleft()
+        while self._new_values:
+            job, result = self._new_values.popleft()
             if job in self._subscriptions:
                 del self._subscriptions[job]
                 arrived[job] = result

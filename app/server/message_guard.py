@@ -56,7 +56,7 @@ class MessageGuard:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._parts: list[str | bytes] = []
-        self._expected = _FIRST_PARTS
+        self._expected_parts = _FIRST_PARTS
         self._is_pulled = False
         self.choices: list[tuple[Model, str]] = []
         self._reserve, self._last_count = float(MOST_AT_ONCE), clock()
@@ -80,9 +80,9 @@ class MessageGuard:
             raise UnacceptableConnectionError("a message with binary parts in the wrong places")
         self._count(len(part) / BYTES_PER_MESSAGE)
         if not self._parts:
-            self._expected = _FIRST_PARTS + _PARTS_PER_BUFFER * _count_buffers(part)
+            self._expected_parts = _FIRST_PARTS + _PARTS_PER_BUFFER * _count_buffers(part)
         self._parts.append(part)
-        if len(self._parts) < self._expected:
+        if len(self._parts) < self._expected_parts:
             return []
         parts, self._parts = self._parts, []
         self._count(1.0)

@@ -44,7 +44,7 @@ class MapPresenter:
         self._document, self._history = document, history
         self._requested_at: float | None = None
         # The start that the last click added; None if the start was in the list already.
-        self._just_added: Start | None = None
+        self._added_start: Start | None = None
         self.view = MapsView(
             MapActions(
                 tap=locked(self.add_start),
@@ -116,8 +116,8 @@ class MapPresenter:
     def _dive(self, x: float, ordinate: float) -> None:
         """Zoom to a double-clicked point, and remove the start that the first click has added."""
         state = self._state
-        if self._just_added in state.starts:
-            state.remove_start(state.starts.index(self._just_added))
+        if self._added_start in state.starts:
+            state.remove_start(state.starts.index(self._added_start))
         self.show_window(zoom(state.find_window(), DIVE_FACTOR, (x, ordinate)))
 
     def add_middle(self) -> None:
@@ -137,7 +137,7 @@ class MapPresenter:
         with self._document.models.freeze():
             added = state.add_start((x, ordinate))
             state.analysis = Analysis.ORBIT
-        self._just_added = (x, ordinate) if state.starts != before else None
+        self._added_start = (x, ordinate) if state.starts != before else None
         if not added:
             self._notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
 

@@ -116,7 +116,7 @@ class ViewState(param.Parameterized):
         super().__init__(t_max=first.t_max, resolution=first.resolution)
         self.param.t_max.objects = list(allowed_t_max().values())
         self.param.resolution.objects = list(allowed_resolutions().values())
-        self._reviewed = review_catalogue_entry(self.system.case)
+        self._review = review_catalogue_entry(self.system.case)
         self.param.update(**values)
 
     def follow(self, show: Callable[..., object], *names: str) -> None:
@@ -136,11 +136,11 @@ class ViewState(param.Parameterized):
     @property
     def reviewed(self) -> SystemReview:
         """The review of the system; RuntimeError outside the catalogue, unless `show` has received the review."""
-        if self._reviewed.system != self.system:
+        if self._review.system != self.system:
             if self.system.case == TYPED or self.system.parameters:
                 raise RuntimeError(f"{self.system} has not been reviewed")
-            self._reviewed = review_catalogue_entry(self.system.case)
-        return self._reviewed
+            self._review = review_catalogue_entry(self.system.case)
+        return self._review
 
     @property
     def potential(self) -> Potential:
@@ -199,7 +199,7 @@ class ViewState(param.Parameterized):
 
     def show(self, reviewed: SystemReview, **values: Any) -> None:
         """Set a reviewed system together with other values."""
-        self._reviewed = reviewed
+        self._review = reviewed
         values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
         values["system"] = reviewed.system
         if reviewed.system == self.system:

@@ -113,16 +113,16 @@ class Drawers(Stack):
         # All changes are sent in one message. Between two messages, a press would add a button to the button still marked.
         with pn.io.hold():
             super().show(name)
-            self.buttons.param.update(value=self._marked(), css_classes=self._classes(is_open=name is not None))
+            self.buttons.param.update(value=self._marked_buttons(), css_classes=self._classes(is_open=name is not None))
             if name != before:
                 self._on_show(name is not None)
 
     def _press(self, event: Any) -> None:
         pressed = [name for name in event.new if name != self.shown]
-        if event.new != self._marked():
+        if event.new != self._marked_buttons():
             self.show(pressed[-1] if pressed else None)
 
-    def _marked(self) -> list[str]:
+    def _marked_buttons(self) -> list[str]:
         """Return the buttons to mark: the button of the open drawer, if it has one."""
         return [name for name in self.buttons.options.values() if name == self.shown]
 

@@ -65,7 +65,7 @@ class CurveLayers:
         self._palette: Palette = PAPER
         self._line_colours: LineColours = LIGHT
         # Glyphs whose colour depends on the theme, by the name of the colour in `LineColours`.
-        self._themed: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
+        self._themed_glyphs: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
 
     def draw(self, plot: figure, *, full: bool) -> None:
         """Add the curves to a figure. Only `full` figures get equipotentials and the numbers of exits."""
@@ -89,7 +89,7 @@ class CurveLayers:
     def _draw_themed(self, plot: figure, source: ColumnDataSource, name: str, width: float) -> None:
         line = MultiLine(line_color=getattr(self._line_colours, name), line_width=width)
         plot.add_glyph(source, line)
-        self._themed[name].append(line)
+        self._themed_glyphs[name].append(line)
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the exits for the next `show`."""
@@ -98,7 +98,7 @@ class CurveLayers:
     def set_dark(self, dark: bool) -> None:
         """Use the line colours of the dark or the light theme."""
         self._line_colours = DARK if dark else LIGHT
-        for name, glyphs in self._themed.items():
+        for name, glyphs in self._themed_glyphs.items():
             for glyph in glyphs:
                 glyph.line_color = getattr(self._line_colours, name)
 

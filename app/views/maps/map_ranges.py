@@ -39,13 +39,13 @@ class MapRanges:
         Shows the window to which the ranges were moved; None is the whole interior. It must call `finish_report`, now or later.
         Until then the ranges follow no other window, because the user may have moved them again.
     on_rest
-        Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
+        Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
     """
 
     def __init__(self, on_zoom: Callable[[Window | None], None], on_rest: Callable[[], None]) -> None:
         self.x, self.ordinate = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._on_zoom = on_zoom
-        self._shown: Window | None = None
+        self._window: Window | None = None
         self._home: Window | None = None
         self._rest_pause, self._gesture_pause = _Pause(REST_MS, self._report), _Pause(GESTURE_PAUSE_MS, on_rest)
         self._is_following, self._open_reports = False, 0
@@ -55,7 +55,7 @@ class MapRanges:
 
     def follow(self, window: Window) -> None:
         """Go to the window of a new map, unless the user is moving the ranges."""
-        self._shown = window
+        self._window = window
         if self._rest_pause.waits or self._open_reports:
             return
         # Writing a range undoes a move in the browser at the same time, so mere rounding differences are not written.
@@ -75,8 +75,8 @@ class MapRanges:
     def finish_report(self) -> None:
         """End a report, whose window is shown or refused, and go to the window of the map."""
         self._open_reports -= 1
-        if self._shown is not None:
-            self.follow(self._shown)
+        if self._window is not None:
+            self.follow(self._window)
 
     def set_home(self, home: MapSpec) -> None:
         """Set the map of the whole interior, which also determines the smallest window."""
@@ -88,9 +88,9 @@ class MapRanges:
     @property
     def magnification(self) -> float:
         """Width of the whole interior over the width of the window; 1 without a map."""
-        if self._home is None or self._shown is None:
+        if self._home is None or self._window is None:
             return 1.0
-        return (self._home.x_high - self._home.x_low) / (self._shown.x_high - self._shown.x_low)
+        return (self._home.x_high - self._home.x_low) / (self._window.x_high - self._window.x_low)
 
     def end_gesture(self) -> None:
         """Report the window after a drag or a step of the wheel, and wait for the end of the gesture."""
@@ -111,7 +111,7 @@ class MapRanges:
         self._rest_pause.cancel()
         x_low, x_high, low, high = edges = self._edges
         # The server and the browser may change a range at the same time.
-        if not (x_low < x_high and low < high) or self._shown is None or is_near(edges, self._shown):
+        if not (x_low < x_high and low < high) or self._window is None or is_near(edges, self._window):
             return
         self._open_reports += 1
         self._on_zoom(None if self._home is not None and is_near(edges, self._home) else Window(*edges))

@@ -34,9 +34,9 @@ class PictureGrid:
 
     def __init__(self, on_choose: Callable[[str], None], *, alone: bool = False) -> None:
         self._panes: dict[str, FigurePane] = {}
-        self._enlarged = ""
+        self._enlarged_picture = ""
         # Pictures that show nothing.
-        self._empty: frozenset[str] = frozenset()
+        self._empty_pictures: frozenset[str] = frozenset()
         # Before the first map, the pictures do not belong to the system.
         classes = ["maps", "stale", *(["alone"] if alone else [])]
         self._column = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=classes)
@@ -60,14 +60,14 @@ class PictureGrid:
 
     def enlarge(self, name: str) -> None:
         """Show a picture large; all are side by side if the name is empty or its picture not on the page."""
-        self._enlarged = name
+        self._enlarged_picture = name
         self._place()
 
     def mark_empty(self, name: str, empty: bool) -> None:
         """Set whether a picture shows nothing. The picture of a layer is not the largest if it shows nothing."""
-        marked = self._empty | {name} if empty else self._empty - {name}
-        if marked != self._empty:
-            self._empty = marked
+        marked = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
+        if marked != self._empty_pictures:
+            self._empty_pictures = marked
             self._place()
 
     def mark_stale(self, stale: bool) -> None:
@@ -81,29 +81,30 @@ class PictureGrid:
 
     def _choose(self, name: str | None) -> None:
         # Other values come from the page itself, which the picker follows.
-        if name is not None and name != self._picked:
+        if name is not None and name != self._largest_picture:
             self._on_choose(name)
 
     @property
-    def _picked(self) -> str:
+    def _largest_picture(self) -> str:
         """The largest picture: the enlarged picture, or else the picture of the last layer that shows something."""
-        layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty]
-        return self._enlarged if self._enlarged in self._panes else [FIRST, *layers][-1]
+        layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty_pictures]
+        return self._enlarged_picture if self._enlarged_picture in self._panes else [FIRST, *layers][-1]
 
     def _place(self) -> None:
         # A Bokeh pane on the page cannot change its CSS classes, but its figure can.
-        picked, is_enlarged, are_many = self._picked, self._enlarged in self._panes, len(self._panes) > _MOST_EQUAL
+        largest, is_enlarged = self._largest_picture, self._enlarged_picture in self._panes
+        are_many = len(self._panes) > _MOST_EQUAL
         other = "small" if is_enlarged else "compact" if are_many else "equal"
         with pn.io.hold():
             self._set_class("enlarged", is_enlarged)
             self._set_class("many", are_many and not is_enlarged)
             for name, pane in self._panes.items():
                 plot: figure = pane.object
-                kinds = ["well" if name == "well" else "map", "picked" if name == picked else other]
+                kinds = ["well" if name == "well" else "map", "picked" if name == largest else other]
                 if plot.css_classes != kinds:
                     plot.css_classes = kinds
                     set_borders(plot, kinds[1])
-            self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=picked)
+            self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=largest)
             parts = [*([self.picker] if self.picker.visible else []), *self._panes.values()]
             if parts != self._column.objects:
                 self._column.objects = parts

@@ -63,13 +63,13 @@ class Downloads:
 
     def netcdf_file(self) -> File:
         """Return the file of the map with its analyses."""
-        return self._named(".nc"), partial(netcdf_bytes, self._map(), self._results.analyses)
+        return self._file_name(".nc"), partial(netcdf_bytes, self._map(), self._results.analyses)
 
     def csv_file(self) -> File:
         """Return the file with a table of the orbits."""
         orbits = [one.orbit for one in self._results.orbits if one.orbit is not None]
         verdicts = [one.verdict for one in self._results.orbits if one.verdict is not None]
-        name = "orbits.csv" if self._results.whole_map is None else self._named("-orbits.csv")
+        name = "orbits.csv" if self._results.whole_map is None else self._file_name("-orbits.csv")
         return name, lambda: orbits_csv(orbits, verdicts=verdicts).encode()
 
     def curves_file(self) -> File:
@@ -83,7 +83,7 @@ class Downloads:
         """Return the script that computes the map and the orbits."""
         jobs = [self._state.orbit_job(one.start) for one in self._results.orbits]
         states = [job.arguments[1] for job in jobs if job is not None]
-        return self._named(".py"), python_lines(self._map().spec, self._state.system, states).encode
+        return self._file_name(".py"), python_lines(self._map().spec, self._state.system, states).encode
 
     def _save_on_click(self, file: Callable[[], File]) -> Callable[[], None]:
         # `file()` takes the results at the time of the click.
@@ -96,9 +96,9 @@ class Downloads:
         self.orbits.disabled = not any(one.orbit is not None for one in self._results.orbits)
 
     def _figure_name(self, ending: str) -> str:
-        return f"escapes-{self._state.system.case}{ending}" if self._results.whole_map is None else self._named(ending)
+        return f"escapes-{self._state.system.case}{ending}" if self._results.whole_map is None else self._file_name(ending)
 
-    def _named(self, ending: str) -> str:
+    def _file_name(self, ending: str) -> str:
         return f"{file_stem(self._map().spec, self._state.system.case)}{ending}"
 
     def _map(self) -> EscapeMap:
