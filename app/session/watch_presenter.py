@@ -52,8 +52,8 @@ class WatchPresenter:
             return
         self._player.rate = 0.0
         spec = state.map_spec()
-        has_several_rates = spec.common_energy is None or spec.plane.parameter is not None
-        if not has_several_rates and is_ready_for_maps(state.potential):
+        has_one_rate = spec.common_energy is not None and spec.plane.parameter is None
+        if has_one_rate and is_ready_for_maps(state.potential):
             self._flux.submit(Job(compute_flux, (spec.potential, spec.common_energy)))
 
     def _follow(self) -> None:
