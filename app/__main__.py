@@ -1,4 +1,4 @@
-"""Program ``python -m app``: it runs `panel serve` for this folder, with the timeouts of a public server and the same options."""
+"""Program ``python -m app``: `panel serve` for this folder, with its options, and with the timeouts of a public server."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from app.runtime.settings import read_settings
 from app.server.lifecycle.start_checks import INVALID_SETTING
 
 SESSION_SECONDS = 60
-"""Lifetime of a session without a connection; a broken connection can be resumed within it."""
+"""Lifetime of a session without a connection, in which a broken connection can be resumed."""
 
 KEEP_ALIVE_SECONDS = 20
-"""Interval between pings on an idle connection; it must be shorter than the timeout of any proxy."""
+"""Interval between pings on an idle connection; shorter than the timeout of any proxy."""
 
 
 def serve(options: Sequence[str]) -> None:
     """Serve the page until Ctrl-C or SIGTERM; an invalid setting ends the process with one sentence."""
-    # The hooks of the page would report an invalid setting only after Panel is imported, which takes seconds.
+    # `app_hooks` would report an invalid setting only after the import of Panel, which takes seconds.
     try:
         read_settings(os.environ)
     except ValueError as error:
@@ -27,7 +27,7 @@ def serve(options: Sequence[str]) -> None:
         sys.exit(INVALID_SETTING)
     from panel.command import main
 
-    # Panel reads the arguments of the process.
+    # Panel reads its command line from the arguments of the process.
     sys.argv = ["panel", *serve_arguments(), *options]
     main()
 

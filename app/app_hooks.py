@@ -1,7 +1,7 @@
 """Hooks that Bokeh calls when the server starts and stops, and for every session and request.
 
-Bokeh runs this file, more than once, before it builds its web application; it then checks the command line, extends the URL
-patterns and chooses the class of the HTTP server.
+Bokeh runs this file, more than once, before it builds its web application. The file itself checks the command line, extends the
+URL patterns and chooses the class of the HTTP server.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from app.state.system_review import review_catalogue_entry
 from engine import CASES
 from engine.integrator.jit.disk_cache import compile_in
 
-# This runs before any process is forked. While this file runs, `sys.argv` contains the arguments of the application only.
+# No process is forked yet. While Bokeh runs this file, `sys.argv` contains only the arguments of the application.
 if asks_for_several_processes(sys.orig_argv):
     refuse_to_start(SEVERAL_PROCESSES)
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
@@ -51,7 +51,7 @@ def on_server_loaded(server_context: Any) -> None:
     state.sessions = lambda: context.sessions
     state.metrics.registry.register(StateCollector(state))
     set_up_logs(state.settings.log, LogRecordCounter(state.metrics), [logging.getLogger(), logging.getLogger("panel")])
-    # A test validates the page; at run time Bokeh would warn about every closed section.
+    # Tests validate the page. At run time Bokeh would warn about every closed section.
     bokeh_settings.perform_document_validation = False
     if state.settings.bokeh_patches:
         batch_patches()
@@ -64,7 +64,7 @@ def on_server_loaded(server_context: Any) -> None:
     threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
     compile_in(state.compiler)
     start_warmup(state)
-    # The page is imported and the cases of the paper are reviewed before the first request, which would have to wait for both.
+    # The first request would have to wait for this import and for the reviews of the cases.
     import_module("app.session.page")
     for case in CASES:
         review_catalogue_entry(case)
@@ -76,9 +76,9 @@ def on_server_unloaded(server_context: Any) -> None:
 
 
 def on_session_created(session_context: Any) -> None:
-    """Count a session that begins, and build its page.
+    """Count a new session, and build its page.
 
-    Bokeh calls this on a thread, so that the event loop serves other pages meanwhile; `main.py` would run on the loop.
+    Bokeh calls this on a thread, so the event loop can serve other pages; `main.py` would run on the loop.
     """
     process_state().metrics.sessions_created.inc()
     loop = session_context.server_context.application_context.io_loop.asyncio_loop
@@ -86,12 +86,12 @@ def on_session_created(session_context: Any) -> None:
 
 
 def on_session_destroyed(session_context: Any) -> None:
-    """Count a session that ends."""
+    """Count the end of a session."""
     process_state().metrics.sessions_destroyed.inc()
 
 
 def process_request(request: Any) -> dict[str, Any]:
-    """Refuse the request when the server is full or stopping; the session's token gets no further entries."""
+    """Refuse a request that may not create a session; add no entries to the token of the session."""
     admit(request)
     return {}
 
@@ -105,7 +105,7 @@ def _start_state() -> ProcessState:
 
 
 def _measure_load(state: ProcessState, watch: LoopWatch) -> None:
-    # The last line in the log of a server that stops says that it stops.
+    # The log of a stopping server ends with the line that it stops.
     if not state.stopping.is_set():
         watch.tick()
     state.adapt_to_load()

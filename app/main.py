@@ -1,4 +1,4 @@
-"""The page that `panel serve app` serves; `app_hooks` has built it when Bokeh runs this file for a session."""
+"""The file that `panel serve app` runs for each session, whose page `app_hooks` has built before."""
 
 import panel as pn
 

@@ -1,4 +1,4 @@
-"""A system as data for the engine in the browser."""
+"""Systems as data for the engine in the browser."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine import Execution, Plane, Potential, Slice
 from engine.slices.default_window import default_window
 from engine.slices.portable_system import PortableSystem, make_portable_system
 
-# Energies at which default windows are tabulated: below the escape energy, where windows change slowly, and above it.
+# Numbers of energies with a tabulated window: below the escape energy, where windows change slowly, and above it.
 _ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13
 
 
@@ -23,11 +23,11 @@ class BrowserSystem:
     Attributes
     ----------
     key
-        Key that is different for each system.
+        Text that is different for each system.
     portable
-        Data from which the browser integrates the system's orbits.
+        Data from which the browser integrates orbits of the system.
     windows
-        {key of a plane: {"energies": […], "windows": [[x_low, x_high, ordinate_low, ordinate_high], …]}}, the default windows.
+        Default windows, {key of a plane: {"energies": […], "windows": [[x_low, x_high, ordinate_low, ordinate_high], …]}}.
     """
 
     key: str
@@ -45,20 +45,20 @@ class BrowserSystem:
 
 
 def system_key(potential: Potential) -> str:
-    """A text that is different for each potential."""
+    """Return a text that is different for each potential."""
     contents = potential.form, potential.rotation, potential.ends
     return hashlib.sha256(repr(contents).encode()).hexdigest()[:16]
 
 
 def make_browser_system(potential: Potential, low: float, high: float, *, execution: Execution) -> BrowserSystem:
-    """Compile the module, and tabulate exits and windows for energies between `low` and `high`."""
+    """Compile the module of a system, and tabulate its exits and windows for energies from `low` to `high`."""
     planes = [plane for plane in Plane if plane.energy_axis is None]
     windows = {plane.key: _tabulate_windows(potential, plane, (low, high), execution) for plane in planes}
     return BrowserSystem(system_key(potential), make_portable_system(potential, high), windows)
 
 
 def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, float], execution: Execution) -> dict[str, Any]:
-    """Return default windows from the lowest to the highest energy that has one."""
+    """Return default windows from the lowest to the highest energy with a window."""
     windows: dict[float, list[float]] = {}
     for energy in _energies(potential, *ends).tolist():
         execution.raise_if_cancelled()
@@ -73,8 +73,9 @@ def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, flo
 
 
 def _energies(potential: Potential, low: float, high: float) -> np.ndarray:
-    """Return energies at which windows are tabulated, rising; with an escape radius there is no escape energy."""
+    """Return the energies at which windows are tabulated, in ascending order."""
     if potential.escape_radius is not None:
+        # There is no escape energy.
         return np.linspace(low, high, _ENERGIES_BELOW + _ENERGIES_ABOVE)
     escape = min(max(potential.escape_energy, low), high)
     below = np.linspace(low, escape, _ENERGIES_BELOW)

@@ -1,8 +1,8 @@
 // @ts-check
-/** Loads the modules, which the server serves as files, when the page is idle after the first pixels. */
+/** Loads the modules of the engine, which the server serves as files, when the page is idle after the first pixels. */
 
 /** Longest wait for an idle page, in ms. */
-const PATIENCE = 2000
+const LONGEST_WAIT_MS = 2000
 
 /** @param {{model: any, el: HTMLElement}} component */
 export function render({model, el}) {
@@ -15,7 +15,7 @@ export function render({model, el}) {
   const begin = () => {
     if (loading || !model.system.key) return
     loading = true
-    rest(load, {timeout: PATIENCE})
+    rest(load, {timeout: LONGEST_WAIT_MS})
   }
   model.on("system", begin)
   begin()

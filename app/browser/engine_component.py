@@ -1,4 +1,4 @@
-"""The engine in the visitor's browser: it shows previews while the energy or the window moves, and the orbit under the cursor."""
+"""The engine in the visitor's browser, which shows previews while energy or window moves, and the orbit under the cursor."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from app.browser.module_files import ADDRESS
 
 
 class EngineComponent(JSComponent):
-    """The browser's part. It sends {energy} when the animation of the energy has ended, and {playing}."""
+    """Runs the engine in the browser, and sends {energy} when an animation of the energy has ended."""
 
-    address = param.String(doc="of the first module")
+    address = param.String(doc="address of the first module")
     system = param.Dict(default={}, doc="see `BrowserSystem.to_dict`")
     view = param.Dict(default={}, doc="see `BrowserEngine.show_view`")
     command = param.Dict(default={}, doc="name: play or stop; energy, low, high; number that makes repeats differ")
@@ -32,10 +32,10 @@ class BrowserEngine(param.Parameterized):
     Parameters
     ----------
     on_energy
-        Called with the energy at which the animation of the energy ends.
+        Takes the energy at which an animation ends.
     """
 
-    playing = param.Boolean(default=False, doc="whether the energy is being played")
+    playing = param.Boolean(default=False, doc="whether an animation of the energy is running")
 
     def __init__(self, on_energy: Callable[[float], None]) -> None:
         super().__init__()
@@ -46,11 +46,11 @@ class BrowserEngine(param.Parameterized):
         self._component.on_msg(lambda event: self._receive(event.data))
 
     def layout(self) -> EngineComponent:
-        """An invisible component that must be on the page."""
+        """Return an invisible component that must be on the page."""
         return self._component
 
     def show_system(self, system: BrowserSystem) -> None:
-        """Send a system that the page shows or is about to show."""
+        """Send the system that the page shows or is about to show."""
         self._component.system = system.to_dict()
 
     def show_view(self, view: dict[str, Any]) -> None:
@@ -58,17 +58,17 @@ class BrowserEngine(param.Parameterized):
         self._component.view = view
 
     def play(self, energy: float, low: float, high: float) -> None:
-        """Raise the energy to `high`."""
+        """Animate the energy from `energy` up to `high`, or from `low` at the end of the range."""
         self.playing = True
         self._component.command = {"name": "play", "energy": energy, "low": low, "high": high, "number": next(self._numbers)}
 
     def stop(self) -> None:
-        """Stop playing, at the current energy."""
+        """Stop the animation at the current energy."""
         if self.playing:
             self._component.command = {"name": "stop", "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: unexpected ones are ignored.
+        # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"energy": float() | int() as energy} if self.playing and isfinite(energy):
                 self.playing = False

@@ -1,4 +1,4 @@
-"""Reads JavaScript modules for components, and for callbacks of Bokeh, which contain only the body of a function."""
+"""Texts of JavaScript modules for components, and for callbacks of Bokeh, which are the body of a function."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ _IMPORT = re.compile(r'^import .* from "(\.\.?/.+)"\n', re.MULTILINE)
 
 
 def component_code(module: Path) -> str:
-    """Return the text of a module and of the modules that it imports, because a component has one text."""
+    """Return the text of a module with the modules that it imports, because a component has a single text."""
     source = module.read_text(encoding="utf-8")
     return "\n".join([*map(_functions, _imported(module, source)), _IMPORT.sub("", source)])
 
 
 def callback_code(module: Path, call: str) -> str:
-    """Return the functions of a module and of those that it imports, and a call of one, such as ``label(tick, base)``."""
+    """Return the functions of a module and of the modules that it imports, and a call such as ``label(tick, base)``."""
     source = module.read_text(encoding="utf-8")
     return "\n".join([*map(_functions, [*_imported(module, source), source]), f"return {call}"])
 

@@ -1,6 +1,6 @@
-"""The modules of the engine in the browser, and the kernels, as files.
+"""The files of the engine in the browser: its modules and the kernels.
 
-Their address contains a hash of everything on which they depend, so that browsers can keep them.
+Their addresses contain a hash of everything on which the files depend, so browsers can keep them.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ from tornado.web import RequestHandler, StaticFileHandler
 from engine.integrator.portable_kernels import kernel_module, module_digest
 
 MODULES = Path(__file__).parent / "modules"
+"""Folder of the modules."""
 
 NUMBERS = MODULES / "numbers.js"
-"""The functions that write numbers, also for callbacks of Bokeh and for components."""
+"""Module that writes numbers, which callbacks of Bokeh and components also use."""
 
 
 def _digest() -> str:
@@ -34,28 +35,26 @@ _FOLDER = f"browser/{_digest()}"
 ADDRESS = f"{_FOLDER}/main.js"
 """Address of the first module, relative to the page."""
 
-
 WATCH_ADDRESS = f"{_FOLDER}/gestures/watch.js"
-"""Address of the player of many orbits, which the page loads when the player is first shown."""
-
+"""Address of the module of many orbits, which the page loads when the player is first shown."""
 
 KERNELS_ADDRESS = f"{_FOLDER}/kernels.wasm"
-"""Address of the kernels, which is beside that of the modules."""
+"""Address of the kernels, relative to the page."""
 
 
 class ModuleHandler(StaticFileHandler):
     """Serves a module."""
 
     def get_cache_time(self, path: str, modified: Any, mime_type: str) -> int:
-        """Return ten years, because the address changes with the content."""
+        """Return ten years in seconds: the address changes with the content."""
         return self.CACHE_MAX_AGE
 
 
 class KernelsHandler(RequestHandler):
-    """Serves the kernels, which are built at the first start of a version."""
+    """Serves the kernels, which the first start of a version builds."""
 
     async def get(self) -> None:
-        """Answer with the module, compressed if the browser accepts that."""
+        """Answer with the kernels, compressed if the browser accepts gzip."""
         module = await IOLoop.current().run_in_executor(None, kernel_module)
         self.set_header("Content-Type", "application/wasm")
         self.set_header("Cache-Control", f"public, max-age={StaticFileHandler.CACHE_MAX_AGE}")
@@ -70,4 +69,4 @@ ROUTES: tuple[tuple[str, type[RequestHandler], dict[str, Any]], ...] = (
     (rf"/{_FOLDER}/((?:[a-z]+/)?[a-z_]+\.js)", ModuleHandler, {"path": str(MODULES)}),
     (f"/{KERNELS_ADDRESS}", KernelsHandler, {}),
 )
-"""Paths, handlers and arguments."""
+"""Paths below the server's prefix, with their handlers and the arguments of these."""

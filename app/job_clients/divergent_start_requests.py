@@ -1,4 +1,4 @@
-"""Search for the nearest divergent start of an orbit: the nearest start that escapes elsewhere."""
+"""Search for the divergent start of an orbit: the nearest start that escapes elsewhere."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from engine.results import DivergentStart
 
 
 class DivergentStartRequests:
-    """Search of one session; the start that is found is added to the view state, and `notify(sentence)` reports progress."""
+    """Searches for divergent starts and adds them to the view state; `notify(sentence)` reports progress."""
 
     def __init__(self, state: ViewState, jobs: JobSubmitter, notify: Callable[[str], None], locked: Locked) -> None:
         self._state, self._notify = state, notify
-        self._searched: Start | None = None
+        self._origin: Start | None = None
         self._request = LatestRequest(jobs, self._on_result, notify, locked)
-        # A start is compared only with others of the same system, plane, energy and t_max.
+        # A search holds for one system, plane, energy and t_max.
         state.param.watch(lambda *events: self._request.cancel(), ["system", "plane", "energy", "t_max"])
 
     def search(self) -> None:
-        """Search around the chosen start."""
+        """Search for the divergent start of the chosen start."""
         self._request.cancel()
         state, start = self._state, self._state.chosen_start
         if start is None:
             self._notify("Click a start first. The nearest start that escapes elsewhere is then searched for.")
             return
         self._notify("Searching for the nearest start that escapes elsewhere …")
-        self._searched = start
+        self._origin = start
         arguments = (state.potential, state.plane, state.energy, *start, state.t_max)
         self._request.submit(Job(find_divergent_start, arguments))
 
@@ -41,7 +41,7 @@ class DivergentStartRequests:
         self._request.cancel()
 
     def _on_result(self, found: DivergentStart | None) -> None:
-        if self._searched is None or self._state.chosen_start != self._searched:
+        if self._origin is None or self._state.chosen_start != self._origin:
             return
         if found is None:
             self._notify("No start near this one escapes elsewhere.")

@@ -1,4 +1,4 @@
-"""Error messages for the page; details go to the log."""
+"""Error messages for the page. The log gets the details."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from engine.foundations.wording import format_number
 
 log = logging.getLogger(__name__)
 
-# What the library says of an energy, for whose parameter the page says h, and what a visitor needs to know.
-_OF_ENERGY = {
+# Beginnings of the library's messages about an energy, which the page calls h, and the text for visitors; "" matches any other.
+_ENERGY_PROBLEMS = {
     "the interior is empty on": "no orbit of this energy starts on this slice, as the well lies higher.",
     "no Lyapunov orbit was found": "there is no neck to leave through; choose another energy.",
     "": r"\g<rest>",
@@ -18,10 +18,11 @@ _OF_ENERGY = {
 _ENERGY = re.compile(r"\benergy=(?P<energy>-?[\d.]+(?:e[+-]?\d+)?): (?P<rest>.*)", re.DOTALL)
 
 ZOOM_ENDS = "Double precision ends here: pixels cannot be closer together."
+"""Message for a zoom beyond the smallest window."""
 
 
 def sentence(error: Exception) -> str:
-    """Return the message of a ValueError, which is meant for users; other errors are logged, and the message names the log."""
+    """Return the message of a `ValueError`, which is meant for users; log another error, and refer to the log."""
     if isinstance(error, ValueError):
         return _ENERGY.sub(_explain, str(error))
     log.error("a job failed", exc_info=error)
@@ -29,5 +30,5 @@ def sentence(error: Exception) -> str:
 
 
 def _explain(found: re.Match[str]) -> str:
-    explained = next(words for start, words in _OF_ENERGY.items() if found["rest"].startswith(start))
+    explained = next(words for start, words in _ENERGY_PROBLEMS.items() if found["rest"].startswith(start))
     return f"h = {format_number(float(found['energy']), 6)}: {found.expand(explained)}"

@@ -1,4 +1,4 @@
-"""Follow-up analyses, which are requested for each complete map while the view state asks for them."""
+"""Requests for follow-up analyses of each complete map, while the view state asks for them."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from engine.jobs.job import Job
 
 @dataclass(frozen=True, eq=False)
 class FollowUp:
-    """One follow-up analysis.
+    """A follow-up analysis.
 
     Attributes
     ----------
     job
         Returns the job for a complete map; None if the analysis is not wanted.
     show
-        Called with the map and each result, partial results included.
+        Shows a result, perhaps a partial one, of the map.
     watched
         Attributes of the view state that the job depends on.
     """
@@ -34,7 +34,7 @@ class FollowUp:
 
 
 class FollowUpRequests:
-    """Follow-up analyses of one session; `fail(sentence)` reports errors. Like `show`, it is called under the session's lock."""
+    """Requests the follow-up analyses of one session. `show` and `fail(sentence)` are called under the session's lock."""
 
     def __init__(
         self, state: ViewState, jobs: JobSubmitter, follow_ups: Sequence[FollowUp], fail: Callable[[str], None], locked: Locked
@@ -60,6 +60,6 @@ class FollowUpRequests:
             request.submit(job)
 
     def _show(self, follow_up: FollowUp, result: Any) -> None:
-        # The requests are cancelled together with their map.
+        # `follow(None)` cancels all requests, so no result arrives without a map.
         assert self._frame is not None
         follow_up.show(self._frame, result)

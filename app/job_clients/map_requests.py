@@ -1,4 +1,4 @@
-"""Requests for the map of the view state; the frames are passed to a listener."""
+"""Requests for the map of the view state, whose frames go to a listener."""
 
 from __future__ import annotations
 
@@ -25,35 +25,35 @@ class MapListener(Protocol):
     """Receives the progress of a map."""
 
     def map_requested(self, *, compiling: bool = False) -> None:
-        """A map was requested. `compiling` says whether its integrator must be compiled first."""
+        """Take note of a request. `compiling` says whether the integrator of the map must be compiled first."""
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        """A frame has arrived; the last frame is complete."""
+        """Show a frame; the last frame is complete."""
 
     def map_stopped(self) -> None:
-        """The user has cancelled the map."""
+        """Show that the user has cancelled the map."""
 
     def map_failed(self, sentence: str) -> None:
-        """The map has failed for the reason given."""
+        """Show why the map has failed."""
 
 
 class MapRequests:
-    """Map requests of one session.
+    """Requests the maps of one session, one at a time.
 
     Parameters
     ----------
     state
-        View state; changes request a new map.
+        View state. A change of what the map shows requests a new map.
     jobs
-        Accepts the requests.
+        Computes the maps.
     listener
         Receives frames and errors, under the session's lock.
     locked
-        Runs callbacks under the session's lock; of several waiting calls it may run the latest only.
+        Wraps callbacks to run under the session's lock; it may run only the latest of several waiting calls.
     is_crowded
-        Whether the server is crowded. If so, frames between the first and the last are skipped.
+        Whether the server is crowded. It then skips the frames between the first and the last.
     prepare
-        Called with the map of a frame before it is delivered, on the thread of the job; it computes what the listener needs.
+        Computes what the listener needs for a map, on the thread of the job, before a frame of the map is delivered.
     """
 
     def __init__(
@@ -67,14 +67,14 @@ class MapRequests:
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._subscription: Subscription | None = None
-        self._is_whole = False
-        # Each request has a generation; results of earlier generations are dropped.
+        self._has_complete_map = False
+        # Each request begins a generation; results of earlier generations are dropped.
         self._generation = 0
         self._generation_lock = threading.RLock()
-        # The latest generation of which a frame has been delivered.
-        self._delivered = -1
-        # The map that was delivered last, and its columns.
-        self._painted: tuple[MapSpec, dict[str, list[Any]]] | None = None
+        # The latest generation that has delivered a frame.
+        self._generation_with_frame = -1
+        # The map of the last delivered frame, and its image columns.
+        self._delivered_columns: tuple[MapSpec, dict[str, list[Any]]] | None = None
         self._is_crowded, self._prepare = is_crowded, prepare
         self._continue = locked(self._on_compiled)
         self._show_members = locked(self._on_members)
@@ -83,7 +83,7 @@ class MapRequests:
         state.param.watch(lambda *events: self.request_map(), ["system", "plane", "energy", "t_max", "resolution", "window"])
 
     def request_map(self) -> None:
-        """Request the map of the view state and cancel the session's earlier map."""
+        """Cancel the current map, and request the map of the view state."""
         self.cancel_map()
         generation = self._start_generation()
         potential, spec = self._state.potential, self._state.map_spec()
@@ -101,7 +101,7 @@ class MapRequests:
             self._request_compiled(generation, spec)
 
     def _request_compiled(self, generation: int, spec: MapSpec) -> None:
-        """Request the frames; along a parameter of a typed formula, first request the potentials, which take time to review."""
+        """Request the frames. Along a parameter of a typed formula, first request the potentials, whose review takes time."""
         members = members_job(spec.plane.parameter)
         if members is None:
             self._request_frames(generation, spec)
@@ -120,22 +120,22 @@ class MapRequests:
         self._subscription = self._jobs.request(job, on_result, on_error)
 
     def _deliver_frame(self, generation: int, frame: EscapeMap) -> None:
-        """Deliver a frame. A crowded server delivers only the first and the last one; an energy without an interior has none."""
+        """Deliver a frame, or an error if the interior is empty. A crowded server skips the frames between first and last."""
         try:
-            # This is slow, and the ranges of the maps need it: the smallest window depends on it.
+            # The ranges of the maps need this window. Finding it is slow, so it is found here and cached.
             replace(frame.spec, window=None).find_window()
             self._prepare(frame.spec)
         except ValueError as error:
             self._deliver(self._show_error, generation, error)
             return
-        if self._delivered == generation and not frame.complete and self._is_crowded():
+        if self._generation_with_frame == generation and not frame.complete and self._is_crowded():
             return
         columns = map_columns(frame) | layer_columns(frame, self._state.layers)
-        if self._painted is not None and _has_same_starts(self._painted[0], frame.spec):
-            columns = draw_over(columns, self._painted[1], frame.spec.resolution)
-        self._painted = frame.spec, columns
+        if self._delivered_columns is not None and _has_same_starts(self._delivered_columns[0], frame.spec):
+            columns = draw_over(columns, self._delivered_columns[1], frame.spec.resolution)
+        self._delivered_columns = frame.spec, columns
         self._deliver(self._show_frame, generation, frame, columns)
-        self._delivered = generation
+        self._generation_with_frame = generation
 
     def _start_generation(self) -> int:
         """Invalidate the results of all earlier requests."""
@@ -144,21 +144,21 @@ class MapRequests:
             return self._generation
 
     def _deliver(self, callback: Callable[..., None], generation: int, *arguments: Any) -> None:
-        """Pass on a result of the current generation. The session keeps one call only, which a late call would replace."""
+        """Pass on a result of the current generation. An outdated call would replace the only waiting call of the session."""
         with self._generation_lock:
             if generation == self._generation:
                 callback(generation, *arguments)
 
     def cancel_map(self) -> None:
         """Cancel the map."""
-        self._is_whole = False
+        self._has_complete_map = False
         if self._subscription is not None:
             self._subscription.cancel()
             self._subscription = None
 
     def stop_map(self) -> None:
-        """Cancel the map for the user and drop late frames; a complete map is not affected."""
-        if self._is_whole:
+        """Cancel an incomplete map for the user, and drop its late frames."""
+        if self._has_complete_map:
             return
         self.cancel_map()
         self._start_generation()
@@ -172,7 +172,7 @@ class MapRequests:
     def _on_frame(self, generation: int, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         if generation == self._generation:
             self._listener.map_arrived(frame, columns)
-            self._is_whole = frame.complete
+            self._has_complete_map = frame.complete
 
     def _on_error(self, generation: int, error: Exception) -> None:
         if generation == self._generation:

@@ -1,4 +1,4 @@
-"""Orbits of the chosen starts: requests, results, and messages for starts that are refused."""
+"""Requests for the orbits of the chosen starts and for their Birkhoff digits."""
 
 from __future__ import annotations
 
@@ -22,50 +22,59 @@ from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 
 @dataclass(frozen=True)
 class ChosenOrbit:
-    """A start with its orbit, or with the reason why there is no orbit. Both are missing while the orbit is computed.
+    """A start, and what is known of its orbit.
 
-    The Birkhoff digits of bounded orbits follow later.
+    Attributes
+    ----------
+    start
+        The start.
+    curves
+        The orbit with its curves; None until they are computed, and for a start without an orbit.
+    problem
+        Why the start has no orbit; empty for other starts.
+    digits
+        Birkhoff digits of a bounded orbit, which follow later; None for other orbits.
     """
 
     start: Start
-    drawing: OrbitCurves | None = None
+    curves: OrbitCurves | None = None
     problem: str = ""
     digits: BirkhoffDigits | None = None
 
     @property
     def orbit(self) -> Orbit | None:
-        """The orbit, once it is computed."""
-        return self.drawing.orbit if self.drawing is not None else None
+        """The orbit; None until it is computed, or without an orbit."""
+        return self.curves.orbit if self.curves is not None else None
 
     @property
     def verdict(self) -> OrbitVerdict | None:
-        """The verdict on the orbit, as far as it is known."""
+        """The verdict on the orbit, preliminary until the digits are known; None without an orbit."""
         return judge_orbit(self.orbit, self.digits) if self.orbit is not None else None
 
     def headline(self) -> str:
-        """The verdict without its reasons, or the reason why there is none."""
+        """Return the verdict in a few words, the problem, or "Integrating …"."""
         return self.verdict.headline() if self.verdict is not None else self.problem or "Integrating …"
 
     def describe(self) -> str:
-        """The verdict, or the reason why there is none, in one sentence."""
+        """Return the whole verdict, the problem, or "Integrating …"."""
         return self.verdict.describe() if self.verdict is not None else self.problem or "Integrating …"
 
 
 class OrbitRequests:
-    """Orbits of one session, and the Birkhoff digits of the bounded orbits; digits need more than the history of an orbit.
+    """Requests the orbits of one session, then the Birkhoff digits of the bounded orbits, for which these are integrated again.
 
     Parameters
     ----------
     state
-        View state, which contains the starts.
+        View state with the starts.
     jobs
         Computes orbits and digits.
     show
-        Called with the orbits after each change, under the session's lock.
+        Shows the orbits after each change, under the session's lock.
     notify
-        Called with the reason why digits could not be computed.
+        Says why digits could not be computed.
     latest
-        As in `RequestedResults`.
+        Wraps a function so that only the latest of its waiting calls runs.
     """
 
     def __init__(
@@ -77,13 +86,13 @@ class OrbitRequests:
         latest: Locked,
     ) -> None:
         self._state, self._show, self._notify = state, show, notify
-        self._orbits = RequestedResults(jobs, _draw, lambda arrived: self._update(), latest)
-        self._digits = RequestedResults(jobs, _with_sentence, self._take_digits, latest)
-        self._shown: tuple[ChosenOrbit, ...] = ()
+        self._orbits = RequestedResults(jobs, _curves_or_sentence, lambda arrived: self._update(), latest)
+        self._digits = RequestedResults(jobs, _digits_or_sentence, self._take_digits, latest)
+        self._last_orbits: tuple[ChosenOrbit, ...] = ()
         state.param.watch(lambda *events: self.follow(), ["starts", "system", "plane", "energy", "t_max"])
 
     def follow(self) -> None:
-        """Request the orbits of new starts, and cancel those of removed starts."""
+        """Request the orbits of new starts, and cancel the requests of removed starts."""
         self._orbits.follow([job for job in map(self._state.orbit_job, self._state.starts) if job is not None])
         self._update()
 
@@ -99,13 +108,13 @@ class OrbitRequests:
         self._update()
 
     def _update(self) -> None:
-        """Show the orbits as far as they are known."""
+        """Request missing digits, and show what is known of the orbits."""
         bounded = [job for job, found in self._orbits.found.items() if _is_bounded(found)]
         self._digits.follow([_digits_job(job) for job in bounded])
         orbits = tuple(map(self._orbit_of, self._state.starts))
-        # Drawing unchanged orbits again would delay a map that is requested at the same time.
-        if orbits != self._shown:
-            self._shown = orbits
+        # Showing unchanged orbits again would delay a map that is requested at the same time.
+        if orbits != self._last_orbits:
+            self._last_orbits = orbits
             self._show(orbits)
 
     def _orbit_of(self, start: Start) -> ChosenOrbit:
@@ -127,10 +136,9 @@ def _digits_job(job: Job[Orbit]) -> Job[BirkhoffDigits]:
     return Job(compute_birkhoff_digits, job.arguments, queue=Queue.LONG_CALL)
 
 
-def _with_sentence(job: Job[Any], result: Any) -> Any:
-    """Return a result, or a sentence in place of an error."""
+def _digits_or_sentence(job: Job[Any], result: BirkhoffDigits | Exception) -> BirkhoffDigits | str:
     return sentence(result) if isinstance(result, Exception) else result
 
 
-def _draw(job: Job[Orbit], result: Orbit | Exception) -> OrbitCurves | str:
+def _curves_or_sentence(job: Job[Orbit], result: Orbit | Exception) -> OrbitCurves | str:
     return sentence(result) if isinstance(result, Exception) else compute_orbit_curves(job.arguments[0], result)

@@ -1,4 +1,4 @@
-"""Results of several jobs at a time: wanted results are requested, and requests that are no longer wanted are cancelled."""
+"""Results of several jobs at once. Results that are no longer wanted are dropped, and their requests cancelled."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from engine.jobs.subscription import Subscription
 
 
 class RequestedResults:
-    """Results by job, in `found`.
+    """Requests the results of wanted jobs, and keeps them by job in `found`.
 
     Parameters
     ----------
     jobs
         Computes the results.
     convert
-        Called on the thread of a result with its job and the result or error; its return value is stored in `found`.
+        Makes the value to keep from a job and its result or error, on the thread that delivers the result.
     on_arrival
-        Called with the results that have arrived, under the lock of the session.
+        Handles the values that have arrived, under the session's lock.
     latest
         Wraps a function so that only the latest of its waiting calls runs: results that arrive together are handled once.
     """
@@ -37,12 +37,12 @@ class RequestedResults:
         self._jobs, self._convert, self._on_arrival = jobs, convert, on_arrival
         self.found: dict[Job[Any], Any] = {}
         self._subscriptions: dict[Job[Any], Subscription | None] = {}
-        # Results that are not handled yet; threads append to it.
-        self._arrived: deque[tuple[Job[Any], Any]] = deque()
-        self._take_arrived = latest(self._take)
+        # Values that are not handled yet; any thread may append to this queue.
+        self._new_values: deque[tuple[Job[Any], Any]] = deque()
+        self._handle_later = latest(self._handle)
 
     def follow(self, wanted: Collection[Job[Any]]) -> None:
-        """Request the results of new jobs, and cancel those that are no longer wanted."""
+        """Request the results of new jobs, and drop jobs that are no longer wanted."""
         for job in [job for job in self._subscriptions if job not in wanted]:
             subscription = self._subscriptions.pop(job)
             if subscription is not None:
@@ -54,19 +54,19 @@ class RequestedResults:
 
     def _request(self, job: Job[Any]) -> None:
         def deliver(result: Any) -> None:
-            self._arrived.append((job, self._convert(job, result)))
-            self._take_arrived()
+            self._new_values.append((job, self._convert(job, result)))
+            self._handle_later()
 
-        # A cached result is delivered before `request` returns.
+        # A cached result is delivered before `request` returns, so the job is entered first.
         self._subscriptions[job] = None
         subscription = self._jobs.request(job, deliver, deliver)
         if job in self._subscriptions:
             self._subscriptions[job] = subscription
 
-    def _take(self) -> None:
+    def _handle(self) -> None:
         arrived: dict[Job[Any], Any] = {}
-        while self._arrived:
-            job, result = self._arrived.popleft()
+        while self._new_values:
+            job, result = self._new_values.popleft()
             if job in self._subscriptions:
                 del self._subscriptions[job]
                 arrived[job] = result

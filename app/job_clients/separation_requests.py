@@ -1,4 +1,4 @@
-"""Separation of the chosen orbit and the one that was chosen before it, requested once both are computed."""
+"""Request for the separation of the chosen orbit from the orbit that was chosen before, once both are computed."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from engine.results import Separation
 from plots.pictures.orbit_curves import initial_state
 
 Pair = tuple[int, int]
+"""Places of two orbits in the list of starts, in ascending order."""
 
 
 class SeparationRequests:
-    """Separation of one session. `show(pair, separation)` receives it, or None and None if there is none."""
+    """Requests the separation for one session. `show(pair, separation)` receives it, or None twice without a pair of orbits."""
 
     def __init__(
         self,
@@ -28,16 +29,16 @@ class SeparationRequests:
         locked: Locked,
     ) -> None:
         self._state, self._show = state, show
-        self._compared: Pair | None = None
-        # The place of the orbit that was chosen before; the list may have become shorter since.
-        self._before = 0
-        state.param.watch(lambda event: setattr(self, "_before", event.old), "chosen")
-        self._request = LatestRequest(jobs, lambda separation: show(self._compared, separation), notify, locked)
+        self._pair: Pair | None = None
+        # Place of the orbit that was chosen before. The list may be shorter now.
+        self._place_before = 0
+        state.param.watch(lambda event: setattr(self, "_place_before", event.old), "chosen")
+        self._request = LatestRequest(jobs, lambda separation: show(self._pair, separation), notify, locked)
 
     def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Compare the chosen orbit with the one before."""
-        self._compared = self._pair(orbits)
-        job = self._job(*(orbits[place].orbit for place in self._compared)) if self._compared is not None else None
+        """Request the separation of the chosen orbit from the orbit chosen before, or else from a neighbour in the list."""
+        self._pair = self._find_pair(orbits)
+        job = self._job(*(orbits[place].orbit for place in self._pair)) if self._pair is not None else None
         if job is not None:
             self._request.submit(job)
         else:
@@ -48,10 +49,10 @@ class SeparationRequests:
         """Cancel the request."""
         self._request.cancel()
 
-    def _pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
-        """Return the places of both orbits in ascending order; None unless both are computed."""
+    def _find_pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
+        """Return the pair to compare; None unless both orbits are computed."""
         chosen = self._state.chosen
-        others = [place for place in (self._before, chosen - 1, chosen + 1) if place != chosen and 0 <= place < len(orbits)]
+        others = [place for place in (self._place_before, chosen - 1, chosen + 1) if place != chosen and 0 <= place < len(orbits)]
         if not others or chosen >= len(orbits):
             return None
         pair = min(chosen, others[0]), max(chosen, others[0])

@@ -1,4 +1,4 @@
-"""The results that the page shows; statistics, tables, files and figures use them."""
+"""The results that the page shows, for its statistics, tables, files and figures."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from plots.layers.map_analyses import NO_ANALYSES
 
 
 class ShownResults(param.Parameterized):
-    """The results for the view of one session; None or empty for results that are not computed."""
+    """The results for the view of one session. Each is None or empty until it is computed."""
 
-    frame = param.Parameter(default=None, doc="the `engine.EscapeMap` in view, finished or not; None before its first frame")
+    frame = param.Parameter(default=None, doc="the `engine.EscapeMap` in view, complete or not; None before its first frame")
     analyses = param.Parameter(default=NO_ANALYSES, doc="the `MapAnalyses` of the map")
     orbits = param.Parameter(default=(), doc="a `ChosenOrbit` for each start")
     curves = param.Parameter(default=None, doc="the `engine.Sweep` of the curves against energy or a parameter")

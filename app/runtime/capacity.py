@@ -1,7 +1,7 @@
-"""The number of pages for which the processors suffice. This one rule postpones work and refuses new pages.
+"""The number of pages for which the processors suffice, by which work is postponed and new pages are refused.
 
-From its opening on, a page reserves the processor time that an active visitor uses, so that a server does not fill up while its
-visitors are still reading. Two values are measured: the processor time that other programs leave, and the use of the event loop.
+Each open page reserves the processor time that an active visitor uses: otherwise a server would fill up while its visitors are
+still reading. Two values are measured: the processor time that other programs leave, and the use of the event loop.
 """
 
 from __future__ import annotations
@@ -19,38 +19,40 @@ from app.runtime.fair_share import FairShare
 from engine.foundations.execution import count_cores
 
 FULL = 0.85
-"""Largest share of the processors, and of the event loop, for all pages together. Above it, new pages are refused."""
+"""Largest share of the processors, and of the event loop's time, for all pages together. Above it, new pages are refused."""
 
 CROWDED = 0.5
-"""Above this share, work that can wait is postponed, so that visitors of open pages do not wait for it."""
+"""Share above which work that can wait is postponed for the visitors of open pages."""
 
 OF_ONE_VISITOR = 0.5
-"""Largest part of the capacity that the pages of one visitor take from other visitors."""
+"""Largest share of the capacity that the pages of one visitor take from other visitors."""
 
-MOST_CORES, LEAST_CORES = 1.0, 0.2
-"""Processors that a process uses: at most one, because its threads share the interpreter lock, and at least the
-part that the system gives it when other programs keep all processors busy."""
+MOST_CORES = 1.0
+"""Most processors that a process uses, because its threads share the interpreter lock."""
+
+LEAST_CORES = 0.2
+"""Fewest processors of a process: the part that the system gives it when other programs keep all processors busy."""
 
 LEAST_SPARE = 0.1
-"""With fewer spare processors, other programs may use less than they want, because this one leaves no more."""
+"""Number of spare processors below which other programs may get less than they need, because this program uses the rest."""
 
 WINDOW_SECONDS = 20
-"""The use of the processors is averaged over this time."""
+"""Time over which the use of the processors is averaged."""
 
 ACTING_SECONDS = 300.0
-"""A page counts in full for this time after the visitor's last action."""
+"""Time for which a page counts in full after the visitor's last action."""
 
 IDLE_WEIGHT = 0.1
-"""The fraction of a page that an idle page counts as."""
+"""An idle page counts as this fraction of a page."""
 
 CONNECTION_SECONDS = 15.0
-"""A page without a connection counts for this time after its last action, because it may be opening or reconnecting."""
+"""Time for which a page without a connection counts after its last action, because it may be opening or reconnecting."""
 
 
 class ProcessorTimes(NamedTuple):
-    """Processor times so far, in seconds, at a time of a monotonic clock.
+    """Processor times since a fixed moment, in seconds.
 
-    Programs of low priority are left out because they give way; the computations of this program also have low priority.
+    Programs of low priority, such as the computations of this program, are left out because they give way.
     """
 
     now: float
@@ -59,11 +61,11 @@ class ProcessorTimes(NamedTuple):
     own: float
     """Time of this process, and of the processes that compute for it."""
     loop: float
-    """Time of its event loop."""
+    """Time of the event loop of this process."""
 
 
 class _Use(NamedTuple):
-    """What was used between two measurements: its duration, and the processors of other programs and of the event loop."""
+    """Processors that other programs and the event loop used between two measurements, which are `seconds` apart."""
 
     seconds: float
     others: float
@@ -71,18 +73,18 @@ class _Use(NamedTuple):
 
 
 class Capacity:
-    """Measures the free processor time, and decides whether there is capacity for more.
+    """Measures the free processor time, and decides whether there is capacity for another page.
 
     Parameters
     ----------
     cores_per_page
         Processors that an active visitor uses.
     processes
-        Number of server processes that share the processors; the others are assumed to be as busy as this one.
+        Number of server processes that share the processors; all are assumed to be equally busy.
     measure
-        Returns the present times; called on the thread of the event loop.
+        Returns the present processor times; called on the thread of the event loop.
     clock
-        Monotonic clock in seconds.
+        Monotonic clock, in seconds.
     cores
         Number of processors.
 
@@ -108,7 +110,7 @@ class Capacity:
         self.cores, self.loop = self._share_of(0.0), 0.0
 
     def update(self) -> bool:
-        """Measure if the last measurement was at least a second ago; return whether this was the case."""
+        """Measure unless the last measurement is less than a second old; return whether a measurement was made."""
         if self._clock() < self._times.now + 1.0:
             return False
         before, self._times = self._times, self._measure()
@@ -125,13 +127,13 @@ class Capacity:
         return self.taken(pages) > CROWDED
 
     def has_room(self, pages: Mapping[str, float], visitor: str = "") -> bool:
-        """Whether a further page of a visitor is admitted, given the number of pages by visitor."""
+        """Whether another page of a visitor is admitted, given the number of pages by visitor."""
         most = OF_ONE_VISITOR * FULL * self.cores / self._cores_per_page
         counted = {other: count if other == visitor else min(count, most) for other, count in pages.items()}
         return self.taken(counted | {visitor: counted.get(visitor, 0.0) + 1.0}) <= FULL
 
     def taken(self, pages: Mapping[str, float]) -> float:
-        """Share of the processors that this number of pages may use, or the busy share of the event loop if that is larger."""
+        """Return the share of the processors that the pages may use, or the busy share of the event loop if it is larger."""
         return max(self._cores_per_page * sum(pages.values()) / self.cores, self.loop)
 
     def _mean_others(self) -> float:
@@ -145,7 +147,7 @@ class Capacity:
 
 
 def count_page(share: FairShare, *, connected: bool) -> float:
-    """The fraction of a page that counts: less for an idle page, 0 for a page that was left."""
+    """Return the fraction of a page that counts: less than 1 for an idle page, 0 for a page that has been left."""
     idle = share.idle_seconds()
     if not connected:
         return float(idle < CONNECTION_SECONDS)
@@ -153,14 +155,14 @@ def count_page(share: FairShare, *, connected: bool) -> float:
 
 
 def processor_times(low: float, elsewhere: float) -> ProcessorTimes:
-    """Return the present times.
+    """Return the present processor times.
 
     Parameters
     ----------
     low
         Processor time that this process has used with low priority, in seconds.
     elsewhere
-        Processor time that other processes have used for this one, in seconds.
+        Processor time that helper processes have used for this process, in seconds.
     """
     usable = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
     processors = [each for number, each in enumerate(psutil.cpu_times(percpu=True)) if usable is None or number in usable]
@@ -173,5 +175,5 @@ def processor_times(low: float, elsewhere: float) -> ProcessorTimes:
 
 
 def _urgent(times: Any) -> float:
-    """Processor time of programs of normal priority, and of other machines on the same processor."""
+    """Return the processor time of programs of normal priority, and of other virtual machines on the same processor."""
     return sum(getattr(times, name, 0.0) for name in ("user", "system", "irq", "softirq", "steal"))

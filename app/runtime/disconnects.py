@@ -1,4 +1,4 @@
-"""Cancels the jobs of a page soon after its last connection is closed, long before its session expires."""
+"""Callbacks for pages that lose their last connection, which cancel jobs long before the session expires."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _callbacks: WeakKeyDictionary[Any, Callable[[], None]] = WeakKeyDictionary()
 
 
 def on_disconnect(document: Any, callback: Callable[[], None]) -> None:
-    """Register a callback for the close of the last connection to a document; it is called at most once."""
+    """Register a callback that is called once, after the last connection of a document is closed."""
     _callbacks[document] = callback
 
 
@@ -22,15 +22,15 @@ class DisconnectMonitor:
 
     def __init__(self, sessions: Callable[[], Iterable[Any]]) -> None:
         self._sessions = sessions
-        # A new session has no connection yet.
-        self._connected: WeakSet[Any] = WeakSet()
+        # Sessions that have had a connection; a new session has none yet.
+        self._once_connected: WeakSet[Any] = WeakSet()
 
     def check(self) -> None:
         """Call the callbacks of documents that have lost their last connection."""
         for session in list(self._sessions()):
             if session.connection_count:
-                self._connected.add(session)
-            elif session in self._connected:
+                self._once_connected.add(session)
+            elif session in self._once_connected:
                 callback = _callbacks.pop(session.document, None)
                 if callback is not None:
                     callback()

@@ -1,6 +1,6 @@
-"""The share of the event loop's time that one page may use. Above it, the page's messages wait.
+"""The share of the event loop's time that a page may use. The messages of a page that uses more must wait.
 
-One thread serves all pages of a process, so a page that keeps the thread busy delays all others.
+One thread serves all pages of a process, so a page that keeps the thread busy delays all other pages.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from functools import partial
 from typing import Any
 
 SHARE = 0.5
-"""Largest share of the thread's time that a page uses in the long run; drags with 30 messages per second use 0.2."""
+"""Largest share of the thread's time that a page uses in the long run. A drag with 30 messages per second uses 0.2."""
 
 BURST_SECONDS = 3.0
-"""Time that a page may use at once after a pause, and limit of the time that it can be in arrears."""
+"""Time that a page may use at once after a pause, and most time that it can owe."""
 
 
 class FairShare:
@@ -24,37 +24,37 @@ class FairShare:
     Parameters
     ----------
     clock
-        Seconds of a monotonic clock.
+        Monotonic clock, in seconds.
     busy_clock
-        Processor time of the event loop's thread. Time in which the thread waits for the interpreter lock, for example during a
-        compilation, does not count.
+        Processor time of the event loop's thread, in seconds. Waiting for the interpreter lock, for example during a compilation,
+        does not count.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic, busy_clock: Callable[[], float] = time.thread_time) -> None:
         self._clock, self._busy_clock = clock, busy_clock
-        self._left, self._last = BURST_SECONDS, clock()
-        self._acted = self._last
+        self._balance, self._last_take = BURST_SECONDS, clock()
+        self._last_use = self._last_take
 
     def take(self, seconds: float) -> None:
-        """Count processor time of the event loop."""
+        """Count processor time that the page used on the event loop."""
         now = self._clock()
-        left = min(self._left + SHARE * (now - self._last), BURST_SECONDS) - seconds
-        self._left, self._last = max(left, -BURST_SECONDS), now
+        balance = min(self._balance + SHARE * (now - self._last_take), BURST_SECONDS) - seconds
+        self._balance, self._last_take = max(balance, -BURST_SECONDS), now
         if seconds:
-            self._acted = now
+            self._last_use = now
 
     def idle_seconds(self) -> float:
-        """Time since the page last used the event loop, or since it was opened."""
-        return self._clock() - self._acted
+        """Return the time since the page last used the event loop, or since it was opened."""
+        return self._clock() - self._last_use
 
     def wait_seconds(self) -> float:
-        """Time until the next message may be handled; 0 within the share."""
+        """Return the time until the next message may be handled; 0 within the share."""
         self.take(0.0)
-        return max(0.0, -self._left / SHARE)
+        return max(0.0, -self._balance / SHARE)
 
     @types.coroutine
     def count[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
-        """Await a coroutine and count the processor time of its steps, without that of other code that runs while it waits."""
+        """Await a coroutine and count the processor time of its own steps, but not of code that runs while it waits."""
         step: Callable[[], Any] = partial(coroutine.send, None)
         while True:
             begin = self._busy_clock()

@@ -22,7 +22,7 @@ def resident_bytes() -> int:
 
 
 def not_ready_reason(state: ProcessState) -> str | None:
-    """Return a sentence that says why a load balancer should send no more visitors; None when the server is ready."""
+    """Return a sentence that says why the server is not ready for more visitors; None if it is."""
     if state.stopping.is_set():
         return "The server is stopping."
     if state.kernels_failed.is_set():
@@ -39,16 +39,16 @@ def not_ready_reason(state: ProcessState) -> str | None:
 
 
 def refusal_reason(state: ProcessState, network: str) -> str | None:
-    """Return a sentence that says why no session can be created; None when one can.
+    """Return a sentence that says why no session can be created; None if a session can.
 
-    This is weaker than readiness: while the integrators are compiled, sessions are created and wait on the page.
+    This is weaker than readiness: while the integrators are compiled, sessions are created, and their pages wait.
 
     Parameters
     ----------
     state
         The state of the process.
     network
-        The network that asks for the session, as in `ProcessState.sockets`.
+        The network of the visitor, see `app.runtime.visitors.network_of`.
     """
     if state.stopping.is_set():
         return "The server is stopping."
@@ -65,22 +65,22 @@ def _full_reason(state: ProcessState, network: str = "") -> str | None:
 
 
 def _is_alone(state: ProcessState, network: str) -> bool:
-    """Whether a visitor does not disturb others: on this machine, or with at most one page, which may be reloading."""
+    """Whether a visitor disturbs nobody: on this machine, or with the only open page, if any, which may be reloading."""
     return (network != "" and is_near(network)) or state.sockets.total() <= min(state.sockets[network], 1)
 
 
 class StateCollector(Collector):
-    """Gauges that are read when the metrics are collected."""
+    """Reads gauges from the process state whenever Prometheus collects the metrics."""
 
     def __init__(self, state: ProcessState) -> None:
         self._state = state
 
     def describe(self) -> list[Metric]:
-        """Return nothing, because the values are not needed at registration."""
+        """Return nothing: the registry then asks for no values at registration."""
         return []
 
     def collect(self) -> Iterator[Metric]:
-        """Read the process state."""
+        """Return the gauges."""
         state = self._state
         sessions = list(state.sessions())
         yield _gauge("ready", "Whether the server is ready", not_ready_reason(state) is None)

@@ -1,4 +1,4 @@
-"""Processes for formulas that visitors type: time and memory are limited, and the server continues when such a process ends."""
+"""Processes with limits of time and memory, for formulas that visitors type: the server goes on when such a process ends."""
 
 from __future__ import annotations
 
@@ -16,26 +16,30 @@ from queue import LifoQueue
 from loky import ProcessPoolExecutor
 
 SECONDS = 5
-"""Limit of the processor time of a review."""
+"""Limit of the processor time of a review, in seconds."""
 
 COMPILATION_SECONDS = 60
-"""Limit of the processor time for compiling one kernel; kernels of the largest formulas need 10 s."""
+"""Limit of the processor time for compiling one kernel. The kernels of the largest formulas need 10 s."""
 
 PROCESSES = 2
-"""Number of processes: while one is busy with the formula of one address, other addresses do not wait."""
+"""Number of processes. While one is busy with a visitor's formula, the other serves other visitors."""
 
 IDLE_SECONDS = 300
-"""A process ends after this time without a call, because it uses 100 MB."""
+"""Time without a call after which a process ends, because it uses 100 MB."""
 
 MEMORY = 2**30
 """Memory that the process may use in addition to its memory at the start, in bytes."""
 
-# Interval at which the process checks whether the server still exists, in seconds.
+# Interval at which a process checks whether the server still exists, in seconds.
 _WATCH_SECONDS = 2.0
-# On a busy machine a call takes at most this many times its processor time, once its process has begun within this time.
-_PATIENCE, _START_SECONDS = 4, 60.0
-# Interval at which a call checks whether anyone still waits for it, and the time until it ends if nobody does, in seconds.
-_POLL_SECONDS, _ABANDONED_SECONDS = 0.1, 1.0
+# Longest duration of a call on a busy machine, in units of the limit of its processor time.
+_PATIENCE = 4
+# Longest time until a process begins, in seconds.
+_START_SECONDS = 60.0
+# Interval at which a waiting call checks whether it is cancelled, in seconds.
+_POLL_SECONDS = 0.1
+# Time from its start for which even a cancelled call goes on, in seconds.
+_ABANDONED_SECONDS = 1.0
 
 
 class LimitError(ValueError):
@@ -43,14 +47,14 @@ class LimitError(ValueError):
 
 
 class LimitedProcess:
-    """A process that makes one call at a time. It starts with the first call, and again after it has ended.
+    """Makes calls in a process, one at a time. The process starts with the first call, and again after it has ended.
 
-    It ends when a call exceeds a limit, after `IDLE_SECONDS` without a call, or when the process that made it ends.
+    The process ends when a call exceeds a limit, after `IDLE_SECONDS` without a call, or with the server.
 
     Parameters
     ----------
     seconds
-        Limit of the processor time of a call, a whole number from 1.
+        Limit of the processor time of a call, in seconds; a whole number from 1.
     memory
         Memory that the process may use in addition to its memory at the start, in bytes.
 
@@ -59,7 +63,7 @@ class LimitedProcess:
     stopped
         Number of calls that exceeded a limit.
     computed
-        Processor time of the calls that have ended, in seconds.
+        Processor time of the ended calls, in seconds.
     """
 
     def __init__(self, seconds: int = SECONDS, memory: int = MEMORY) -> None:
@@ -69,21 +73,21 @@ class LimitedProcess:
         self.stopped, self.computed = 0, 0.0
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
-        """Return the result of a function; function and result are pickled.
+        """Return the result of a function. Function and result are pickled.
 
         Parameters
         ----------
         function
-            The function.
+            The function to call.
         cancel
-            Set when nobody waits for the result any more.
+            Event that is set when nobody waits for the result any more.
 
         Raises
         ------
         LimitError
             If the function exceeds a limit.
         concurrent.futures.CancelledError
-            If it is cancelled.
+            If the call is cancelled.
         """
         with self._lock:
             try:
@@ -119,7 +123,7 @@ class LimitedProcess:
         )
 
     def _wait[Result](self, future: Future[Result], cancel: threading.Event, most_seconds: float) -> Result:
-        """Return the result unless the call takes too long or is cancelled."""
+        """Return the result of a call; raise an error if it takes too long or is cancelled."""
         begun = time.monotonic()
         while not wait([future], _POLL_SECONDS).done:
             seconds = time.monotonic() - begun
@@ -130,11 +134,11 @@ class LimitedProcess:
         return future.result()
 
     def _submit[Result](self, call: Callable[[], Result]) -> Future[Result]:
-        """Start a call, in a new process if there is none or the last one has ended."""
+        """Start a call, in a new process if the last process has ended."""
         if self._executor is not None:
             with suppress(BrokenExecutor):
-                waiting: Future[Result] = self._executor.submit(call)
-                return waiting
+                future: Future[Result] = self._executor.submit(call)
+                return future
         self._executor = ProcessPoolExecutor(
             max_workers=1, timeout=IDLE_SECONDS, initializer=_begin, initargs=(self._memory, os.getpid())
         )
@@ -143,7 +147,7 @@ class LimitedProcess:
 
 
 class LimitedProcesses:
-    """Several limited processes; each starts when it is needed while the others are busy."""
+    """Makes calls in several limited processes, each of which starts only when the other processes are busy."""
 
     def __init__(self, count: int = PROCESSES) -> None:
         self._processes = [LimitedProcess() for _ in range(count)]
@@ -152,7 +156,7 @@ class LimitedProcesses:
             self._free.put(process)
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
-        """Return the result of a function in a free process, as `LimitedProcess` does."""
+        """Return the result of a function, called in a free process; see `LimitedProcess`."""
         process = self._free.get()
         try:
             return process(function, cancel)
@@ -166,7 +170,7 @@ class LimitedProcesses:
 
     @property
     def computed(self) -> float:
-        """Processor time of the calls that have ended, in seconds."""
+        """Processor time of the ended calls, in seconds."""
         return sum(process.computed for process in self._processes)
 
     def close(self) -> None:
@@ -176,9 +180,9 @@ class LimitedProcesses:
 
 
 def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple[Result, float]:
-    """Return the result of a function and its processor time; the system ends the process when the time limit is used up."""
+    """Return the result of a function and its processor time. The system ends the process at the limit of time."""
     begun = time.process_time()
-    # Windows has no such limit; there only the caller's waiting time is limited.
+    # Without `resource`, on Windows, only the time for which the caller waits is limited.
     with suppress(ImportError):
         import resource
 

@@ -1,6 +1,6 @@
-"""The delay of the event loop: while it is high, work is postponed, and its causes are logged.
+"""The delay of the event loop. While the delay is high, work is postponed, and causes of long delays are logged.
 
-A callback runs periodically on the loop; while a run is overdue, a thread reads the stack of the loop's thread.
+A callback runs periodically on the loop. While a run is overdue, a thread reads the stack of the loop's thread.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ TICK_SECONDS = 0.02
 HIGH_SECONDS = 0.05
 """Delay of a tick above which the load is high."""
 
-# Factor by which a delay decays per tick, 0.7 in 0.1 s: half a second after a peak the load is normal again.
+# Factor by which the delay decays per tick: 0.7 in 0.1 s, so the load is normal again half a second after a peak.
 _DECAY = 0.7 ** (TICK_SECONDS / 0.1)
 
 LONGEST_SECONDS = 2.0
-"""After this time a high load is reported as normal for one tick, so that postponed work is delayed but not blocked."""
+"""Time after which a high load is reported as normal for one tick: postponed work is delayed but never blocked."""
 
 
 class LoadMonitor:
-    """Delay of a periodic callback on the event loop.
+    """Measures the delay of a periodic callback on the event loop.
 
     Parameters
     ----------
     clock
-        Time in seconds.
+        Monotonic clock, in seconds.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -46,7 +46,7 @@ class LoadMonitor:
         self.delay = 0.0
 
     def tick(self) -> float:
-        """Measure and return the delay in seconds; call every `TICK_SECONDS` on the event loop."""
+        """Return the delay of this tick in seconds; call every `TICK_SECONDS` on the event loop."""
         now = self._clock()
         late = max(0.0, now - self._due) if self._due is not None else 0.0
         self.delay = max(late, _DECAY * self.delay)
@@ -58,7 +58,7 @@ class LoadMonitor:
         return late
 
     def overdue_seconds(self) -> float:
-        """Time since the next tick was due, negative before; other threads may call this."""
+        """Return the time since the next tick was due, negative before then; any thread may call this."""
         return self._clock() - self._due if self._due is not None else 0.0
 
     def is_high(self) -> bool:
@@ -67,16 +67,17 @@ class LoadMonitor:
 
 
 SLOW_SECONDS = 0.05
-"""An iteration of the event loop that takes longer than this is logged and counted."""
+"""Duration above which an iteration of the event loop is logged and counted."""
 
-# The measured delay is shorter than the slow iteration by up to one interval, because the iteration may begin before the tick is
-# due.
-_REPORTED = SLOW_SECONDS - TICK_SECONDS
+# Delay of a tick that is reported. It is shorter than the slow iteration by up to one interval, because the iteration may begin
+# before the tick is due.
+_REPORTED_DELAY = SLOW_SECONDS - TICK_SECONDS
+# Interval at which the stack is read, in seconds.
 _SAMPLE_SECONDS = 0.5 * TICK_SECONDS
 _APP = Path(__file__).parents[1]
-# Modules of the app that only pass calls on.
+# Folders of the app whose functions only pass calls on.
 _PLUMBING = ("runtime", "server", "browser/bokeh_patches")
-# Modules outside the app that run the loop; if a stack contains nothing else, the loop waits for events or for a processor.
+# Modules outside the app that run the loop. A loop whose stack contains nothing else waits for events or for a processor.
 _LOOP = (
     "asyncio",
     "selectors",
@@ -95,54 +96,54 @@ log = logging.getLogger(f"bokeh.{__name__}")
 
 
 class LoopWatch:
-    """Logs and counts iterations of the event loop that take longer than `SLOW_SECONDS`; create it on the loop's thread.
+    """Logs and counts iterations of the event loop that take longer than `SLOW_SECONDS`; created on the loop's thread.
 
-    The length of an iteration is known only to within `TICK_SECONDS`, so some iterations that are shorter than `SLOW_SECONDS` by
-    less than this are reported as well.
+    The duration of an iteration is known only to within `TICK_SECONDS`. Iterations that are shorter than `SLOW_SECONDS` by less
+    than this may also be reported.
 
     Parameters
     ----------
     load
         Measures the delay of the ticks.
     delays
-        Counts the delays by cause, in seconds.
+        Histogram of the delays by cause, in seconds.
     processor_time
-        Processor time of the calling thread, in seconds.
+        Returns the processor time of the calling thread, in seconds.
     """
 
     def __init__(self, load: LoadMonitor, delays: Histogram, processor_time: Callable[[], float] = time.thread_time) -> None:
         self._load, self._delays, self._processor_time = load, delays, processor_time
         self._thread = threading.get_ident()
         self._samples: list[str] = []
-        self._busy = self._processor_time()
-        self._collecting, self._collected = 0.0, 0.0
+        self._last_processor_time = self._processor_time()
+        self._collection_begin, self._collected = 0.0, 0.0
 
     def on_collection(self, phase: str, info: dict[str, int]) -> None:
-        """Measure garbage collections on the loop's thread, which any allocation may start; one of `gc.callbacks`."""
+        """Measure garbage collections on the loop's thread, which any allocation may start; a member of `gc.callbacks`."""
         if threading.get_ident() != self._thread:
             return
         if phase == "start":
-            self._collecting = self._processor_time()
+            self._collection_begin = self._processor_time()
         else:
-            self._collected += self._processor_time() - self._collecting
+            self._collected += self._processor_time() - self._collection_begin
 
     def tick(self) -> None:
-        """Measure the delay and report a long one; call every `TICK_SECONDS` on the event loop."""
+        """Measure the delay, and report a long delay; call every `TICK_SECONDS` on the event loop."""
         late = self._load.tick()
-        busy, self._busy = self._processor_time() - self._busy, self._processor_time()
+        busy, self._last_processor_time = self._processor_time() - self._last_processor_time, self._processor_time()
         collected, self._collected = self._collected, 0.0
         samples, self._samples = self._samples, []
-        if late > _REPORTED:
+        if late > _REPORTED_DELAY:
             cause = Counter(samples).most_common(1)[0][0] if samples else WAITING
             self._delays.labels(cause).observe(late)
-            # Other threads and processes also delay the loop, so the message contains the loop's own processor time as well.
+            # Other threads and processes also delay the loop, so the message contains the loop's own processor time.
             log.info(
                 "event loop %.0f ms late, %.0f ms of its own, with %.0f ms of garbage collection; cause: %s",
                 *(1000.0 * seconds for seconds in (late, busy, collected)), cause,
             )  # fmt: skip
 
     def watch(self, stopping: threading.Event) -> None:
-        """Read the loop's stack whenever its tick is overdue, until the server stops; runs on a thread of its own."""
+        """Read the loop's stack while a tick is overdue, until the server stops; call on a separate thread."""
         while not stopping.wait(_SAMPLE_SECONDS):
             frame = sys._current_frames().get(self._thread) if self._load.overdue_seconds() > _SAMPLE_SECONDS else None
             if frame is not None:
@@ -150,14 +151,14 @@ class LoopWatch:
 
 
 def find_cause(innermost: FrameType) -> str:
-    """Return the outermost function of the app on a stack that does not only pass calls on, or the outermost of a library."""
+    """Return the outermost function of the app on a stack, apart from those that only pass calls on, or else of a library."""
     frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
-    own = [place for place in map(_place_in_app, frames) if place is not None]
-    theirs = [place for place in map(_place_in_library, frames) if place is not None]
-    named = next((place for place in own if not place.startswith(_PLUMBING)), None)
-    if named is not None or not own:
-        return named or next(iter(theirs), WAITING)
-    return f"{own[0]}, {theirs[-1]}" if theirs else own[0]
+    app_places = [place for place in map(_place_in_app, frames) if place is not None]
+    library_places = [place for place in map(_place_in_library, frames) if place is not None]
+    named = next((place for place in app_places if not place.startswith(_PLUMBING)), None)
+    if named is not None or not app_places:
+        return named or next(iter(library_places), WAITING)
+    return f"{app_places[0]}, {library_places[-1]}" if library_places else app_places[0]
 
 
 def _place_in_app(frame: FrameType) -> str | None:

@@ -1,4 +1,4 @@
-"""Settings of glibc's memory allocation for a server with many threads: the memory of large arrays is returned to the system."""
+"""Settings of glibc's memory allocation with which a server of many threads returns the memory of large arrays to the system."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 
 class _Option(NamedTuple):
+    """An option of `mallopt`."""
+
     variable: str
     """Environment variable that sets the option for any program."""
     parameter: int
@@ -17,16 +19,16 @@ class _Option(NamedTuple):
 
 
 _OPTIONS = (
-    # By default there are eight arenas per core, each of which keeps the memory that its threads have freed.
+    # Number of arenas. By default there are eight per core, and each keeps the memory that its threads have freed.
     _Option("MALLOC_ARENA_MAX", -8, 2),
-    # Size in bytes from which an array has its own memory mapping; arrays of a map with 224 × 224 pixels are larger. By default
-    # this number grows to 32 MiB.
+    # Smallest size of an array with its own memory mapping, in bytes: arrays of a map with 224 × 224 pixels are larger. By
+    # default this size grows to 32 MiB.
     _Option("MALLOC_MMAP_THRESHOLD_", -3, 2**17),
 )
 
 
 def reduce_fragmentation() -> None:
-    """Set the options whose environment variables are not set; call before threads start. Without glibc this has no effect."""
+    """Set the options whose environment variables are not set, if this is glibc; call before threads start."""
     if platform.libc_ver()[0] != "glibc":
         return
     library = ctypes.CDLL(None)

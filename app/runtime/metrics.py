@@ -1,4 +1,4 @@
-"""Counters of the server for Prometheus."""
+"""Counters and histograms of the server for Prometheus."""
 
 from __future__ import annotations
 
@@ -8,14 +8,15 @@ from prometheus_client import CollectorRegistry, Counter, Histogram
 
 NAMESPACE = "escape_explorer"
 
-# Upper bounds in seconds: from an immediate answer to waiting for a compilation.
+# Upper bounds of the time to a first frame, in seconds: from an immediate answer to the wait for a compilation.
 _FIRST_FRAME_BUCKETS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 
+# Upper bounds of the delay of the event loop, in seconds.
 _DELAY_BUCKETS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
 
 class ServerMetrics:
-    """Counters of a process, in their own registry."""
+    """Counters and histograms of a process, in a registry of their own."""
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()

@@ -26,22 +26,22 @@ from engine.jobs.manager import Jobs
 
 @dataclass(eq=False)
 class ProcessState:
-    """State of one server process.
+    """The settings, jobs, load, metrics and flags of a server process.
 
     Attributes
     ----------
     settings
         Settings of the process.
     sessions
-        Returns the open Bokeh sessions; empty until the server sets it.
+        Returns the open Bokeh sessions; set by the server.
     sockets
-        Number of open WebSockets by address.
+        Number of open WebSockets by network, see `app.runtime.visitors.network_of`.
     making_page
-        Held while a page is made.
+        Lock that is held while a page is made.
     jobs
         Background jobs of all sessions.
     limited
-        Processes that handle what visitors type.
+        Processes that review the formulas of visitors.
     compiler
         Process that compiles kernels.
     load
@@ -86,14 +86,14 @@ class ProcessState:
         self.capacity = Capacity(self.settings.cores_per_page, self.settings.processes, self._processor_times)
 
     def fair_share(self, document: Document) -> FairShare:
-        """Return the share of a document's page, for all of its connections."""
+        """Return the share of a page's document, which all connections of the page use."""
         return self._shares.setdefault(document, FairShare())
 
     def _processor_times(self) -> ProcessorTimes:
         return processor_times(self.jobs.stats().computed, self.limited.computed + self.compiler.computed)
 
     def pages(self) -> Mapping[str, float]:
-        """Number of pages by visitor, as `Capacity` counts them."""
+        """Return the number of pages by visitor, as `Capacity` counts them."""
         pages: dict[str, float] = defaultdict(float)
         for session in self.sessions():
             share = self.fair_share(session.document)
@@ -101,14 +101,14 @@ class ProcessState:
         return pages
 
     def adapt_to_load(self) -> None:
-        """Postpone work that can wait if there is too much; call after each tick of `load` on the event loop."""
+        """Postpone work that can wait while the load is high; call after each tick of `load` on the event loop."""
         if self.capacity.update():
             self._is_crowded = self.capacity.is_crowded(self.pages())
         self.jobs.pause_background(self.load.is_high())
         self.jobs.spare_first_frames(self._is_crowded)
 
     def is_crowded(self) -> bool:
-        """Whether frames between the first and the last of a map should be left out."""
+        """Whether a map should show only its first and last frame."""
         return self._is_crowded or self.load.is_high()
 
 
@@ -122,14 +122,14 @@ def process_state() -> ProcessState:
     Raises
     ------
     ValueError
-        An environment variable is invalid; one sentence with its name, value and legal values.
+        If an environment variable is invalid. The message has its name, its value and the legal values.
     """
     with _lock:
         return _started or _start(read_settings(os.environ))
 
 
 def start_process_state(settings: Settings) -> ProcessState:
-    """Start a new state of this process, in place of an earlier one; open sessions keep the earlier one."""
+    """Start a new state of this process; open sessions keep the earlier state."""
     with _lock:
         return _start(settings)
 

@@ -1,8 +1,8 @@
-"""Callbacks that worker threads may call; they run on the event loop under the lock of a session.
+"""Callbacks that any thread may call, and that run on the event loop under the lock of a session.
 
-Bokeh's ``Document.locked_callback`` is not used: it schedules its calls through events of the document. While a
-callback holds these events back (``pn.io.hold``), Panel and Bokeh copy the list of held events and then replace it; an
-event that a thread appends in between is lost, and with ``policy="latest"`` a lost event blocks all later frames.
+Bokeh's ``Document.locked_callback`` is not used, because it schedules calls through events of the document. While a
+callback holds events back (``pn.io.hold``), Panel and Bokeh copy the list of held events and then replace it: an
+event that a thread appends in between is lost. With ``policy="latest"`` a lost event blocks all later frames.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ log = logging.getLogger(__name__)
 
 
 class SessionCallbacks:
-    """Wraps functions that change the document of one session; create it while the page is built.
+    """Wraps functions that change the document of one session; created while the page is built.
 
-    A wrapped function returns at once. Its calls run on the event loop, one at a time and in order, with the document
-    locked and set as the current one. Calls after the end of the session are dropped. Without a session, as in a
+    A wrapped function returns at once. Its calls run later on the event loop, one at a time and in order, with the document
+    locked and set as the current document. Calls after the end of the session are dropped. Without a session, as in a
     notebook, wrapped functions are called directly.
 
     Parameters
@@ -39,7 +39,7 @@ class SessionCallbacks:
     document
         The document of the session.
     loop
-        The event loop of the server; by default the running one.
+        The event loop of the server; by default the running loop.
     """
 
     def __init__(self, document: Document, loop: asyncio.AbstractEventLoop | None = None) -> None:
@@ -62,6 +62,8 @@ class SessionCallbacks:
 
 
 class _LockedCallback:
+    """A wrapped function with its waiting calls."""
+
     def __init__(
         self,
         loop: asyncio.AbstractEventLoop,
@@ -76,7 +78,7 @@ class _LockedCallback:
 
     def __call__(self, *args: Any, **kwargs: Any) -> None:
         self._calls.append(partial(self._function, *args, **kwargs))
-        # The loop is closed after the server has stopped.
+        # After the server has stopped, the loop is closed, and the call is dropped.
         with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(self._start)
 
@@ -103,7 +105,7 @@ class _LockedCallback:
         if self._calls:
             call = self._calls.popleft()
             try:
-                # Panel may hold back changes of widgets until the socket is free. Other changes must not be sent before them,
+                # Panel may hold back changes of widgets until the socket is free. Other changes must not overtake these,
                 # because they may concern models that the held changes add.
                 with set_curdoc(document), pn.io.hold(document):
                     call()

@@ -14,6 +14,7 @@ PREFIX = "ESCAPE_EXPLORER_"
 """Prefix of the environment variables."""
 
 MIB = 2**20
+"""Bytes in a mebibyte."""
 
 
 class LogFormat(StrEnum):
@@ -25,7 +26,7 @@ class LogFormat(StrEnum):
 
 @dataclass(frozen=True)
 class _Parser:
-    """Converts the text of a variable; `legal` describes the legal values."""
+    """Converts the text of a variable with `parse`; `legal` describes the legal values."""
 
     parse: Callable[[str], Any]
     legal: str
@@ -47,7 +48,7 @@ def _in_range[Number: (int, float)](value: Number, low: Number, high: Number) ->
 
 def _parse_origins(text: str) -> tuple[str, ...]:
     origins = tuple(text.split())
-    # Separators of directives and headers are rejected, because they could inject another one.
+    # Separators of directives and headers are rejected, because they could begin another directive or header.
     if not all(origin.isascii() and origin.isprintable() and not set(origin) & set(";,'\"") for origin in origins):
         raise ValueError
     return origins
@@ -69,24 +70,24 @@ class Settings:
     Attributes
     ----------
     largest_resolution
-        Maximum number of pixels along a side of a map.
+        Largest number of pixels along a side of a map.
     longest_t_max
-        Maximum time horizon, dimensionless.
+        Largest t_max, dimensionless.
     most_orbits
-        Maximum number of orbits of all large running jobs: pixels of maps, and pixels times energies of sweeps.
+        Largest number of orbits in all large running jobs: pixels of maps, and pixels times values of sweeps.
     most_sessions
-        Maximum number of sessions, and of WebSockets; further requests for the page get status 503.
+        Largest number of sessions, and of WebSockets; further requests for the page get status 503.
     pages_per_address
-        Maximum number of sessions, and of WebSockets, of one address (IPv6: of one network).
+        Largest number of sessions, and of WebSockets, of one address (IPv6: of one network).
     most_connections
-        Maximum number of open connections besides WebSockets; additional ones are closed.
+        Largest number of open connections, WebSockets apart; more connections are closed.
     compiled_operations
-        Maximum number of compiled operations of the integrators of all potentials outside the catalogue; compiled code is never
+        Largest number of compiled operations in the integrators of all potentials outside the catalogue; compiled code is never
         unloaded.
     cache_bytes
         Size limit of the result cache, in bytes; a complete map of 224 × 224 pixels takes 1.4 MB.
     memory_ceiling
-        Resident memory above which the server reports that it is not ready, in bytes; 0 for no limit.
+        Resident memory, in bytes, above which the server reports that it is not ready; 0 for no limit.
     threads
         Number of compute threads; by default the number of cores available to the process.
     log
@@ -98,7 +99,7 @@ class Settings:
     frame_ancestors
         Origins that may embed the page in a frame; empty if no origin may.
     bokeh_patches
-        Whether two functions of Bokeh are replaced by faster ones (see `app.browser.bokeh_patches`).
+        Whether faster functions replace two functions of Bokeh (see `app.browser.bokeh_patches`).
     """
 
     largest_resolution: int = _setting(1024, _integer(16, 4096))
@@ -129,7 +130,7 @@ def read_settings(environment: Mapping[str, str]) -> Settings:
     Raises
     ------
     ValueError
-        One sentence with the variable, its value and the legal values.
+        If a value is invalid. The message has the variable, its value and the legal values.
     """
     values: dict[str, Any] = {}
     for setting in fields(Settings):

@@ -1,4 +1,4 @@
-"""How limits identify a visitor: by an address, or by a network."""
+"""Identification of visitors for limits: by an address, or by a network."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from bokeh.document import Document
 
 
 def network_of(address: str) -> str:
-    """Return the key of a limit: an IPv4 address, or the 64 bits of an IPv6 address that identify a network."""
+    """Return the network of an address: the whole IPv4 address, or the 64 bits of an IPv6 address that identify its network."""
     try:
         parsed = ipaddress.ip_address(address)
     except ValueError:
@@ -17,7 +17,7 @@ def network_of(address: str) -> str:
 
 
 def is_near(network: str) -> bool:
-    """Whether the network is this machine, which counts as one visitor."""
+    """Whether a network is this machine or has no address, as in a notebook."""
     try:
         return ipaddress.ip_network(network).is_loopback
     except ValueError:
@@ -25,11 +25,11 @@ def is_near(network: str) -> bool:
 
 
 def visitor_of(document: Document) -> str:
-    """Return the network of a page; empty in a notebook."""
+    """Return the network of the visitor of a page; empty in a notebook."""
     return network_of(str(getattr(getattr(document.session_context, "request", None), "remote_ip", "")))
 
 
 def account_of(document: Document) -> str | None:
-    """Return the visitor whose share of compiled code a page uses; empty on this machine, which has no limit."""
+    """Return the visitor whose share of compiled code a page uses; None on this machine, which has no limit."""
     visitor = visitor_of(document)
     return None if is_near(visitor) else visitor

@@ -1,4 +1,4 @@
-"""Refuse pages and WebSockets when the server is full or stopping, or an address has its share of them."""
+"""Admission of pages and WebSockets: they are refused when the server is full or stopping, or an address has its share."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from app.runtime.visitors import network_of, visitor_of
 from app.server.session_tokens import may_begin_session
 
 LONGEST_LINK = 8192
-"""Largest length of the address of a page, in characters."""
+"""Largest length of a request's path and query, in characters."""
 
 RETRY_SECONDS = 10
-"""Interval at which the browser asks again for a refused page, in seconds."""
+"""Interval at which the browser requests a refused page again, in seconds."""
 
 RETRIED = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
-"""Statuses of refused pages that may be served later."""
+"""HTTP statuses of refused pages that may be served later."""
 
 
 def admit(request: Any) -> None:
-    """Return for requests that may create a session; refuse all others.
+    """Refuse a request for a page that may not create a session.
 
     Raises
     ------
     tornado.web.HTTPError
-        Status 414, 429 or 503 with a sentence as its reason, which Tornado shows on the error page.
+        With status 414, 429 or 503, and a sentence that Tornado shows on the error page.
     """
-    # `check_session` admits a WebSocket.
+    # `check_session` checks WebSockets.
     if request.path.endswith("/ws"):
         return
     if len(request.uri) > LONGEST_LINK:
@@ -46,7 +46,7 @@ def admit(request: Any) -> None:
 
 
 def refusal_page(sentence: str) -> str:
-    """Return a page that says why a page is refused, and asks for the page again after `RETRY_SECONDS`."""
+    """Return an error page with a sentence, which requests the refused page again after `RETRY_SECONDS`."""
     head = (
         f"<meta charset=utf-8><meta name=viewport content='width=device-width'><meta http-equiv=refresh content={RETRY_SECONDS}>"
     )
@@ -55,23 +55,23 @@ def refusal_page(sentence: str) -> str:
 
 
 def check_session(token: str, application_context: Any, address: str, application: Any) -> None:
-    """Return for WebSockets of open sessions. For those of recent pages, return while there is room.
+    """Refuse a WebSocket unless its session is open, or its page is recent and there is room for a session.
 
     Parameters
     ----------
     token
-        Signed by this server.
+        Token of the session, signed by this server.
     application_context
-        Bokeh's, with the open sessions.
+        Bokeh's application context, with the open sessions.
     address
-        Of the visitor.
+        Address of the visitor.
     application
-        The server's web application, with the time within which a token may begin a session.
+        The server's web application, with the time for which a token may begin a session.
 
     Raises
     ------
     bokeh.protocol.exceptions.ProtocolError
-        When the session has ended and the token is old, or when the server is full or stopping, with the reason.
+        If the session has ended and the token is old, or the server is full or stopping. The message says which.
     """
     session = get_session_id(token)
     if any(each.id == session for each in application_context.sessions):
@@ -84,12 +84,12 @@ def check_session(token: str, application_context: Any, address: str, applicatio
 
 
 def count_socket(address: str) -> None:
-    """Count a new WebSocket of an address.
+    """Count a new WebSocket of an address, or refuse it.
 
     Raises
     ------
     bokeh.protocol.exceptions.ProtocolError
-        When the address, or the server, has too many; nothing is counted then.
+        If the address, or the server, has too many WebSockets. Then the count does not change.
     """
     sockets, most = process_state().sockets, process_state().settings.most_sessions
     reason = _share_reason(sockets[network_of(address)])
@@ -101,7 +101,7 @@ def count_socket(address: str) -> None:
 
 
 def forget_socket(address: str) -> None:
-    """Stop counting a WebSocket."""
+    """Stop counting a WebSocket of an address."""
     sockets, network = process_state().sockets, network_of(address)
     sockets[network] -= 1
     if not sockets[network]:

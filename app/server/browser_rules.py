@@ -1,7 +1,7 @@
 """The changes that a browser may make on the server: values of widgets, ranges and sizes of plots, and events of models.
 
-While Bokeh applies a message, it checks only the types of properties, and Panel checks values in a callback; both answer an
-invalid value with a traceback in the log. Here a message is checked as a whole before Bokeh gets it.
+Bokeh checks only the types of properties, and Panel checks values only in callbacks. Either answers an invalid value with a
+traceback in the log. Here the whole message is checked before Bokeh gets it.
 """
 
 from __future__ import annotations
@@ -40,24 +40,27 @@ LONGEST_TEXT = 4000
 """Largest length of any text in a message, in characters."""
 
 MOST_VALUES = 2000
-"""Largest number of values in a message, including nested ones."""
+"""Largest number of values in a message, including nested values."""
 
+# Largest absolute value of a number in a message.
 _LARGEST_NUMBER = 1e15
-_DEEPEST = 12
+# Largest depth of nested values.
+_LARGEST_DEPTH = 12
 
 Check = Callable[[Model, Any], bool]
+"""Returns whether a model may get a value."""
 
 
 class RefusedMessageError(ValueError):
-    """A message that no page sends; one sentence says what is wrong."""
+    """A message that no page sends. The sentence says what is wrong."""
 
 
 class OutdatedMessageError(RefusedMessageError):
-    """A message about a model that the server has removed in the meantime."""
+    """A message about a model that the server has removed since the browser sent the message."""
 
 
 def find_choices(content: Any, document: Document) -> list[tuple[Model, str]]:
-    """Models and properties of the switches, radio buttons and lists that a checked PATCH-DOC message changes."""
+    """Return the switches, radio buttons and lists that a checked PATCH-DOC message changes, with the changed properties."""
     events = (event for event in content["events"] if event["kind"] == "ModelChanged")
     changes = ((document.models.get_by_id(event["model"]["id"]), event["attr"]) for event in events)
     return [(model, name) for model, name in changes if isinstance(model, _CHOICES)]
@@ -69,7 +72,7 @@ def check_patch(content: Any, document: Document) -> None:
     Parameters
     ----------
     content
-        The message's content, parsed from JSON.
+        Content of the message, parsed from JSON.
     document
         The document that the message would change.
 
@@ -100,7 +103,7 @@ def check_patch(content: Any, document: Document) -> None:
 
 
 def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
-    """Return the event as a Python object. Unknown classes and wrong fields raise errors of various types."""
+    """Return a value as a Python object; refuse unknown classes and wrong fields, for which Bokeh raises various errors."""
     try:
         return decoder.decode(value)
     except UnknownReferenceError as error:
@@ -112,7 +115,7 @@ def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
 
 
 def _check_range(changed: Range1d, **values: float) -> None:
-    """The ends of a range may change one after the other, but their order must not change."""
+    """Refuse a range whose ends would change their order, also if only one end changes."""
     ends = {"start": changed.start, "end": changed.end} | values
     if (ends["end"] - ends["start"]) * (changed.end - changed.start) <= 0.0:
         raise RefusedMessageError(f"a range from {ends['start']} to {ends['end']}")
@@ -135,35 +138,35 @@ def _check_event(event: Any) -> None:
     name = f"event {event.event_name} of {type(event.model).__name__}"
     if event.event_name not in event.model.subscribed_events:
         raise RefusedMessageError(f"{name}: nothing on the server waits for it")
-    if not all(_is_real(getattr(event, field)) for field in _NUMBERS if hasattr(event, field)):
+    if not all(_is_real(getattr(event, field)) for field in _EVENT_COORDINATES if hasattr(event, field)):
         raise RefusedMessageError(f"{name}: its coordinates must be numbers")
 
 
-# Fields of events of plots.
-_NUMBERS = ("x", "y", "sx", "sy", "x0", "x1", "y0", "y1")
+# Numeric fields of the events of plots.
+_EVENT_COORDINATES = ("x", "y", "sx", "sy", "x0", "x1", "y0", "y1")
 
 
 def _check_values(events: Any, known: Container[str]) -> None:
-    """Accept only few and small numbers, texts, references, lists, maps and events."""
+    """Refuse too many, too deep or too large values, and values of types that no page sends."""
     for number, (depth, each) in enumerate(_walk(events, 0, known)):
-        if number == MOST_VALUES or depth > _DEEPEST:
+        if number == MOST_VALUES or depth > _LARGEST_DEPTH:
             raise RefusedMessageError("a patch with too many values")
         if not _is_plain(each):
             raise RefusedMessageError(f"a patch with the value {_quote(each)}")
 
 
 def _walk(value: Any, depth: int, known: Container[str]) -> Iterator[tuple[int, Any]]:
-    """Yield all values with their depths, except the attributes of known models, which Bokeh ignores.
+    """Yield all values with their depths, except the attributes of models in `known`, which Bokeh ignores.
 
-    When a browser first refers to a model that the server has added, it sends all attributes of the model and not only its id.
+    A browser that first refers to a model added by the server sends all attributes of the model, and not only its id.
     """
     if isinstance(value, dict) and value.get("type") == "object" and isinstance(value.get("id"), str) and value["id"] in known:
         return
     yield depth, value
     children: Iterable[Any] = ()
-    if depth <= _DEEPEST and isinstance(value, dict):
+    if depth <= _LARGEST_DEPTH and isinstance(value, dict):
         children = (*value.keys(), *value.values())
-    elif depth <= _DEEPEST and isinstance(value, list):
+    elif depth <= _LARGEST_DEPTH and isinstance(value, list):
         children = value
     for child in children:
         yield from _walk(child, depth + 1, known)
@@ -179,7 +182,7 @@ def _is_plain(value: Any) -> bool:
 
 
 def _is_real(value: Any) -> bool:
-    # This is False for NaN.
+    # NaN is not real: the comparison is False.
     return isinstance(value, int | float) and abs(value) <= _LARGEST_NUMBER
 
 
@@ -188,7 +191,7 @@ def _quote(value: Any) -> str:
 
 
 def _is_between(value: Any, low: Any, high: Any) -> bool:
-    """Whether a value is a number within limits; each limit may be missing."""
+    """Whether a value is a number within limits; None stands for no limit."""
     return _is_real(value) and not isinstance(value, bool) and (low is None or low <= value) and (high is None or value <= high)
 
 
@@ -229,7 +232,7 @@ def _is_number(_: Any, value: Any) -> bool:
 
 
 def _is_position(_: Any, value: Any) -> bool:
-    """Accept NaN as well, for a pointer outside a plot."""
+    """Whether a value is a position; NaN stands for a pointer outside a plot."""
     return value is None or isinstance(value, int | float)
 
 
@@ -242,8 +245,8 @@ def _is_list_of_positions(_: Any, value: Any) -> bool:
 
 
 def _is_data(model: DataModel, name: str, value: Any) -> bool:
-    """Whether a value is legal for the parameter of a component to which a property belongs."""
-    # Panel has no public way from a data model to its component.
+    """Whether a value is legal for the component's parameter of this name."""
+    # Panel offers no public way from a data model to the component class.
     owners = (each for each in param.concrete_descendents(JSComponent).values() if each._data_model is type(model))
     parameter = next((owner.param[name] for owner in owners if name in owner.param), None)
     match parameter:
@@ -257,11 +260,12 @@ def _is_data(model: DataModel, name: str, value: Any) -> bool:
     return False
 
 
+# Widgets whose changes the server sends back, see `app.server.page_websocket`.
 _CHOICES = (CheckboxGroup, RadioGroup, Select)
 
 
 class _DataProperties(dict[str, Check]):
-    """Return the properties of a component whose parameters are numbers, texts or maps."""
+    """Checks for the properties of components, whose parameters are numbers, texts or maps."""
 
     def __contains__(self, name: object) -> bool:
         return name not in ("name", "tags")
@@ -288,4 +292,4 @@ _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
     Selection: {"indices": _is_list_of_positions, "line_indices": _is_list_of_positions},
     DataModel: _DataProperties(),
 }
-"""The properties that a browser can change, and tests of their values, by class; they also apply to subclasses."""
+"""Properties that a browser may change, each with a check of its value, by class of model; subclasses are included."""

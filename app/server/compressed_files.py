@@ -1,4 +1,4 @@
-"""Static files, compressed for browsers that accept it: the scripts of Bokeh and Panel shrink to a quarter."""
+"""Static files, compressed for browsers that accept gzip: the scripts of Bokeh and Panel shrink to a quarter."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from pathlib import Path
 from tornado.ioloop import IOLoop
 from tornado.web import StaticFileHandler
 
-# Other types of files are compressed already.
+# Suffixes of the files to compress. Other types are compressed already.
 _SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map"})
-# Compressed, these files take some megabytes together.
+# Number of compressed files that are kept; together they take some megabytes.
 _KEPT_FILES = 64
 
 
 class CompressedFiles(StaticFileHandler):
-    """Answers with a compressed file; a mixin for other handlers of static files."""
+    """Mixin for handlers of static files, which answers with a compressed file."""
 
     async def get(self, path: str, include_body: bool = True) -> None:
-        """Answer as the other handler does, but with a compressed file where possible."""
+        """Answer with a compressed file if the browser accepts it and the type is worth it, otherwise as the other handler."""
         accepts = "gzip" in self.request.headers.get("Accept-Encoding", "") and "Range" not in self.request.headers
         if not accepts or Path(path).suffix not in _SUFFIXES:
             await super().get(path, include_body)
@@ -36,7 +36,7 @@ class CompressedFiles(StaticFileHandler):
             self.set_status(304)
             return
         changed = Path(absolute_path).stat().st_mtime_ns
-        # A new version is compressed once, which takes up to 0.1 s.
+        # Compressing takes up to 0.1 s, once for each version of a file.
         content = await IOLoop.current().run_in_executor(None, _compressed, absolute_path, changed)
         self.set_header("Content-Encoding", "gzip")
         self.set_header("Content-Length", len(content))
@@ -46,5 +46,5 @@ class CompressedFiles(StaticFileHandler):
 
 @functools.lru_cache(maxsize=_KEPT_FILES)
 def _compressed(path: str, _changed: int) -> bytes:
-    """Return a file, compressed; `_changed` is the time of its last change."""
+    """Return a compressed file; `_changed`, the time of its last change, tells versions apart in the cache."""
     return gzip.compress(Path(path).read_bytes())

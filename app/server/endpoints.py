@@ -16,7 +16,7 @@ from app.server.security_headers import SecurityHeaders
 
 
 class _Uncached(SecurityHeaders):
-    """A response that must not be cached."""
+    """Handler whose responses must not be cached."""
 
     def set_default_headers(self) -> None:
         """Forbid caching."""
@@ -25,7 +25,7 @@ class _Uncached(SecurityHeaders):
 
 
 class Liveness(_Uncached):
-    """Answers 200 while the process responds; the answer is the same as of ``panel serve --liveness``."""
+    """Answers 200 while the process responds, like ``panel serve --liveness``."""
 
     def get(self) -> None:
         """Answer with JSON."""
@@ -33,7 +33,7 @@ class Liveness(_Uncached):
 
 
 class Readiness(_Uncached):
-    """Answers 200 when the server accepts more visitors, otherwise 503 with the reason."""
+    """Answers 200 if the server accepts more visitors, otherwise 503 with the reason."""
 
     def get(self) -> None:
         """Answer with JSON."""
@@ -53,7 +53,7 @@ class Metrics(_Uncached):
 
 
 class Status(_Uncached):
-    """Answers with the same metrics as a page for people."""
+    """Answers with the same metrics as an HTML page for people."""
 
     def get(self) -> None:
         """Answer with HTML."""
@@ -75,7 +75,7 @@ ROUTES: list[tuple[str, type[SecurityHeaders]]] = [
     ("/metrics", Metrics),
     ("/status", Status),
 ]
-"""Return paths and handlers in the form of a ``panel serve --plugins`` module."""
+"""Paths and handlers, in the form of a ``panel serve --plugins`` module."""
 
 
 def status_page(sentence: str, registry: CollectorRegistry) -> str:

@@ -21,35 +21,35 @@ from app.server.admission import LONGEST_LINK
 from app.server.routes import lead_to_page, refuse_other_hosts, refuse_other_routes
 
 LIMITS: Mapping[str, int] = {
-    # Seconds until the next request of a connection, and until the end of its headers.
+    # Time until the next request of a connection, and until the end of its headers.
     "idle_connection_timeout": 20,
     "body_timeout": 10,
-    # There are no uploads.
+    # The page uploads nothing.
     "max_body_size": 64 * 1024,
-    # The request of a WebSocket contains the link, its token, which can be longer than the link, and cookies.
+    # The request of a WebSocket contains cookies, the link, and a token that can be longer than the link.
     "max_header_size": 4 * LONGEST_LINK,
 }
 """Options of the HTTP server, in seconds and bytes."""
 
 UNTRUSTED = ("X-Real-Ip", "X-Scheme")
-"""Headers that Tornado prefers to ``X-Forwarded-For`` and ``X-Forwarded-Proto`` with ``--use-xheaders``. A proxy
-that sets the latter may pass on the former from clients."""
+"""Headers that Tornado, with ``--use-xheaders``, prefers to ``X-Forwarded-For`` and ``X-Forwarded-Proto``. A proxy that
+sets these two headers may pass on the preferred headers of a client."""
 
 CONNECTIONS_PER_PAGE = 6
-"""Largest number of connections that a browser opens to a host besides WebSockets."""
+"""Largest number of connections, WebSockets apart, that a browser opens to a host."""
 
 
 class LimitedHTTPServer(HTTPServer):
-    """HTTP server that closes connections beyond the limits at once, and adds no routes but its own.
+    """HTTP server that closes connections beyond the limits at once, and refuses routes and hosts that are not its own.
 
-    WebSockets are counted elsewhere. Behind a proxy (``--use-xheaders``) all connections come from one address, and only their
-    total number is limited.
+    `app.server.admission` counts WebSockets. Behind a proxy (``--use-xheaders``) all connections come from one address, so only
+    their total number is limited.
     """
 
     def initialize(self, *args: Any, **kwargs: Any) -> None:
-        """Apply the limits; called by Tornado instead of a constructor."""
+        """Apply the limits. Tornado calls this instead of a constructor."""
         super().initialize(*args, **{**LIMITS, **kwargs})
-        self._open: Counter[str] = Counter()
+        self._counts: Counter[str] = Counter()
         if isinstance(self.request_callback, BokehTornado):
             refuse_other_routes(self.request_callback)
             refuse_other_hosts(self.request_callback)
@@ -62,7 +62,7 @@ class LimitedHTTPServer(HTTPServer):
             process_state().metrics.connections_refused.inc()
             stream.close()
             return
-        self._open[network] += 1
+        self._counts[network] += 1
         super().handle_stream(stream, address)
 
     def start_request(self, server_conn: object, request_conn: HTTPConnection) -> HTTPMessageDelegate:
@@ -72,12 +72,12 @@ class LimitedHTTPServer(HTTPServer):
     def on_close(self, server_conn: Any) -> None:
         """Stop counting a connection that is closed or has become a WebSocket."""
         super().on_close(server_conn)
-        self._open -= Counter([_network(server_conn.context.address)])
+        self._counts -= Counter([_network(server_conn.context.address)])
 
     def _is_full(self, network: str) -> bool:
         settings = process_state().settings
         per_address = CONNECTIONS_PER_PAGE * settings.pages_per_address
-        return self._open.total() >= settings.most_connections or (not self.xheaders and self._open[network] >= per_address)
+        return self._counts.total() >= settings.most_connections or (not self.xheaders and self._counts[network] >= per_address)
 
 
 class _WithoutUntrusted(HTTPMessageDelegate):

@@ -1,4 +1,4 @@
-"""Checks of the messages of one WebSocket before Bokeh gets them: their form, size and number, and what they change."""
+"""Checks of a WebSocket's messages before Bokeh gets them: form, size, number, and changes."""
 
 from __future__ import annotations
 
@@ -14,35 +14,38 @@ from bokeh.model import Model
 from app.server.browser_rules import OutdatedMessageError, RefusedMessageError, check_patch, find_choices
 
 LARGEST_FRAGMENT = 4 * 2**20
-"""Size limit of a part of a message, in bytes. Most have less than 2 kB; models that the server has added are sent whole."""
+"""Largest size of a part of a message, in bytes. Most have less than 2 kB; a model that the server has added is sent whole."""
 
 MOST_BUFFERS = 64
-"""Largest number of binary parts of a message: the arrays of such a model."""
+"""Largest number of binary buffers of a message, such as the arrays of a model that is sent whole."""
 
-MESSAGES_PER_SECOND, MOST_AT_ONCE = 400.0, 4000
-"""Rate limit of the messages of a connection; fast drags on a screen with 144 frames per second send 300 per second."""
+MESSAGES_PER_SECOND = 400.0
+"""Largest rate of the messages of a connection in the long run. Fast drags on a screen with 144 frames per second send 300."""
+
+MOST_AT_ONCE = 4000
+"""Largest number of messages at once, after a pause."""
 
 REFUSED_COUNTS = 40
-"""Number of messages that a refused one counts as, because it causes a line in the log. The page itself sends none."""
+"""A refused message counts as this many messages, because it causes a line in the log. The page itself sends none."""
 
 BYTES_PER_MESSAGE = 16 * 1024
-"""A part of a message counts as one additional message for each of these bytes."""
+"""Number of bytes of a part of a message that count as one more message."""
 
-# Header, metadata and content, then a header and a payload for each buffer.
-_PARTS, _PARTS_OF_BUFFER = 3, 2
+# Number of parts before the buffers: header, metadata and content. Each buffer has two parts: a header and a payload.
+_FIRST_PARTS, _PARTS_PER_BUFFER = 3, 2
 
 
 class UnacceptableConnectionError(Exception):
-    """The connection must be closed; one sentence with the reason."""
+    """The connection must be closed. The sentence says why."""
 
 
 class MessageGuard:
-    """Collects the parts of messages, and passes on the messages that a page sends.
+    """Collects the parts of messages, and passes on messages that a page can have sent.
 
     Parameters
     ----------
     clock
-        Seconds of a monotonic clock.
+        Monotonic clock, in seconds.
 
     Attributes
     ----------
@@ -53,17 +56,17 @@ class MessageGuard:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._parts: list[str | bytes] = []
-        self._expected = _PARTS
-        self._pulled = False
+        self._expected_parts = _FIRST_PARTS
+        self._is_pulled = False
         self.choices: list[tuple[Model, str]] = []
-        self._left, self._last = float(MOST_AT_ONCE), clock()
+        self._reserve, self._last_count = float(MOST_AT_ONCE), clock()
 
     def take(self, part: str | bytes, document: Document) -> list[str | bytes]:
         """Take a part of a message.
 
         Returns
         -------
-        The parts of the message if this was the last one, otherwise an empty list.
+        All parts of the message after its last part, otherwise an empty list.
 
         Raises
         ------
@@ -72,14 +75,14 @@ class MessageGuard:
         UnacceptableConnectionError
             If the connection must be closed because of invalid parts, too many messages or refusals.
         """
-        is_payload = len(self._parts) > _PARTS and (len(self._parts) - _PARTS) % _PARTS_OF_BUFFER
+        is_payload = len(self._parts) > _FIRST_PARTS and (len(self._parts) - _FIRST_PARTS) % _PARTS_PER_BUFFER
         if isinstance(part, str) == bool(is_payload):
             raise UnacceptableConnectionError("a message with binary parts in the wrong places")
         self._count(len(part) / BYTES_PER_MESSAGE)
         if not self._parts:
-            self._expected = _PARTS + _PARTS_OF_BUFFER * _count_buffers(part)
+            self._expected_parts = _FIRST_PARTS + _PARTS_PER_BUFFER * _count_buffers(part)
         self._parts.append(part)
-        if len(self._parts) < self._expected:
+        if len(self._parts) < self._expected_parts:
             return []
         parts, self._parts = self._parts, []
         self._count(1.0)
@@ -93,11 +96,11 @@ class MessageGuard:
         return parts
 
     def _count(self, messages: float) -> None:
-        """Refill the reserve by the time since the last message, and take from it."""
+        """Refill the reserve of messages for the time since the last call, and take from it."""
         now = self._clock()
-        self._left = min(self._left + MESSAGES_PER_SECOND * (now - self._last), MOST_AT_ONCE) - messages
-        self._last = now
-        if self._left < 0.0:
+        self._reserve = min(self._reserve + MESSAGES_PER_SECOND * (now - self._last_count), MOST_AT_ONCE) - messages
+        self._last_count = now
+        if self._reserve < 0.0:
             raise UnacceptableConnectionError(
                 f"more than {MESSAGES_PER_SECOND:g} messages per second, of which each invalid one counts as {REFUSED_COUNTS}"
             )
@@ -107,20 +110,21 @@ class MessageGuard:
         if kind == "PATCH-DOC":
             check_patch(content, document)
             self.choices = find_choices(content, document)
-        elif kind == "PULL-DOC-REQ" and not self._pulled:
-            self._pulled = True
+        elif kind == "PULL-DOC-REQ" and not self._is_pulled:
+            self._is_pulled = True
         elif kind != "SERVER-INFO-REQ":
             raise RefusedMessageError(f"a message {reprlib.repr(kind)} that no page sends")
 
 
-_LONGEST_NAME = 200
+# Largest length of the identifier of a message, in characters.
+_LONGEST_IDENTIFIER = 200
 
 
 def _count_buffers(part: str | bytes) -> int:
-    """The number of buffers that a header announces."""
+    """Return the number of buffers that the header of a message announces."""
     header = _parse(part)
     match header:
-        case {"msgid": str(number), "msgtype": str()} if len(number) <= _LONGEST_NAME:
+        case {"msgid": str(identifier), "msgtype": str()} if len(identifier) <= _LONGEST_IDENTIFIER:
             count = header.get("num_buffers", 0)
             if isinstance(count, int) and 0 <= count <= MOST_BUFFERS:
                 return count

@@ -1,4 +1,4 @@
-"""The WebSocket of a page: it admits the page, checks its messages, and closes only this connection when they break the rules."""
+"""The WebSocket of a page, which checks the token and the messages of the page, and closes when these break the rules."""
 
 from __future__ import annotations
 
@@ -36,18 +36,18 @@ log = logging.getLogger(f"bokeh.{__name__}")
 
 
 class PageWebSocket(SecurityHeaders, WSHandler):
-    """WebSocket of a page; sends small messages at once.
+    """Checks and limits the messages of a page, and sends messages to it without delay.
 
-    A Bokeh message consists of a dozen WebSocket messages. By default, TCP delays all but the first until the client has
-    acknowledged it: by one round trip, and up to 40 ms more (Nagle's algorithm with delayed acknowledgements, RFC 1122, 4.2.3.2
-    and 4.2.3.4).
+    A Bokeh message consists of a dozen WebSocket messages. By default, TCP delays all but the first of these until the client has
+    acknowledged the first: by a round trip, and up to 40 ms more (Nagle's algorithm with delayed acknowledgements, RFC 1122,
+    4.2.3.2 and 4.2.3.4).
 
-    Messages that no page sends are ignored, with one line in the log. Too many or too large messages close the connection.
-    Neither kind reaches Bokeh. While the page uses more than its share of the event loop's time, its messages wait, a notice on
-    the page says so, and no more messages are read from the socket.
+    Messages that no page sends are ignored, with a line in the log. Too many or too large messages close the connection.
+    Bokeh gets neither kind. While the page uses more than its share of the event loop's time, its messages wait, a notice on
+    the page says so, and nothing is read from the socket.
     """
 
-    # Tornado closes the connection when a part of a message is longer than this.
+    # Tornado closes the connection if a part of a message is longer than this, in bytes.
     max_message_size = LARGEST_FRAGMENT
 
     _is_counted = False
@@ -64,9 +64,9 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     def open(self, *args: Any, **kwargs: Any) -> Any:
         """Disable Nagle's algorithm and open the connection."""
         self.set_nodelay(True)
-        self._guard, self._closed, self._is_over = MessageGuard(), False, False
+        self._guard, self._closed, self._is_ended = MessageGuard(), False, False
         self._writes: list[Awaitable[None]] = []
-        self._told = -PASSING_SECONDS
+        self._last_notice = -PASSING_SECONDS
         try:
             address = str(self.request.remote_ip)
             count_socket(address)
@@ -81,16 +81,16 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             await super()._async_open(token)
         except ProtocolError as error:
             self._refuse_connection(error)
-        if self._is_over and self._open_session() is not None:
-            # The socket was closed before Bokeh made the connection, which Bokeh would otherwise keep with its session for ever.
+        if self._is_ended and self._open_session() is not None:
+            # The socket was closed before Bokeh made the connection. Bokeh would keep connection and session for ever.
             super().on_close()
 
     async def send_message(self, message: Message[Any]) -> None:
-        """Write all parts of a message at once, then wait until the socket has accepted them.
+        """Write all parts of a message at once, then wait until the socket has accepted all.
 
-        Bokeh waits after each part and locks the socket while it waits. While the socket is locked, Panel postpones its changes,
-        and some of them until the next change: ``panel.io.document._dispatch_msgs`` ends the postponement although changes were
-        added.
+        Bokeh would wait after each part, and lock the socket meanwhile. While the socket is locked, Panel postpones changes,
+        some of them until the next change: ``panel.io.document._dispatch_msgs`` ends the postponement although new changes have
+        arrived.
         """
         await super().send_message(message)
         writes, self._writes = self._writes, []
@@ -103,7 +103,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         self._writes.append(WebSocketHandler.write_message(self, message, binary))
 
     async def on_message(self, message: str | bytes) -> None:
-        """Pass a message to Bokeh if a page can have sent it, when the page has its share of time left."""
+        """Wait for the page's share of time, then pass a part of a message to Bokeh if a page can have sent it."""
         session = self._open_session()
         if session is not None:
             document = session.document
@@ -113,11 +113,11 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             self._refuse_connection(UnacceptableConnectionError("a message before the session is open"))
 
     async def _wait_for_share(self, session: Any, document: Document) -> None:
-        """Wait until the page may use more time; return at once if there is no other page."""
+        """Wait until the page may use more time, unless no other page is open."""
         while (seconds := process_state().fair_share(document).wait_seconds()) and self._has_others() and not self._closed:
             process_state().metrics.messages_delayed.inc()
-            if time.monotonic() >= self._told + PASSING_SECONDS:
-                self._told = time.monotonic()
+            if time.monotonic() >= self._last_notice + PASSING_SECONDS:
+                self._last_notice = time.monotonic()
                 await session.with_document_locked(show_passing_notice, document, DELAYED_NOTICE)
             await asyncio.sleep(seconds)
 
@@ -145,14 +145,14 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             forget_socket(str(self.request.remote_ip))
         if self.connection is None or self._open_session() is not None:
             super().on_close()
-        self._closed = self._is_over = True
+        self._closed = self._is_ended = True
 
     def _open_session(self) -> Any:
-        """The session; None before it is open and after Bokeh has dropped the connection."""
+        """Return the session; None before it is open, and after Bokeh has dropped the connection."""
         try:
             return None if self.connection is None else self.connection.session
         except AssertionError:
-            # Bokeh has no other sign of this.
+            # Only this error shows that Bokeh has dropped the connection.
             return None
 
     def _refuse_connection(self, error: Exception) -> None:
@@ -162,7 +162,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
 
 
 async def _send_again(document: Document, choices: Sequence[tuple[Model, str]]) -> None:
-    """Send choices of the browser back: since it made them, it may have received an older choice from the server."""
+    """Send the browser's choices back to it: an older choice from the server may have replaced them in the meantime."""
     with set_curdoc(document), pn.io.hold(document):
         for model, name in choices:
             if model.document is document:

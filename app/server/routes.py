@@ -1,11 +1,11 @@
-"""The routes that the page and the operator need, their handlers, and the hosts; all others are refused.
+"""The routes that the page and the operator need, their handlers, and the accepted hosts; other routes and hosts are refused.
 
 Bokeh and Panel add more routes: ``autoload.js`` creates sessions, and ``components`` imports the module that the address names.
 
-The handlers are installed in ``bokeh.server.urls``, from which Bokeh builds its web application. Bokeh documents both lists
-(https://docs.bokeh.org/en/latest/docs/reference/server/urls.html); Panel puts its own handlers there as well. They are the only
+The handlers are installed in two lists of ``bokeh.server.urls`` that Bokeh documents and builds its web application from
+(https://docs.bokeh.org/en/latest/docs/reference/server/urls.html); Panel adds its own handlers there. The lists are the only
 public way to reach the handlers of ``panel serve`` without a command line option: lifecycle hooks get no reference to the web
-application, which already exists when they run. Not covered, because Bokeh and Panel add them elsewhere: ``/favicon.ico``,
+application, which already exists when the hooks run. Bokeh and Panel add other handlers elsewhere: for ``/favicon.ico``,
 ``/app/static`` and Panel's login pages.
 """
 
@@ -33,10 +33,10 @@ from app.server.session_tokens import issue_token, use_token
 _FILES = "/static/(?!.*%00).*"
 
 OF_PAGE = ("", "/ws", _FILES)
-"""Routes below the path of a page: the page, its WebSocket and its files."""
+"""Routes below the path of a page: the page itself, its WebSocket and its files."""
 
 OF_SERVER = ("/?", _FILES, *(path for path, *_ in (*MODULES, *ROUTES)))
-"""Routes below the server's prefix: the redirect to the page, scripts, styles and modules, and what the operator calls."""
+"""Routes below the server's prefix: the redirect to the page, scripts, styles, modules, and the endpoints for the operator."""
 
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 """Hosts that are always accepted."""
@@ -45,7 +45,7 @@ _ICON = "/favicon.ico"
 
 
 def served_routes(application: BokehTornado) -> list[str]:
-    """Return the patterns of all paths that are served, with those of a login if there is one."""
+    """Return the patterns of all served paths, including the paths of a login."""
     pages = [path.rstrip("/") for path in application.app_paths]
     logins = [path for path, *_ in application.auth_provider.endpoints]
     paths = [*(page + route for page in pages for route in OF_PAGE), *OF_SERVER, *logins]
@@ -53,8 +53,8 @@ def served_routes(application: BokehTornado) -> list[str]:
 
 
 def refuse_other_routes(application: BokehTornado) -> None:
-    """Answer all other paths with status 404."""
-    # Tornado tries handlers that were added later first.
+    """Answer all paths but the served paths with status 404."""
+    # Tornado tries the last added handlers first.
     application.add_handlers(".*", [(f"(?!(?:{'|'.join(served_routes(application))})$).*", NotFound)])
 
 
@@ -63,16 +63,16 @@ class ToPage(SecurityHeaders, RedirectHandler):
 
 
 def lead_to_page(application: BokehTornado) -> None:
-    """Answer the root with the page of the server's only application; Bokeh's own redirect drops the query."""
+    """Redirect the root to the page of the server's only application; Bokeh's own redirect drops the query."""
     paths = list(application.app_paths)
     if len(paths) == 1:
-        # Relative, as a proxy may have removed a part of the path.
+        # A relative address, because a proxy may have removed a part of the path.
         target = {"url": f".{paths[0]}", "permanent": False}
         application.add_handlers(".*", [(f"{application.prefix}/", ToPage, target)])
 
 
 class OtherHost(SecurityHeaders):
-    """Answers 421 to requests for a host that this server does not have."""
+    """Answers 421 to requests for a host that is not accepted."""
 
     def prepare(self) -> None:
         """Refuse the request."""
@@ -80,33 +80,33 @@ class OtherHost(SecurityHeaders):
 
 
 def accepted_hosts(application: BokehTornado) -> str:
-    """The pattern of hosts without their ports: loopback, and those whose pages may open a WebSocket."""
+    """Return the pattern of accepted hosts, without ports: loopback, and the hosts whose pages may open a WebSocket."""
     origins = bokeh_settings.allowed_ws_origin() or application.websocket_origins
     names = {origin.lower().rsplit(":", 1)[0] for origin in origins}
-    # In these origins a lone "*" stands for any host, and any other "*" for a part of one.
+    # A lone "*" stands for any host, and another "*" for a part of a host's name.
     return "|".join(".*" if name == "*" else re.escape(name).replace(r"\*", "[^.]*") for name in sorted({*LOOPBACK, *names}))
 
 
 def refuse_other_hosts(application: BokehTornado) -> None:
-    """Answer requests to other hosts with status 421. A foreign page could make its host name point to this server.
+    """Answer requests to other hosts with status 421: a foreign page could let its host name point to this server.
 
     Probes and the collector of metrics may use any host, because their answers contain no data of visitors.
     """
-    operated = "|".join(application.prefix + path for path, _ in ROUTES)
-    application.add_handlers(f"(?!(?:{accepted_hosts(application)})$).*", [(f"(?!(?:{operated})$).*", OtherHost)])
+    operator_paths = "|".join(application.prefix + path for path, _ in ROUTES)
+    application.add_handlers(f"(?!(?:{accepted_hosts(application)})$).*", [(f"(?!(?:{operator_paths})$).*", OtherHost)])
 
 
 class PageHandler(SecurityHeaders, DocHandler):
     """Serves the page with a nonce on its scripts, and with a signed token of its session.
 
-    Pages are made one at a time. Bokeh makes all those that were asked for meanwhile in one turn of the event loop, which then
-    serves nobody else, and the first of them may be discarded as unused before it is sent.
+    Pages are made one at a time. Bokeh would make all waiting pages in one turn of the event loop, which would then serve nobody
+    else, and it might discard the first page as unused before sending it.
     """
 
     _has_left = False
 
     async def get_session(self) -> Any:
-        """Create the session of a new token, unless the pages made meanwhile have taken its place."""
+        """Create a session with a new token, unless the server is full when it is this page's turn."""
         async with process_state().making_page:
             if self._has_left:
                 raise Finish
@@ -115,12 +115,12 @@ class PageHandler(SecurityHeaders, DocHandler):
             return await super().get_session()
 
     def on_connection_close(self) -> None:
-        """Make no page for a visitor who does not wait for it."""
+        """Make no page for a visitor who has left."""
         self._has_left = True
         super().on_connection_close()
 
     def write_error(self, status_code: int, **kwargs: Any) -> None:
-        """Answer with the reason; browsers ask again for a page that may be served later."""
+        """Answer with the reason. A page that may be served later is requested again by the browser."""
         error = kwargs.get("exc_info", (None, None))[1]
         if status_code not in RETRIED or not isinstance(error, HTTPError):
             super().write_error(status_code, **kwargs)
@@ -138,7 +138,7 @@ class PageHandler(SecurityHeaders, DocHandler):
 
 
 def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) -> None:
-    """Add security headers to the handlers in the lists, and append the server's own endpoints; a second call has no effect.
+    """Add security headers to the handlers in the lists, and append the server's own routes; a second call has no effect.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
 
 
 def _secured(handler: type) -> type:
-    """Return the same handler with security headers; files are compressed."""
+    """Return a handler with security headers; a handler of files also compresses them."""
     # Bokeh recognises the root handler by identity.
     if handler is RootHandler or issubclass(handler, SecurityHeaders):
         return handler

@@ -1,7 +1,7 @@
 """Security headers of responses.
 
-The Content-Security-Policy allows scripts from this server, inline scripts of the served page with a nonce (so that injected
-scripts do not run), workers from this server only, and WebAssembly (``wasm-unsafe-eval``), which the engine in the browser needs.
+The Content-Security-Policy allows scripts from this server, inline scripts with the nonce of the served page (injected scripts
+do not run), workers from this server only, and WebAssembly (``wasm-unsafe-eval``), which the engine in the browser needs.
 Bokeh and Panel need three exceptions: ``unsafe-eval``, because both create functions from text; ``blob:``, from which Panel
 imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run time.
 """
@@ -19,7 +19,7 @@ _SCRIPT = re.compile(r"<script(?=[\s>])", re.IGNORECASE)
 
 
 class SecurityHeaders(RequestHandler):
-    """Adds the headers to every response of a handler, including error pages; a mixin for other handlers."""
+    """Mixin for handlers, which adds the headers to every response, including error pages."""
 
     def set_default_headers(self) -> None:
         """Set the headers and hide the name and version of the server software."""
@@ -34,7 +34,7 @@ class SecurityHeaders(RequestHandler):
 
 
 def add_nonce(page: str, nonce: str) -> str:
-    """Return an HTML page with a nonce on all scripts; Panel's module loader passes it on to the scripts that it inserts."""
+    """Return an HTML page with a nonce on all scripts. Panel's module loader passes the nonce on to scripts that it inserts."""
     return _SCRIPT.sub(f'<script nonce="{nonce}"', page)
 
 
@@ -77,5 +77,5 @@ def security_headers(frame_ancestors: tuple[str, ...], nonce: str | None = None)
         "Referrer-Policy": "strict-origin-when-cross-origin",
         "Permissions-Policy": "camera=(), geolocation=(), microphone=(), payment=(), usb=()",
     }
-    # X-Frame-Options cannot list origins.
+    # X-Frame-Options cannot list origins, so it is sent only if no origin may embed the page.
     return headers if frame_ancestors else {**headers, "X-Frame-Options": "DENY"}

@@ -1,8 +1,8 @@
 """Signed tokens of sessions: the page receives a token, and its WebSocket must send it back.
 
-A token has a compressed part. Bokeh signs tokens only if both of its settings are set before it is imported, and decompresses
-unsigned tokens of any size. This server signs all tokens, with Bokeh's key or with its own, and decompresses a token only if its
-signature is valid.
+A token has a compressed part. Bokeh signs tokens only if two of its settings are set before its import, and decompresses
+unsigned tokens of any size. This server signs all tokens, with Bokeh's key or a key of its own, and decompresses a token only if
+the signature is valid.
 
 Bokeh lets tokens expire by the wall clock, which may be set, and refuses expired tokens of sessions that are still open. This
 server measures the age of a token on the monotonic clock of the machine, and refuses an old token only if its session has ended.
@@ -28,7 +28,7 @@ from tornado.httputil import HTTPServerRequest
 from app.state.permalink import PARAMETERS
 
 _SUBPROTOCOL, _TOKEN, _SESSION_ID, _ISSUED = "bokeh", "bokeh-token", "bokeh-session-id", "issued"
-# Ten years, in seconds: Bokeh's own check never applies.
+# Ten years, in seconds: a token never expires for Bokeh.
 _NO_EXPIRATION = 10 * 365 * 24 * 3600
 
 # The key is made when the server starts, before it forks, so that all processes of `--num-procs` share it.
@@ -48,12 +48,12 @@ def issue_token(
     application
         The server's web application.
     request
-        The request for the page. The token contains only its link parameters, and its cookies if there is a login: the session
+        The request for the page. The token contains only its link parameters, and with a login its cookies: the session
         needs nothing else.
     extra
         Additional entries of the token's payload.
     clock
-        Seconds of a monotonic clock.
+        Monotonic clock, in seconds.
     """
     arguments = {name: request.arguments[name][:1] for name in PARAMETERS if name in request.arguments}
     has_login = bool(application.auth_provider.endpoints)
@@ -70,19 +70,19 @@ def issue_token(
 
 
 def may_begin_session(application: BokehTornado, token: str, clock: Callable[[], float] = time.monotonic) -> bool:
-    """Whether a token with a valid signature was issued recently, and since this machine started."""
+    """Whether a token with a valid signature is young enough, and was issued since this machine started."""
     age: float = clock() - get_token_payload(token).get(_ISSUED, math.inf)
     return bool(0.0 <= age < application.session_token_expiration)
 
 
 def use_token(request: HTTPServerRequest, token: str) -> None:
-    """Make Bokeh use this token for the session of a request, instead of a token or an id that the client may have sent."""
+    """Make Bokeh use this token for the session of a request, in place of any token or session id from the client."""
     request.arguments.pop(_SESSION_ID, None)
     request.arguments[_TOKEN] = [token.encode()]
 
 
 def brings_own_token(application: BokehTornado, request: HTTPServerRequest) -> bool:
-    """Whether the request for a WebSocket has a token with a valid signature; the token is not decompressed."""
+    """Whether the request for a WebSocket has a token with a valid signature. The token is not decompressed."""
     offered = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
     if len(offered) != 2 or offered[0] != _SUBPROTOCOL:
         return False

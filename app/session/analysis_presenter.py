@@ -1,11 +1,11 @@
-"""Analyses of one session: follow-up analyses of each map, measures of its basins, and curves against energy."""
+"""Analyses of one session: follow-up analyses of each map, measures of its basins, and curves against energy or a parameter."""
 
 from __future__ import annotations
 
 import math
 from functools import partial
 from html import escape
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from app.session.context import SessionContext
 from app.state.glossary import with_terms
 from app.state.view import Analysis
 from app.state.view_state import WINDOW_UNKNOWN
-from app.views.analysis.basin_measures import TOLD, BasinMeasuresView
+from app.views.analysis.basin_measures import DESCRIBED_MEASURES, BasinMeasuresView, counts_in_box
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
@@ -31,89 +31,96 @@ from plots.layers.layer import Layer
 from plots.layers.map_analyses import NO_ANALYSES
 from plots.layers.table import LAYERS
 
-# Columns and rows of the maps of a sweep.
-_SIDES = (112, 112)
+# Columns and rows of each map of a sweep.
+_SWEEP_RESOLUTION = (112, 112)
+
+
+class _LayerResult(NamedTuple):
+    """The whole result of a layer, from which the settings select a part, with its map and its job."""
+
+    frame: EscapeMap
+    result: Any
+    job: Job[Any]
 
 
 class AnalysisPresenter:
-    """Analyses that the view state asks for; the results are shown over the maps and belong to the results of the session."""
+    """Requests the analyses that the view state asks for, shows them over the maps, and stores them in the session's results."""
 
     def __init__(self, context: SessionContext, maps: MapsView) -> None:
         state, jobs, locked = context.state, context.jobs, context.locked
         self._open_view, self._notice = context.open_view, context.notice
         self._state, self._results, self._maps = state, context.results, maps
-        self._spec: MapSpec | None = None
-        self._swept: SweepSpec | None = None
-        # Results of the layers that are on, each with its map and job, before a part is selected.
-        self._found: dict[str, tuple[EscapeMap, Any, Job[Any]]] = {}
-        self._notes: dict[str, str] = {}
+        self._map_spec: MapSpec | None = None
+        self._sweep_spec: SweepSpec | None = None
+        self._results_by_layer: dict[str, _LayerResult] = {}
+        self._sentences_by_name: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
-        self.measures = BasinMeasuresView(state, self._measure, context.copy)
-        self.curves = CurvesView(state, self._sweep, self._open_value, context.latest)
-        self._measuring = {
-            name: LatestRequest(jobs, partial(self._show_slow, name), partial(self.measures.say, name), locked)
+        self.measures = BasinMeasuresView(state, self._request_measure, context.copy)
+        self.curves = CurvesView(state, self._toggle_sweep, self._open_value, context.latest)
+        self._measure_requests = {
+            name: LatestRequest(jobs, partial(self._show_slow_measure, name), partial(self.measures.say, name), locked)
             for name in self.measures.buttons
         }
-        state.param.watch(lambda event: self._stop_measuring_box(), "box")
-        self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
+        state.param.watch(lambda event: self._cancel_box_measures(), "box")
+        self._sweep_request = LatestRequest(jobs, self._show_curves, self._fail_sweep, locked)
         self._follow_ups = FollowUpRequests(state, jobs, self._list_follow_ups(), self._fail, locked)
         self._connect()
 
     def _list_follow_ups(self) -> list[FollowUp]:
-        """Analyses of each complete map."""
+        """Return the analyses of each complete map."""
         return [
-            *map(self._layer, LAYERS.values()),
-            *(self._measure_of_map(measure.name) for measure in TOLD if not measure.slow),
+            *map(self._layer_follow_up, LAYERS.values()),
+            *(self._measure_follow_up(measure.name) for measure in DESCRIBED_MEASURES if not measure.slow),
         ]
 
     def _follow_map(self) -> None:
-        """Analyse the map in view, once it is complete."""
+        """Analyse the map in view once it is complete."""
         frame = self._results.frame
         if frame is not None:
-            self._begin(frame.spec)
+            self._begin_map(frame.spec)
         self._follow_ups.follow(self._results.whole_map)
         self._mark_computing()
 
-    def _begin(self, spec: MapSpec) -> None:
-        """Prepare for a new map: remove the results of the previous one."""
-        if spec == self._spec:
+    def _begin_map(self, spec: MapSpec) -> None:
+        """Prepare for a new map: remove the results of the previous map."""
+        if spec == self._map_spec:
             return
-        self._spec = spec
-        self._found = {}
-        self._stop_measuring()
+        self._map_spec = spec
+        self._results_by_layer = {}
+        self._cancel_measures()
         self._maps.overlays.begin(spec)
         self.measures.begin()
         if self._results.analyses != NO_ANALYSES:
             self._results.analyses = NO_ANALYSES
-        self.note(**dict.fromkeys(LAYERS, ""))
+        self.show_notes(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
 
     def close(self) -> None:
         """Cancel all requests at the end of the session."""
         self._follow_ups.follow(None)
-        self._stop_measuring()
-        self._sweeping.cancel()
+        self._cancel_measures()
+        self._sweep_request.cancel()
 
     def _connect(self) -> None:
         watch = self._state.param.watch
         self._results.param.watch(lambda event: self._follow_map(), "frame")
         watch(lambda *events: self._show_pictures(), ["layers", "compared"])
         watch(self._switch_layers, "layers")
-        watch(lambda event: self._select(), "settings")
+        watch(lambda event: self._apply_settings(), "settings")
         watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
         watch(lambda *events: self._show_curves(None), "system")
         self._show_pictures()
 
-    def _layer(self, layer: Layer) -> FollowUp:
+    def _layer_follow_up(self, layer: Layer) -> FollowUp:
         """Return the analysis of a layer, which is requested while the layer is on."""
-        return FollowUp(partial(self._layer_job, layer), partial(self._show_result, layer), ("layers", "settings"))
+        return FollowUp(partial(self._layer_job, layer), partial(self._show_layer_result, layer), ("layers", "settings"))
 
     def _layer_job(self, layer: Layer, frame: EscapeMap) -> Job[Any] | None:
         is_shown = layer.name in self._state.layers and not layer.refusal(frame.spec)
         return layer.job(frame.spec, self._state.settings) if is_shown else None
 
-    def _measure_of_map(self, name: str) -> FollowUp:
-        """Return a measure of the whole view or of the box, which is requested while the tab is open."""
+    def _measure_follow_up(self, name: str) -> FollowUp:
+        """Return a measure of the whole view or of the box, which is requested while the measures are open."""
         state = self._state
         return FollowUp(
             lambda frame: measure_job(frame.spec, name, state.box) if state.analysis is Analysis.MEASURES else None,
@@ -133,87 +140,91 @@ class AnalysisPresenter:
 
     def _switch_layers(self, event: Any) -> None:
         for name in event.old - event.new:
-            self._remove(name)
+            self._remove_layer_result(name)
         self._explain_refusals()
         self._mark_computing()
 
     def _mark_computing(self) -> None:
-        """Say in the pictures which layers of a complete map have no complete result yet."""
+        """Mark the layers of a complete map that have no complete result yet."""
         whole = self._results.whole_map
-        wanted = {layer.name for layer in self._layers_on() if whole is not None and not layer.refusal(whole.spec)}
-        done = {name for name, (_, result, _) in self._found.items() if getattr(result, "complete", True)}
-        self._maps.mark_computing(frozenset(wanted - done))
+        requested = {layer.name for layer in self._layers_on() if whole is not None and not layer.refusal(whole.spec)}
+        complete = {name for name, found in self._results_by_layer.items() if _is_complete(found.result)}
+        self._maps.mark_computing(frozenset(requested - complete))
 
     def _fail(self, sentence: str) -> None:
-        """Show why an analysis has no result; no other analysis is known to be running."""
+        """Say why an analysis has no result. All marks are removed, because the sentence does not name the analysis."""
         self._maps.mark_computing(frozenset())
         self._notice.warn(sentence)
 
-    def _remove(self, name: str) -> None:
-        """Remove the result of a layer."""
-        self._found.pop(name, None)
+    def _remove_layer_result(self, name: str) -> None:
+        self._results_by_layer.pop(name, None)
         self._maps.remove_layer(name)
         self._results.analyses = self._results.analyses.with_result(name, None)
-        self.note(**{name: ""})
+        self.show_notes(**{name: ""})
 
     def _explain_refusals(self) -> None:
-        if self._spec is not None:
-            spec = self._spec
-            self.note(**{layer.name: sentence for layer in self._layers_on() if (sentence := layer.refusal(spec))})
+        """Say why layers cannot be computed for the map in view."""
+        if self._map_spec is not None:
+            spec = self._map_spec
+            self.show_notes(**{layer.name: sentence for layer in self._layers_on() if (sentence := layer.refusal(spec))})
 
-    def note(self, **sentences: str) -> None:
-        """Show notes by name, of a layer or of the comparison; an empty sentence removes a note."""
-        self._notes |= sentences
-        body = " ".join(escape(sentence) for sentence in self._notes.values() if sentence)
+    def show_notes(self, **sentences: str) -> None:
+        """Replace notes, by the name of a layer or of the comparison; an empty sentence removes a note."""
+        self._sentences_by_name |= sentences
+        body = " ".join(escape(sentence) for sentence in self._sentences_by_name.values() if sentence)
         self.notes.object = with_terms(body)
 
-    def _show_result(self, layer: Layer, frame: EscapeMap, result: Any) -> None:
-        self._found[layer.name] = frame, result, layer.job(frame.spec, self._state.settings)
-        self._show_selected(layer)
+    def _show_layer_result(self, layer: Layer, frame: EscapeMap, result: Any) -> None:
+        self._results_by_layer[layer.name] = _LayerResult(frame, result, layer.job(frame.spec, self._state.settings))
+        self._show_selection(layer)
         self._mark_computing()
 
-    def _select(self) -> None:
-        """Select parts of the results by the settings, and remove results that were computed with other settings."""
-        for name, (frame, _, job) in list(self._found.items()):
-            if LAYERS[name].job(frame.spec, self._state.settings) == job:
-                self._show_selected(LAYERS[name])
+    def _apply_settings(self) -> None:
+        """Select parts of the results anew, and remove results that were computed with other settings."""
+        for name, found in list(self._results_by_layer.items()):
+            if LAYERS[name].job(found.frame.spec, self._state.settings) == found.job:
+                self._show_selection(LAYERS[name])
             else:
-                self._remove(name)
+                self._remove_layer_result(name)
         self._mark_computing()
 
-    def _show_selected(self, layer: Layer) -> None:
-        """Show the part of the result of a layer that the settings select."""
-        frame, result, _ = self._found[layer.name]
-        selected = layer.select(result, self._state.settings)
-        self._maps.show_layer(layer.name, frame, selected)
-        self.note(**{layer.name: selected.describe()})
-        if getattr(result, "complete", True):
-            self._results.analyses = self._results.analyses.with_result(layer.name, selected)
+    def _show_selection(self, layer: Layer) -> None:
+        """Show the part of a layer's result that the settings select."""
+        frame, result, _ = self._results_by_layer[layer.name]
+        selection = layer.select(result, self._state.settings)
+        self._maps.show_layer(layer.name, frame, selection)
+        self.show_notes(**{layer.name: selection.describe()})
+        if _is_complete(result):
+            self._results.analyses = self._results.analyses.with_result(layer.name, selection)
 
-    # Measurements started by buttons.
+    # Slow measures, started by buttons.
 
-    def _measure(self, name: str) -> None:
+    def _request_measure(self, name: str) -> None:
         if not is_ready_for_maps(self._state.potential):
             self.measures.say(name, WINDOW_UNKNOWN)
             return
         self.measures.wait_for(name)
-        self._measuring[name].submit(measure_job(self._state.map_spec(), name, self._state.box))
+        self._measure_requests[name].submit(measure_job(self._state.map_spec(), name, self._state.box))
 
-    def _show_slow(self, name: str, result: Any) -> None:
-        self._measuring[name].cancel()
+    def _show_slow_measure(self, name: str, result: Any) -> None:
+        # Without this, the request would ignore another click for the same map.
+        self._measure_requests[name].cancel()
         self.measures.show(name, result)
 
-    def _stop_measuring(self) -> None:
-        for request in self._measuring.values():
+    def _cancel_measures(self) -> None:
+        for request in self._measure_requests.values():
             request.cancel()
 
-    def _stop_measuring_box(self) -> None:
-        """Stop slow measures of the starts in the box."""
-        for name, request in self._measuring.items():
-            if not MEASURES[name].place:
+    def _cancel_box_measures(self) -> None:
+        """Cancel the slow measures that depend on the box."""
+        for name, request in self._measure_requests.items():
+            if counts_in_box(MEASURES[name]):
                 request.cancel()
 
-    def _sweep(self) -> None:
+    # Curves.
+
+    def _toggle_sweep(self) -> None:
+        """Start a sweep along the energy or a parameter, or stop the sweep that is running."""
         if self.curves.running:
             self._stop_sweep()
             return
@@ -224,18 +235,18 @@ class AnalysisPresenter:
         if name != "h":
             low, high = default_range(state.system, name)
             along, energy = ParameterAxis(name, low, high, state.system), state.energy
-        self._swept = SweepSpec(
-            state.potential, plane, _swept_values(low, high), _SIDES, t_max=state.t_max, measures=CURVES, along=along,
+        self._sweep_spec = SweepSpec(
+            state.potential, plane, _sweep_values(low, high), _SWEEP_RESOLUTION, t_max=state.t_max, measures=CURVES, along=along,
             energy=energy, refine=REFINED_VALUES,
         )  # fmt: skip
         self.curves.show_running(True)
-        self._sweeping.submit(sweep_job(self._swept))
+        self._sweep_request.submit(sweep_job(self._sweep_spec))
 
     def _stop_sweep(self) -> None:
-        self._sweeping.cancel()
+        self._sweep_request.cancel()
         self.curves.show_running(False)
 
-    def _sweep_failed(self, sentence: str) -> None:
+    def _fail_sweep(self, sentence: str) -> None:
         self.curves.show_running(False)
         self.curves.say(sentence)
 
@@ -247,7 +258,7 @@ class AnalysisPresenter:
 
     def _open_value(self, value: float) -> None:
         """Show the map of an energy, or of a value of the parameter, on the plane of the curves."""
-        spec = self._swept
+        spec = self._sweep_spec
         if self.curves.shown is None or spec is None:
             return
         if spec.along is None:
@@ -257,8 +268,13 @@ class AnalysisPresenter:
             self._open_view(system, {"energy": spec.energy, "plane": spec.plane, "window": None, "starts": (), "chosen": 0})
 
 
-def _swept_values(low: float, high: float) -> list[float]:
-    """Return evenly spaced values from `low` to `high`, with few digits."""
+def _is_complete(result: Any) -> bool:
+    """Whether no further part of a result follows; results that always arrive whole have no attribute `complete`."""
+    return bool(getattr(result, "complete", True))
+
+
+def _sweep_values(low: float, high: float) -> list[float]:
+    """Return `SWEPT_VALUES` evenly spaced values from `low` to `high`, rounded to few digits."""
     spacing = (high - low) / (SWEPT_VALUES - 1)
     decimals = max(4, 2 - math.floor(math.log10(spacing)))
     values: list[float] = np.round(np.linspace(low, high, SWEPT_VALUES), decimals).tolist()

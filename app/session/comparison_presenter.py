@@ -1,4 +1,4 @@
-"""Comparison of one session: another view is computed for the pixels of the map in view, and the differences are shown."""
+"""Comparison of the map in view with another view, which is computed for the same pixels."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from plots.texts.accepted_potentials import refusal
 
 
 class ComparisonPresenter:
-    """Follows the view with which the view state is compared.
+    """Requests and shows the map of the other view, `ViewState.compared`, and describes the differences.
 
     Parameters
     ----------
@@ -32,9 +32,9 @@ class ComparisonPresenter:
     maps
         Shows the other map.
     say
-        Called with a text about the two views.
+        Shows a text about the two views.
     refuse
-        Called with the reason why the other view, which a link names, cannot be shown; the comparison then ends.
+        Says why the other view cannot be shown; the comparison ends.
     """
 
     def __init__(
@@ -46,20 +46,20 @@ class ComparisonPresenter:
     ) -> None:
         self._state, self._maps, self._say, self._refuse = context.state, maps, say, refuse
         self._open_view = context.open_view
-        self._frame: EscapeMap | None = None
-        self._other: EscapeMap | None = None
-        self._reviewed: SystemReview | None = None
-        # The last preparation of a map, and the last one that is finished.
-        self._preparing: Job[None] | None = None
-        self._prepared: Job[None] | None = None
+        self._map: EscapeMap | None = None
+        self._other_map: EscapeMap | None = None
+        self._other_review: SystemReview | None = None
+        # The last job that prepares a map, and the last such job that has finished.
+        self._preparation: Job[None] | None = None
+        self._finished_preparation: Job[None] | None = None
         self._review = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
-        self._request = LatestRequest(context.jobs, self._take, self._fail, context.locked)
-        self._state.param.watch(lambda event: self._follow(), "compared")
+        self._request = LatestRequest(context.jobs, self._take_result, self._fail, context.locked)
+        self._state.param.watch(lambda event: self._restart(), "compared")
         context.results.param.watch(lambda event: self._follow_map(context.results.whole_map), "frame")
         self._continue()
 
     def compare(self, on: bool) -> None:
-        """Compare later views with the present one in the same window, or end the comparison."""
+        """Compare later views with the present view in the same window, or end the comparison."""
         state = self._state
         if not on:
             state.compared = None
@@ -68,7 +68,7 @@ class ComparisonPresenter:
         state.param.update(compared=state.view, window=window)
 
     def swap_views(self) -> None:
-        """Exchange the view of the controls and the view with which it is compared."""
+        """Exchange the view of the controls and the other view."""
         state, other = self._state, self._state.compared
         if other is None:
             return
@@ -76,9 +76,9 @@ class ComparisonPresenter:
         self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.view})
 
     def _follow_map(self, frame: EscapeMap | None) -> None:
-        """Compare a complete map; while there is none, the last one is compared."""
+        """Compare a complete map, which stays compared until the next complete map."""
         if frame is not None:
-            self._frame = frame
+            self._map = frame
             self._continue()
             self._describe()
 
@@ -87,8 +87,8 @@ class ComparisonPresenter:
         self._review.cancel()
         self._request.cancel()
 
-    def _follow(self) -> None:
-        self._other = None
+    def _restart(self) -> None:
+        self._other_map = None
         self._maps.show_compared(None)
         self._say("")
         if self._state.compared is None:
@@ -97,20 +97,20 @@ class ComparisonPresenter:
             self._continue()
 
     def _continue(self) -> None:
-        """Request the next missing part: the review of the other system, its kernels, its potentials, its map."""
+        """Request what is missing next: the review of the other system, its kernels, its potentials, or its map."""
         view = self._state.compared
         if view is None:
             return
-        if self._reviewed is None or self._reviewed.system != view.system:
+        if self._other_review is None or self._other_review.system != view.system:
             self._review.submit(review_job(view.system))
-        elif (problem := refusal(self._reviewed)) is not None:
+        elif (problem := refusal(self._other_review)) is not None:
             self._refuse_system(problem)
-        elif self._frame is None:
+        elif self._map is None:
             return
-        elif not is_ready_for_maps(self._reviewed.potential):
-            self._prepare(Job(prepare_for_maps, (self._reviewed.potential,), queue=Queue.COMPILATION))
+        elif not is_ready_for_maps(self._other_review.potential):
+            self._prepare(Job(prepare_for_maps, (self._other_review.potential,), queue=Queue.COMPILATION))
         else:
-            self._request_map(view, self._reviewed, self._frame)
+            self._request_map(view, self._other_review, self._map)
 
     def _request_map(self, view: View, reviewed: SystemReview, frame: EscapeMap) -> None:
         try:
@@ -121,23 +121,23 @@ class ComparisonPresenter:
             self._fail(str(error))
             return
         members = members_job(spec.plane.parameter)
-        if members is not None and members != self._prepared:
+        if members is not None and members != self._finished_preparation:
             self._prepare(members)
         else:
             self._request.submit(job)
 
     def _prepare(self, job: Job[None]) -> None:
-        self._preparing = job
+        self._preparation = job
         self._request.submit(job)
 
     def _take_review(self, reviewed: SystemReview) -> None:
-        self._reviewed = reviewed
+        self._other_review = reviewed
         self._continue()
 
-    def _take(self, result: EscapeMap | None) -> None:
-        """Show a map, or continue when it is prepared."""
+    def _take_result(self, result: EscapeMap | None) -> None:
+        """Show the other map, or continue after its preparation, which has no result."""
         if result is None:
-            self._prepared = self._preparing
+            self._finished_preparation = self._preparation
             self._continue()
         else:
             self._show(result)
@@ -153,18 +153,18 @@ class ComparisonPresenter:
     def _show(self, other: EscapeMap) -> None:
         view = self._state.compared
         assert view is not None, "the request is cancelled together with the comparison"
-        self._other = other
+        self._other_map = other
         self._maps.show_compared(other, view.title)
         self._describe()
 
     def _describe(self) -> None:
-        view, frame, other = self._state.compared, self._frame, self._other
+        view, frame, other = self._state.compared, self._map, self._other_map
         if view is not None and frame is not None and other is not None:
             self._say(f"Compared with {view.title}: {_difference(frame, other)}")
 
 
 def _difference(one: EscapeMap, other: EscapeMap) -> str:
-    """Describe how many starts of two maps have different outcomes."""
+    """Describe how many starts of two maps have different outcomes; "…" until both maps show the same pixels."""
     if not other.complete:
         return "…"
     if one.spec.plane.axis_symbols != other.spec.plane.axis_symbols:

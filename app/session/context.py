@@ -1,4 +1,4 @@
-"""The objects that the presenters of one session share."""
+"""What the presenters of one session share: state, results, services, and the entries of the browser's history."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ class SessionContext:
     state
         The view state.
     results
-        The results for the state.
+        The results for the view state.
     jobs
         Computes results.
     notice
         Shows messages.
     locked, latest
-        Wrap functions that change the document. `latest` runs only the latest of several waiting calls.
+        Wrap a function to run under the session's lock. Of several waiting calls, `latest` runs only the latest.
     copy
-        Called with a text that is copied to the clipboard.
+        Copies a text to the clipboard.
     open_view
-        Called with a system, which is reviewed first, and with values of the view state that are shown with it.
+        Reviews a system, then shows it with the given values of the view state.
     """
 
     state: ViewState
@@ -47,7 +47,7 @@ class SessionContext:
 
 
 class History:
-    """Counts the entries that the page has made, so that "Back" undoes one action of the user."""
+    """Numbers the entries of the browser's history, one for each action of the user, which "Back" undoes."""
 
     def __init__(self) -> None:
         self.entry = 0
@@ -56,7 +56,7 @@ class History:
         self._gesture_recorded = False
 
     def record(self) -> int:
-        """Return the number of the entry of a new state; all states of one gesture share an entry."""
+        """Return the entry of a new state. All states of one gesture share an entry."""
         if not (self._in_gesture and self._gesture_recorded):
             self.entry += 1
             self._last = self.entry
@@ -64,7 +64,7 @@ class History:
         return self.entry
 
     def begin_gesture(self) -> None:
-        """Begin or continue a drag or a rotation of the wheel, which may change the state several times."""
+        """Begin or continue a gesture: a drag or a turn of the wheel, which may change the state several times."""
         if not self._in_gesture:
             self._in_gesture, self._gesture_recorded = True, False
 
@@ -73,6 +73,6 @@ class History:
         self._in_gesture = False
 
     def move_to(self, entry: int) -> None:
-        """Follow the browser to another entry; entries of an earlier page count as the first one."""
+        """Follow the browser to another entry; an entry of an earlier page counts as the first entry."""
         self.end_gesture()
         self.entry = entry if 0 <= entry <= self._last else 0

@@ -1,4 +1,4 @@
-"""The explorer of one session: it makes its presenters and views, and handles keys and other events of the browser."""
+"""The explorer of one session: its presenters and views, and the handling of the browser's keys and other events."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ from engine.jobs.client import JobClient
 
 
 class Explorer:
-    """The explorer of one session: its state, results, presenters and views.
+    """Makes and connects the state, results, presenters and views of one session.
 
     Parameters
     ----------
     loop
-        The event loop of the server; None if the explorer is made on it.
+        The event loop of the server; None if the explorer is made on the thread of the loop.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop | None = None) -> None:
@@ -56,7 +56,7 @@ class Explorer:
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
         self._document, self._by_touch = document, False
         callbacks = SessionCallbacks(document, loop)
-        # Panel may run widget callbacks without the session's lock, which changes of plain Bokeh models need.
+        # Panel may run callbacks of widgets without the session's lock, but changes of Bokeh models need the lock.
         self._locked = callbacks.every
         self._client = JobClient(process_state().jobs, account=account_of(document))
         on_disconnect(document, self._client.close)
@@ -77,7 +77,7 @@ class Explorer:
         self.maps = MapPresenter(context, self._document, self.links.history, alone=self.links.embedded)
         self.analyses = AnalysisPresenter(context, self.maps.view)
         self.comparison = ComparisonPresenter(
-            context, self.maps.view, lambda sentence: self.analyses.note(compared=sentence), self.links.refuse_comparison
+            context, self.maps.view, lambda sentence: self.analyses.show_notes(compared=sentence), self.links.refuse_comparison
         )
         self.orbits = OrbitPresenter(context, self.maps.view.marks, self.maps.view.well, self.maps.add_start)
         self.watch = WatchPresenter(context)
@@ -152,7 +152,7 @@ class Explorer:
             self.maps.view.set_dark(dark)
 
     def _begin_view(self) -> None:
-        """Show the view of the state; from then on everything follows changes of the state."""
+        """Show the first view; presenters then follow the changes of the state."""
         self.preview.show_view()
         self.maps.requests.request_map()
         self.orbits.begin()
@@ -163,11 +163,11 @@ class Explorer:
             part.begin_touch()
 
     def _enlarge(self, name: str) -> None:
-        """Show a picture large, or all pictures side by side if it is large already."""
+        """Show a picture large; if it is large already, show all pictures side by side."""
         self.state.focus = "" if name == self.state.focus else name
 
     def _open_view(self, system: System, values: dict[str, Any]) -> None:
-        """Show a system, once it is reviewed, with other values of the state."""
+        """Review a system, then show it with the given values of the state."""
         self.links.open(system, partial(self.state.show, **values))
 
     def _show_preset(self, preset: Preset) -> None:
@@ -181,7 +181,7 @@ class Explorer:
         self.notice.show("Copied." if success else "The browser does not allow copying.")
 
     def _copy(self, text: str | None) -> None:
-        """Copy a text, or with None the page's address."""
+        """Copy a text; None copies the address of the page."""
         self.browser.copy(text)
 
     def _copy_embed_code(self) -> None:
@@ -217,5 +217,5 @@ class Explorer:
 
 
 def _parameters() -> dict[str, str]:
-    """The parameters in the page's address."""
+    """Return the parameters in the address of the page."""
     return {name: texts[0].decode(errors="replace") for name, texts in dict(pn.state.session_args or {}).items()}

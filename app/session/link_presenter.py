@@ -1,4 +1,4 @@
-"""The page's address: it is shown at the start and when the browser's history moves, and written when the state changes."""
+"""The links of the page: links of the address and of the browser's history are shown, and a link of each new state is written."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from engine.systems.review.potential_review import SystemReview
 
 
 class LinkPresenter:
-    """The links of one session, and the view state that the first link describes.
+    """Makes the view state from the first link, shows later links, and writes the link of the state to the address.
 
     Parameters
     ----------
@@ -64,14 +64,14 @@ class LinkPresenter:
         progress: ProgressView,
         notice: Notice,
     ) -> None:
-        """Follow the changes of the state; these parts of the page show it."""
+        """Connect the links with the other parts of the page, and write a link for each change of the state."""
         self._potential, self._browser = potential, browser
         self._progress, self._notice = progress, notice
         self.state.param.watch(self._write, list(LINKED))
         self.open_link.show(write_link(self.state))
 
     def begin(self, begin_view: Callable[[], object]) -> None:
-        """Show the view of the first link once its system is reviewed. `begin_view` requests what the state describes."""
+        """Show the view of the first link once its system is reviewed. `begin_view` requests the results of the state."""
         system = self.view.system
         if is_known(system):
             begin_view()
@@ -80,23 +80,23 @@ class LinkPresenter:
             self._review(system, self._begin_with, partial(self._begin_without, begin_view))
 
     def open(self, system: System, use: Callable[[SystemReview], object]) -> None:
-        """Use a system once it is reviewed, or say why it is refused."""
+        """Review a system, then use it or say why it is refused."""
         self._review(system, use, self._refuse)
 
     def refuse_comparison(self, problem: str) -> None:
-        """Show why the view with which a link compares is refused."""
+        """Show why the view with which a link compares the state is refused."""
         self._problems.append(refused_comparison(problem))
         self._show_problems()
 
     def navigate(self, link: str, entry: int, steps: int) -> None:
-        """Show the state of a link in the browser's history."""
+        """Show the view of a link in the browser's history."""
         self._browser.follow_steps(steps)
         values, self._problems = read_link(dict(parse_qsl(link.removeprefix("?"))))
         self.history.move_to(entry)
         self.open(linked_view(values).system, partial(self._return, values))
 
     def _first_state(self) -> ViewState:
-        """Return the view of the link; a system that must be reviewed is replaced by the first system."""
+        """Return the state of the first link, with the default system until the system of the link is reviewed."""
         if not is_known(self.view.system):
             return ViewState(**without_system(self._link))
         fitting, problems = fit_to_system(self._link, review_catalogue_entry(self.view.system.case))
@@ -104,12 +104,12 @@ class LinkPresenter:
         return ViewState(**fitting)
 
     def _begin_with(self, reviewed: SystemReview) -> None:
-        """Show the view of the first link with the system that it names."""
+        """Show the view of the first link with its reviewed system."""
         self._problems += self._show(self._link, reviewed)
         self._show_problems()
 
     def _begin_without(self, begin_view: Callable[[], object], problem: str) -> None:
-        """Show the first view in place of a system that is refused."""
+        """Show the default system in place of a refused system."""
         self._problems.append(refused_link(problem))
         begin_view()
         self._show_problems()
@@ -119,7 +119,7 @@ class LinkPresenter:
             self._notice.warn(" ".join(self._problems))
 
     def _review(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> None:
-        """Review a system, and show a message until it is reviewed."""
+        """Review a system, and say so while the review runs."""
         if self._potential.open(system, use, refuse):
             self._progress.show_reviewing()
 
@@ -128,12 +128,12 @@ class LinkPresenter:
         self._notice.warn(refused_link(problem))
 
     def _show(self, values: Mapping[str, Any], reviewed: SystemReview) -> list[str]:
-        """Show the values of a link with its system; return messages for invalid values."""
+        """Show the values of a link with a reviewed system; return messages for invalid values."""
         fitting, problems = fit_to_system(values, reviewed)
         shown = ViewState(**fitting)
         self._navigating = True
         try:
-            # A link can add figures and buttons; held together, Bokeh searches the models of the page only once for all of them.
+            # A link can add figures and buttons. With the models frozen, Bokeh searches the page once for all of these.
             with pn.io.hold(), self._document.models.freeze():
                 self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
         finally:
@@ -146,9 +146,9 @@ class LinkPresenter:
         self._browser.write_link(write_link(self.state, embedded=self.embedded), self.history.entry)
 
     def _write(self, *events: Any) -> None:
-        """Show the state as the address. The choice among the orbits makes no entry in the browser's history."""
+        """Write the link of the state to the address. Choosing another orbit makes no entry in the browser's history."""
         if not self._navigating:
-            # The "Back" of a page would also go through the entries of its frames.
+            # "Back" on a page also goes through the entries of its frames, so an embedded page makes no entries.
             is_entry = not self.embedded and {event.name for event in events} != {"chosen"}
             entry = self.history.record() if is_entry else self.history.entry
             self._browser.write_link(write_link(self.state, embedded=self.embedded), entry)

@@ -1,4 +1,4 @@
-"""The maps of one session: they are requested, painted, moved to other windows, and clicked."""
+"""The maps of one session: requests, pictures, moves to other windows, clicks and boxes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 
 class MapPresenter:
-    """Requests the map of the view state and shows it; moves and clicks change the view state.
+    """Requests and shows the map of the view state; moves and clicks change the view state.
 
     Parameters
     ----------
@@ -33,9 +33,9 @@ class MapPresenter:
     document
         The document of the page.
     history
-        History of the browser: the moves of one gesture make one entry.
+        Numbers the entries of the browser's history; the moves of one gesture make one entry.
     alone
-        Whether the page shows only one picture.
+        Whether the page shows only one picture, in a frame of another page.
     """
 
     def __init__(self, context: SessionContext, document: Document, history: History, *, alone: bool) -> None:
@@ -43,8 +43,8 @@ class MapPresenter:
         self._state, self._results, self._notice = state, context.results, context.notice
         self._document, self._history = document, history
         self._requested_at: float | None = None
-        # The start that the last click added; None if it was in the list before.
-        self._just_added: Start | None = None
+        # The start that the last click added; None if the start was in the list already.
+        self._added_start: Start | None = None
         self.view = MapsView(
             MapActions(
                 tap=locked(self.add_start),
@@ -78,14 +78,14 @@ class MapPresenter:
             self.progress.set_palette(PALETTES[name])
 
     def begin_touch(self) -> None:
-        """The page is used by touch."""
+        """Adapt to touch input."""
         self.toolbar.begin_touch()
         self.view.begin_touch()
 
     # Windows, starts and boxes.
 
     def show_window(self, window: Window | None) -> None:
-        """Show another window; where double precision ends, the window does not change."""
+        """Show another window, or, where double precision ends, return the pictures to the present window."""
         try:
             if window is not None:
                 replace(self._state.map_spec(), window=window).find_window()
@@ -103,21 +103,21 @@ class MapPresenter:
             self.view.ranges.finish_report()
 
     def _go_to_window(self, *events: Any) -> None:
-        """Show the window of the state before its map is there: a late report of an earlier move would count as a new one."""
+        """Move the pictures to the window of the state at once: a late report of an earlier move would count as a new move."""
         if any(event.name != "window" for event in events):
-            # Another picture comes with its own window.
+            # The map of another system or plane arrives with its own window.
             return
         try:
             self.view.ranges.go_to(self._state.find_window())
         except ValueError:
-            # A window that is not known yet comes with the map.
+            # A default window that is not known yet arrives with the map.
             return
 
     def _dive(self, x: float, ordinate: float) -> None:
-        """Zoom to a point that is double-clicked; the first click then does not choose an orbit."""
+        """Zoom to a double-clicked point, and remove the start that the first click has added."""
         state = self._state
-        if self._just_added in state.starts:
-            state.remove_start(state.starts.index(self._just_added))
+        if self._added_start in state.starts:
+            state.remove_start(state.starts.index(self._added_start))
         self.show_window(zoom(state.find_window(), DIVE_FACTOR, (x, ordinate)))
 
     def add_middle(self) -> None:
@@ -127,37 +127,36 @@ class MapPresenter:
         self.add_start(*self.view.snapped(x, ordinate))
 
     def add_start(self, x: float, ordinate: float) -> None:
-        """Add a start, or say why this is not possible; a forbidden start is not added."""
+        """Add a start, or say why it is not added: it is forbidden, or the list is full."""
         state = self._state
         if state.orbit_job((x, ordinate)) is None:
             self._notice.show(describe_fate(Fate.FORBIDDEN))
             return
-        # The first orbits add figures and buttons; held together, Bokeh searches the models of the page only once for all of
-        # them.
+        # The first orbits add figures and buttons. With the models frozen, Bokeh searches the page once for all of these.
         before = state.starts
         with self._document.models.freeze():
             added = state.add_start((x, ordinate))
             state.analysis = Analysis.ORBIT
-        self._just_added = (x, ordinate) if state.starts != before else None
+        self._added_start = (x, ordinate) if state.starts != before else None
         if not added:
             self._notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
 
     def _count_in(self, box: Window) -> None:
-        """Count in a box, and show the statistics unless the measures are in view."""
+        """Count the starts in a box, and show the statistics unless the measures are open."""
         shown = self._state.analysis
         self._state.param.update(box=box, analysis=shown if shown is Analysis.MEASURES else Analysis.STATISTICS)
 
     def _remove_box(self, *events: Any) -> None:
-        """Remove the box of another view, unless a link contains a new one."""
+        """Remove the box when another view is shown, unless the view comes with a box."""
         if all(event.name != "box" for event in events):
             self._state.box = None
 
     # Requests and their results.
 
     def map_requested(self, *, compiling: bool = False) -> None:
-        """A map is requested."""
+        """Show that a map is requested."""
         if compiling:
-            # The pictures of the previous system stay for some seconds.
+            # The pictures of the previous system stay, marked, for some seconds.
             self.view.grid.mark_stale(True)
         self._requested_at = time.monotonic()
         self.progress.start()
@@ -178,7 +177,7 @@ class MapPresenter:
             self._results.frame = frame
 
     def map_stopped(self) -> None:
-        """The map is cancelled."""
+        """Show that the map is cancelled."""
         self.progress.stop()
 
     def map_failed(self, sentence: str) -> None:

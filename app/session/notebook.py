@@ -1,4 +1,4 @@
-"""The page in a notebook: this process serves it to a frame in the cell, with the job manager that all sessions share."""
+"""The page in a notebook, served by this process to a frame in the cell."""
 
 from __future__ import annotations
 
@@ -18,17 +18,18 @@ from app.state.view_state import ViewState
 from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, System, compute_map, write_formula
 from engine.systems.system import TYPED
 
-_STARTS_WITHIN = 60.0
+# Longest time until the server answers, in seconds.
+_START_SECONDS = 60.0
 
-# Resolution of the map that replaces the page where the page cannot be reached.
-_PICTURED, _PICTURED_TIME = (112, 112), 1e3
+# Resolution and largest t_max of the map that is shown where the page cannot be reached.
+_PICTURE_RESOLUTION, _PICTURE_T_MAX = (112, 112), 1e3
 
 
 class Explorer:
     """The live page in a notebook cell; show it as the last line of a cell.
 
     The page runs in this process and uses the same threads and cache as later calls in the notebook. The browser must reach this
-    machine, as with a local JupyterLab; where it cannot, and in a saved notebook, the cell shows a coarse map instead.
+    machine, as with a local JupyterLab. Elsewhere, and in a saved notebook, the cell shows a coarse map instead.
 
     Parameters
     ----------
@@ -43,12 +44,12 @@ class Explorer:
         self.height = height
         view = ViewState() if spec is None else _view_of(spec)
         self._link = "" if spec is None else write_link(view)
-        self._pictured = replace(view.map_spec(), resolution=_PICTURED, t_max=min(view.t_max, _PICTURED_TIME))
+        self._picture_spec = replace(view.map_spec(), resolution=_PICTURE_RESOLUTION, t_max=min(view.t_max, _PICTURE_T_MAX))
         self._session: session.Explorer | None = None
         self._port = 0
         self._started = threading.Event()
         threading.Thread(target=self._serve, name="explorer", daemon=True).start()
-        if not self._started.wait(_STARTS_WITHIN):
+        if not self._started.wait(_START_SECONDS):
             raise RuntimeError("the server of the page did not start")
 
     @property
@@ -58,7 +59,7 @@ class Explorer:
 
     @property
     def map(self) -> EscapeMap | None:
-        """The map in view; None while it is computed."""
+        """The map in view; None until the map is complete."""
         return self._session.results.whole_map if self._session is not None else None
 
     @property
@@ -73,8 +74,8 @@ class Explorer:
         self._loop.call_soon_threadsafe(self._loop.stop)
 
     def _repr_html_(self) -> str:
-        # Browsers show the content of an object if its page cannot be reached, as in a saved notebook.
-        picture = compute_map(self._pictured)._repr_html_()
+        # A browser shows the content of an `object` element if it cannot reach the page, as in a saved notebook.
+        picture = compute_map(self._picture_spec)._repr_html_()
         style = f"width:100%;height:{self.height}px"
         return f"<object type='text/html' data='{html.escape(self.address)}' style='{style}'>{picture}</object>"
 
@@ -91,14 +92,14 @@ class Explorer:
         self._loop.run_forever()
 
     def _open(self) -> Any:
-        """Build the page, on a thread of Bokeh."""
+        """Build the page of a session."""
         pn.extension()
         self._session = session.Explorer(self._loop)
         return explorer_page(self._session)
 
 
 def _view_of(spec: MapSpec) -> ViewState:
-    """Return the view that shows a map; `t_max` and resolution are the nearest of the page's choices."""
+    """Return the view that shows a map, with the nearest of the page's choices of `t_max` and resolution."""
     known = next((name for name, potential in POTENTIALS.items() if potential == spec.potential), TYPED)
     view = ViewState(system=System(known, write_formula(spec.potential) if known == TYPED else ""))
     energy = {} if spec.common_energy is None else {"energy": spec.common_energy}

@@ -1,4 +1,4 @@
-"""The orbits: they are requested for the starts of the view state, drawn, marked on the maps, judged, and played."""
+"""The orbits of the starts in the view state: they are drawn, marked on the maps, judged, and played."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ from plots.pictures.palette import PALETTES
 REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
 
 Interval = tuple[float, float]
-"""Begin and end of an interval of time."""
+"""Begin and end of an interval of time, dimensionless."""
 
 
 class OrbitPresenter:
-    """Orbits of one session.
+    """Requests the orbits of the starts, and passes them to the views of one session.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class OrbitPresenter:
     marks, well
         Marks on the maps, and the picture of the paths.
     on_start
-        Called with x and ordinate of a start that is typed.
+        Adds a typed start, given by x and ordinate.
     """
 
     def __init__(
@@ -58,67 +58,67 @@ class OrbitPresenter:
         self._state, self._results, self._marks, self._well = state, context.results, marks, well
         self._open_view, self._notice = context.open_view, context.notice
         self._by_touch = False
-        # A start that has been tapped, until a message about its orbit is shown.
-        self._tapped: Start | None = None
-        self._shown: tuple[ChosenOrbit, ...] = ()
-        # The interval of time in view, and the curves restricted to it; None is the whole duration.
+        # The start of the last tap, until a message about its orbit is shown.
+        self._tapped_start: Start | None = None
+        self._orbits: tuple[ChosenOrbit, ...] = ()
+        # The interval of time in view, None for the whole duration, and the curves restricted to the interval.
         self._interval: Interval | None = None
-        self._restricted: list[OrbitCurves | None] = []
-        # The content of the pictures: starts with their curves, the place of the chosen one, and the palette.
-        self._drawn: Any = None
+        self._restricted_curves: list[OrbitCurves | None] = []
+        # What the pictures show: the starts with their curves, the place of the chosen start, and the palette.
+        self._picture_content: Any = None
         self._show_restricted = locked(self._on_restricted)
         actions = OrbitActions(
             add=locked(on_start),
-            find_divergent_start=lambda: self._divergent_start.search(),
+            find_divergent_start=lambda: self._divergent_start_requests.search(),
             open_plane=self._open_plane,
             show_all_times=lambda: self._brush(None),
             copy=context.copy,
         )
         self.controls: OrbitControls = OrbitControls(state, actions)
         self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
-        # Under load the server skips times, so that it does not fall behind the player.
+        # Under load the server skips times, to keep up with the player.
         self.playback = Playback(latest(self._set_time))
         self._separation_plot: SeparationPlot = SeparationPlot()
         self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot, latest)
-        self._orbits = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
-        self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
-        self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
+        self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
+        self._divergent_start_requests = DivergentStartRequests(state, jobs, self.controls.say, locked)
+        self._separation_requests = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         state.param.watch(self._end_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
-        state.param.watch(lambda event: self._show(self._shown), "chosen")
-        state.param.watch(self._take_tapped, "starts")
+        state.param.watch(lambda event: self._show(self._orbits), "chosen")
+        state.param.watch(self._note_tapped, "starts")
         state.follow(self._set_palette, "palette")
 
     def begin(self) -> None:
-        """Request the orbits of the state."""
+        """Request the orbits of the first view state."""
         self._end_message()
-        self._orbits.follow()
+        self._orbit_requests.follow()
 
     def _set_palette(self, name: str) -> None:
-        """Change the colours."""
+        """Use the colours of another palette."""
         with pn.io.hold():
             for view in (self.plots, self._separation_plot):
                 view.set_palette(PALETTES[name])
-            self._show(self._shown)
+            self._show(self._orbits)
 
     def begin_touch(self) -> None:
-        """The page is used by touch."""
+        """Adapt to touch input."""
         self._by_touch = True
         self.plots.begin_touch()
 
-    def _take_tapped(self, event: Event) -> None:
+    def _note_tapped(self, event: Event) -> None:
         added = [start for start in event.new if start not in event.old]
-        self._tapped = added[0] if len(added) == 1 and self._by_touch else None
+        self._tapped_start = added[0] if len(added) == 1 and self._by_touch else None
 
-    def _tell_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show the verdict and the path of an orbit that has been tapped, because on a phone both are out of view."""
+    def _announce_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
+        """Show verdict and path of the tapped start in a message, because on a phone the panel and the path are out of view."""
         for one, colour in zip(orbits, PALETTES[self._state.palette].orbits, strict=False):
-            if one.start == self._tapped and one.drawing is not None:
-                self._tapped = None
-                self._notice.show(one.headline(), path_picture(one.drawing, colour))
+            if one.start == self._tapped_start and one.curves is not None:
+                self._tapped_start = None
+                self._notice.show(one.headline(), path_picture(one.curves, colour))
 
     def close(self) -> None:
         """Cancel all requests at the end of the session."""
-        for requests in (self._orbits, self._divergent_start, self._separation):
+        for requests in (self._orbit_requests, self._divergent_start_requests, self._separation_requests):
             requests.close()
 
     def _end_message(self, *events: Event) -> None:
@@ -128,7 +128,7 @@ class OrbitPresenter:
             self.controls.say(REMOVED)
 
     def _open_plane(self) -> None:
-        """Open the curves section at the energy, or parameter value, of the chosen orbit, with that orbit."""
+        """Open the section at the energy, or the parameter value, of the chosen orbit."""
         state, start = self._state, self._state.chosen_start
         if start is None:
             return
@@ -141,40 +141,40 @@ class OrbitPresenter:
         )
 
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show the orbits that are known; if only digits are new, update only the texts."""
+        """Show the orbits; if only Birkhoff digits are new, update only the texts."""
         state = self._state
-        if [one.drawing for one in orbits] != [one.drawing for one in self._shown]:
-            self._interval, self._restricted = None, []
-        self._shown = tuple(orbits)
+        if [one.curves for one in orbits] != [one.curves for one in self._orbits]:
+            self._interval, self._restricted_curves = None, []
+        self._orbits = tuple(orbits)
         if state.chosen >= len(orbits) and orbits:
             return
-        drawn = [(one.start, one.drawing) for one in orbits], state.chosen, state.palette
+        content = [(one.start, one.curves) for one in orbits], state.chosen, state.palette
         with pn.io.hold():
-            if drawn != self._drawn:
-                self._drawn = drawn
+            if content != self._picture_content:
+                self._picture_content = content
                 self._mark()
                 self._draw()
-                self._separation.follow(orbits)
-            self._tell()
-            self._tell_tapped(orbits)
+                self._separation_requests.follow(orbits)
+            self._show_texts()
+            self._announce_tapped(orbits)
             # This comes last: Panel links stylesheets of another host when it changes a text that is not in the document yet.
-            # Orbits that are being integrated also count: removing and adding plots takes four times as long as the orbits.
+            # Orbits that are being integrated also count: removing and adding plots takes four times as long as integrating.
             self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
 
     def _mark(self) -> None:
         """Mark starts and sections on the maps."""
-        self._marks.show_starts([one.start for one in self._shown])
+        self._marks.show_starts([one.start for one in self._orbits])
         on_section = self._state.plane == SECTION
-        drawings = [one.drawing for one in self._shown]
-        self._marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in drawings])
+        curves = [one.curves for one in self._orbits]
+        self._marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in curves])
 
     def _draw(self) -> None:
         """Draw the orbits in the interval of time in view."""
-        drawings, chosen = self._restricted or [one.drawing for one in self._shown], self._state.chosen
-        drawing = drawings[chosen] if drawings else None
-        duration = (0.0, float(drawing.orbit.t[-1])) if drawing is not None else None
-        self._well.show_orbits(drawings, chosen)
-        self.plots.show(drawings, chosen, self._interval)
+        curves, chosen = self._restricted_curves or [one.curves for one in self._orbits], self._state.chosen
+        chosen_curves = curves[chosen] if curves else None
+        duration = (0.0, float(chosen_curves.orbit.t[-1])) if chosen_curves is not None else None
+        self._well.show_orbits(curves, chosen)
+        self.plots.show(curves, chosen, self._interval)
         self.playback.follow(self._interval or duration)
         self.controls.show_interval(self._interval, duration[1] if duration is not None else 0.0)
 
@@ -183,34 +183,34 @@ class OrbitPresenter:
         self._well.set_time(t)
         self.plots.set_time(t)
 
-    def _tell(self) -> None:
+    def _show_texts(self) -> None:
         """Show the results of the orbits as text."""
-        one = self._shown[self._state.chosen] if self._shown else None
-        self.controls.show(self._shown, self._state.chosen)
+        one = self._orbits[self._state.chosen] if self._orbits else None
+        self.controls.show(self._orbits, self._state.chosen)
         self.controls.show_indicators(() if one is None or one.orbit is None else evaluate_indicators(one.orbit, one.digits))
-        self._results.orbits = self._shown
+        self._results.orbits = self._orbits
 
     def _brush(self, interval: Interval | None) -> None:
         """Restrict the curves to an interval of time; None shows the whole duration."""
-        drawings = [one.drawing for one in self._shown]
+        curves = [one.curves for one in self._orbits]
         if interval is None:
-            self._on_restricted(drawings, None, [])
+            self._on_restricted(curves, None, [])
         else:
-            # Curves of long orbits take up to a second.
-            pn.state.execute(partial(self._restrict, drawings, interval))
+            # The curves of a long orbit take up to a second, so a thread computes them.
+            pn.state.execute(partial(self._restrict, curves, interval))
 
-    async def _restrict(self, drawings: list[OrbitCurves | None], interval: Interval) -> None:
-        self._show_restricted(drawings, interval, await asyncio.to_thread(_restrict_all, drawings, interval))
+    async def _restrict(self, curves: list[OrbitCurves | None], interval: Interval) -> None:
+        self._show_restricted(curves, interval, await asyncio.to_thread(_restrict_all, curves, interval))
 
     def _on_restricted(
-        self, drawings: list[OrbitCurves | None], interval: Interval | None, restricted: list[OrbitCurves | None]
+        self, curves: list[OrbitCurves | None], interval: Interval | None, restricted: list[OrbitCurves | None]
     ) -> None:
-        # The orbits may have changed meanwhile.
-        if drawings == [one.drawing for one in self._shown]:
-            self._interval, self._restricted = interval, restricted
+        # The orbits may have changed in the meantime.
+        if curves == [one.curves for one in self._orbits]:
+            self._interval, self._restricted_curves = interval, restricted
             with pn.io.hold():
                 self._draw()
 
 
-def _restrict_all(drawings: Sequence[OrbitCurves | None], interval: Interval) -> list[OrbitCurves | None]:
-    return [restrict_curves(drawing, *interval) if drawing is not None else None for drawing in drawings]
+def _restrict_all(curves: Sequence[OrbitCurves | None], interval: Interval) -> list[OrbitCurves | None]:
+    return [restrict_curves(one, *interval) if one is not None else None for one in curves]

@@ -1,4 +1,4 @@
-"""The page: its frame, how other programs show its address, and the place of each view of an explorer."""
+"""The page: its HTML frame, the texts with which other programs show a link, and the layout of an explorer's views."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ LONGEST_FORMULA = 80
 
 @cache
 def _frame() -> Template:
-    """The page's HTML without its widgets."""
+    """Return the HTML of the page without its widgets."""
     frame: Template = parse_template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
     return frame
 
 
 def link_title(view: View) -> str:
-    """Name of the system, with the formula of a typed one."""
+    """Return the name of the system, with a typed formula."""
     formula = _shown_formula(view.system)
     return f"{view.system.title}, V = {formula}" if formula else view.system.title
 
@@ -52,9 +52,9 @@ def link_sentence(view: View) -> str:
 
 
 def _shown_formula(system: System) -> str:
-    """Return a typed formula without its clauses, which contain names; empty if it is long or has words that no formula has.
+    """Return a typed formula without its clauses, which may contain names; empty if the formula is long or contains other words.
 
-    Other programs show the result as a text of this server, whoever wrote the link.
+    Other programs show the result as this server's words, whoever wrote the link.
     """
     formula = system.formula.partition(";")[0].strip() if system.case == TYPED else ""
     try:
@@ -65,7 +65,7 @@ def _shown_formula(system: System) -> str:
 
 
 class RootColumn(pn.Column):
-    """A part of the page. The template stores the `repr` of its roots, which would take 0.2 s for all their content."""
+    """A part of the page with a short `repr`. The template stores the `repr` of each part, which would take 0.2 s in full."""
 
     def __repr__(self, depth: int = 0, max_depth: int = 10) -> str:
         return type(self).__name__
@@ -106,7 +106,7 @@ def build_page(document: Document, loop: asyncio.AbstractEventLoop) -> None:
 
 
 def explorer_page(explorer: Explorer) -> ExplorerTemplate:
-    """The page of one explorer; in a frame of another page, the page of one picture."""
+    """Return the page of an explorer, or, in a frame of another page, the page of one picture."""
     if explorer.links.embedded:
         return ExplorerTemplate(explorer.links.view, picture_alone=_picture_alone(explorer))
     return ExplorerTemplate(
@@ -118,7 +118,7 @@ def explorer_page(explorer: Explorer) -> ExplorerTemplate:
 
 
 def _picture_alone(explorer: Explorer) -> pn.viewable.Viewable:
-    """The picture that is shown large, and the link to the whole page."""
+    """Return the picture that is shown large, with the link to the whole page."""
     return _column(
         explorer.maps.progress.bar,
         explorer.maps.view.grid.layout(),
@@ -129,7 +129,7 @@ def _picture_alone(explorer: Explorer) -> pn.viewable.Viewable:
 
 
 def _stage(explorer: Explorer) -> pn.viewable.Viewable:
-    """Status line, maps, legend, and the chosen orbits or analysis; the stylesheet places them."""
+    """Return progress bar, maps, notes, and the chosen analysis, which the stylesheet arranges."""
     views = (
         explorer.analysis,
         explorer.drawers,

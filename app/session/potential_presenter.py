@@ -1,4 +1,4 @@
-"""Choice of the potential: it is reviewed in the background, shown with its properties, and used if it is valid."""
+"""Choice of the potential, which is reviewed in the background, shown with its properties, and used if it is valid."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class _Proposal:
     system
         The system.
     use
-        Called with the review if the system is valid.
+        Uses the review if the system is valid.
     refuse
-        Called with the reason if the system cannot be used; None if the reason is shown beside the text.
+        Says why the system cannot be used; None for a system of the panel, which shows the reason beside the text.
     done
-        Whether the choice of the visitor is final; False during typing or dragging.
+        Whether the visitor has finished; False during typing or dragging.
     """
 
     system: System
@@ -39,9 +39,9 @@ class _Proposal:
 
 
 class PotentialPresenter:
-    """The potential of one session. A valid potential that is chosen, typed or set by a slider is written to the view state.
+    """Reviews each potential that is chosen, typed or set by a slider, and writes it to the view state if it is valid.
 
-    All changes of one typing or dragging make one entry of the history.
+    All changes while a formula is typed, or a slider dragged, make one entry of the history.
     """
 
     def __init__(self, context: SessionContext, history: History) -> None:
@@ -49,25 +49,25 @@ class PotentialPresenter:
         self._history = history
         self._proposal: _Proposal | None = None
         # The latest system that was proposed during a review.
-        self._next: _Proposal | None = None
-        self._last: SystemReview | None = None
+        self._waiting_proposal: _Proposal | None = None
+        self._last_review: SystemReview | None = None
         self.panel = PotentialPanel(state.reviewed, context.locked(self._take))
         self._request = LatestRequest(context.jobs, self._on_review, self._on_failure, context.locked)
         state.param.watch(lambda *events: self._follow(), "system")
         self.panel.show(state.reviewed)
 
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
-        """Use or refuse the system of a link, a preset or the browser's history; return whether it is under review."""
+        """Use or refuse the system of a link, a preset or the browser's history; return whether a review was requested."""
         known = self._known_review(system)
         if known is not None and refusal(known) is None:
-            self._drop_opened()
+            self._drop_link()
             use(known)
             return False
         self._propose(_Proposal(system, use, refuse))
         return True
 
-    def _drop_opened(self) -> None:
-        """Cancel the review of an earlier link, but not the review of a text that is being typed."""
+    def _drop_link(self) -> None:
+        """Cancel the review of an earlier link, but not the review of a system of the panel."""
         if self._proposal is not None and self._proposal.refuse is not None:
             self._proposal = None
             self._request.cancel()
@@ -77,15 +77,15 @@ class PotentialPresenter:
         self._request.cancel()
 
     def _take(self, system: System, *, done: bool) -> None:
-        """Review a system of the panel after the previous review has finished, so that the maps follow a steady drag."""
+        """Review a system of the panel. A running review is finished first: the maps could not follow a steady drag otherwise."""
         proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)
         if self._proposal is None or self._proposal.refuse is not None:
             self._propose(proposal)
         else:
-            self._next = proposal
+            self._waiting_proposal = proposal
 
     def _use_if_ready(self, reviewed: SystemReview) -> None:
-        """Use a system that is being typed, unless its integrator must be compiled: a server can keep only some dozens."""
+        """Use an unfinished system unless its integrator must be compiled: a server can keep only some dozens of integrators."""
         if is_ready_for_maps(reviewed.potential):
             self._use(reviewed)
         else:
@@ -103,8 +103,8 @@ class PotentialPresenter:
             self._state.show_system(reviewed, self._energy_for(reviewed))
 
     def _propose(self, proposal: _Proposal) -> None:
-        """Review a system, unless its review is known."""
-        self._proposal, self._next = proposal, None
+        """Review a system, or show its known review."""
+        self._proposal, self._waiting_proposal = proposal, None
         known = self._known_review(proposal.system)
         if known is not None:
             self._request.cancel()
@@ -117,17 +117,18 @@ class PotentialPresenter:
     def _known_review(self, system: System) -> SystemReview | None:
         if is_known(system):
             return review_catalogue_entry(system.case)
-        return next((known for known in (self._state.reviewed, self._last) if known is not None and known.system == system), None)
+        reviews = (self._state.reviewed, self._last_review)
+        return next((known for known in reviews if known is not None and known.system == system), None)
 
     def _on_review(self, reviewed: SystemReview) -> None:
-        self._last = reviewed
+        self._last_review = reviewed
         self._show(reviewed)
 
     def _on_failure(self, sentence: str) -> None:
-        self._end(lambda proposal: self.panel.say(sentence) if proposal.refuse is None else proposal.refuse(sentence))
+        self._finish(lambda proposal: self.panel.say(sentence) if proposal.refuse is None else proposal.refuse(sentence))
 
     def _show(self, reviewed: SystemReview) -> None:
-        self._end(lambda proposal: self._judge(proposal, reviewed))
+        self._finish(lambda proposal: self._judge(proposal, reviewed))
 
     def _judge(self, proposal: _Proposal, reviewed: SystemReview) -> None:
         problem = refusal(reviewed)
@@ -138,19 +139,19 @@ class PotentialPresenter:
         else:
             proposal.refuse(problem)
 
-    def _end(self, answer: Callable[[_Proposal], None]) -> None:
-        """Pass the current proposal, if any, to `answer`, and continue with the next one."""
+    def _finish(self, answer: Callable[[_Proposal], None]) -> None:
+        """Pass the current proposal, if any, to `answer`, and continue with the waiting proposal."""
         proposal, self._proposal = self._proposal, None
         if proposal is None:
             return
         answer(proposal)
         if proposal.done:
             self._history.end_gesture()
-        if self._next is not None:
-            self._propose(self._next)
+        if self._waiting_proposal is not None:
+            self._propose(self._waiting_proposal)
 
     def _energy_for(self, reviewed: SystemReview) -> float | None:
-        """Energy at the same multiple of the well's depth as before; None if it is too high, or for another known potential."""
+        """Return the energy at the same multiple of the well's depth; None if it is too high, or for another case."""
         before, energies = self._state.reviewed, reviewed.energies
         if reviewed.system.case not in (TYPED, before.system.case):
             return None
@@ -163,8 +164,8 @@ class PotentialPresenter:
         return energy if energy < reviewed.highest_energy else None
 
     def _follow(self) -> None:
-        """Follow the view state, unless the panel has changed it; a review that is still running is cancelled."""
+        """Follow a system that the panel has not chosen, and cancel any review."""
         if self._state.reviewed is not self.panel.used:
-            self._proposal = self._next = None
+            self._proposal = self._waiting_proposal = None
             self._request.cancel()
             self.panel.follow(self._state.reviewed)

@@ -1,4 +1,4 @@
-"""The preview of one session: the engine in the browser gets the system and the view of the page, and plays the energy."""
+"""The preview, which the engine in the browser draws from the system and the view, and its animation of the energy."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine.jobs.job import Job, Queue
 
 
 class PreviewPresenter:
-    """Sends the state of the view to the engine in the browser; the energy at which an animation ends is written to the state."""
+    """Sends the view to the engine in the browser, and writes the energy at which an animation ends to the state."""
 
     def __init__(self, context: SessionContext) -> None:
         self._state = context.state
@@ -23,11 +23,11 @@ class PreviewPresenter:
         self._state.param.watch(lambda *events: self.show_view(), shown)
 
     def show_view(self) -> None:
-        """Send the view of the state."""
+        """Send the view to the browser."""
         self.engine.show_view(describe_view(self._state))
 
     def play(self) -> None:
-        """Play the energy up to its highest value, or stop."""
+        """Play the energy up to its highest value, or stop the animation."""
         state, energies = self._state, self._state.energies
         if self.engine.playing:
             self.engine.stop()
@@ -42,7 +42,7 @@ class PreviewPresenter:
         self._state.energy = round(energy, self._state.energies.decimals)
 
     def _request_system(self, frame: EscapeMap | None) -> None:
-        """Request the system of a map once; it needs the compiled kernels."""
+        """Request the system for the browser once a frame has arrived, because it needs the compiled kernels."""
         state = self._state
         if frame is not None and frame.spec.potential == state.potential:
             arguments = state.potential, state.energies.low, state.energies.high

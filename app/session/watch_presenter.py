@@ -1,4 +1,4 @@
-"""Many orbits of one session, watched while they leave: the player in the browser follows the view state and writes to it."""
+"""Many orbits at once, watched while they leave, in a player in the browser that reads and writes the view state."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from engine.sweeps.warmup import is_ready_for_maps
 
 
 class WatchPresenter:
-    """Makes the player when it is first needed, and requests the decay rate of mixed motion for it."""
+    """Makes the player when its tab is first opened, and requests the decay rate of mixed motion for its chart."""
 
     def __init__(self, context: SessionContext) -> None:
         self._state = context.state
@@ -34,7 +34,7 @@ class WatchPresenter:
         watch(lambda *events: self._request_rate(), ["system", "plane", "energy", "analysis"])
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """The player."""
+        """Make the content of the tab."""
         self._player = EnsemblePlayer(self._take)
         self._follow()
         self._request_rate()
@@ -46,14 +46,14 @@ class WatchPresenter:
         self._flux.cancel()
 
     def _request_rate(self) -> None:
-        """Request the decay rate while the player is on the page and the kernels that compute it are compiled."""
+        """Request the decay rate while the tab is open, once the kernels are compiled."""
         state = self._state
         if self._player is None or state.analysis is not Analysis.WATCH:
             return
         self._player.rate = 0.0
         spec = state.map_spec()
-        several = spec.common_energy is None or spec.plane.parameter is not None
-        if not several and is_ready_for_maps(state.potential):
+        has_one_rate = spec.common_energy is not None and spec.plane.parameter is None
+        if has_one_rate and is_ready_for_maps(state.potential):
             self._flux.submit(Job(compute_flux, (spec.potential, spec.common_energy)))
 
     def _follow(self) -> None:
@@ -67,7 +67,7 @@ class WatchPresenter:
             self._player.param.update(**shown, point=[] if start is None else list(start), box=edges)
 
     def _choose(self, message: Any) -> None:
-        # Messages come from a browser: unexpected ones are ignored.
+        # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"where": str(where), "count": int(count), "seed": int(seed), "radius": int() | float() as radius}:
                 try:

@@ -1,4 +1,4 @@
-"""The terms of the page, and texts in which they are explained."""
+"""The glossary of the page, and texts whose terms open their explanations."""
 
 from __future__ import annotations
 
@@ -49,27 +49,27 @@ GLOSSARY: Mapping[str, str] = MappingProxyType(
         **{term: meaning for measure in MEASURES.values() for term, meaning in measure.terms.items()},
     }
 )
-"""What each term means, in one or two sentences."""
+"""Meaning of each term, in one or two sentences."""
 
 _TERM = re.compile(rf"(?<!\w)({'|'.join(sorted(map(re.escape, GLOSSARY), key=len, reverse=True))})(?!\w)", re.IGNORECASE)
-_BY_LETTERS = {term.lower(): term for term in GLOSSARY}
+_TERMS_BY_LOWER_CASE = {term.lower(): term for term in GLOSSARY}
 
 
 def with_terms(html: str) -> str:
-    """Return HTML in which each term is explained: its first occurrence is a button that opens the explanation.
+    """Return HTML in which the first occurrence of each term is a button that opens its explanation.
 
-    The elements of one shadow root must not contain a term in two such texts.
+    A term must not occur in two such texts of one shadow root, where its identifier must be unique.
     """
     found: dict[str, None] = {}
 
     def explain(match: re.Match[str]) -> str:
-        term = _BY_LETTERS[match[0].lower()]
+        term = _TERMS_BY_LOWER_CASE[match[0].lower()]
         if term in found:
             return match[0]
         found[term] = None
         return f"<button type='button' class='term' popovertarget='{_identifier(term)}'>{match[0]}</button>"
 
-    # Every second part is a tag.
+    # Text and tags alternate, and only texts contain terms.
     parts = re.split(r"(<[^>]*>)", html)
     parts[::2] = [_TERM.sub(explain, part) for part in parts[::2]]
     meanings = (f"<span id='{_identifier(term)}' class='help-text' popover>{escape(GLOSSARY[term])}</span>" for term in found)

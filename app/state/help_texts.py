@@ -1,4 +1,4 @@
-"""Help texts: what each picture and plot shows, and how to read it."""
+"""Help texts, which say what each picture and plot shows, and how to read it."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
 
 
 def title_with_help(title: str, name: str, under_way: str = "") -> str:
-    """Return HTML with the title of a picture or plot, a button that opens its help text, and what is being computed."""
+    """Return HTML with a title, a button that opens the help text of `name`, and a note on what is being computed."""
     button = f"<button type='button' class='help' popovertarget='help-{name}' aria-label='About: {escape(title)}'>?</button>"
     note = f" <small role='status'>{escape(under_way)}</small>" if under_way else ""
     return f"<h2>{escape(title)} {button}{note}</h2><p id='help-{name}' class='help-text' popover>{escape(HELP_TEXTS[name])}</p>"

@@ -13,8 +13,8 @@ from engine import Window
 from plots.pictures.palette import MOST_ORBITS
 from plots.pictures.time_scale import TimeScale
 
-# The lower end of a scale of escape times if a link contains only the upper end.
-_SHORTEST = 1.0
+# Lower end of a scale of escape times whose link contains only the upper end, dimensionless.
+_DEFAULT_LOW_TIME = 1.0
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class Format:
     write
         Returns the text for a value.
     read
-        Returns the value for a text; ValueError or KeyError if there is none.
+        Returns the value for a text; raises ValueError or KeyError for other texts.
     legal
-        Returns a description of the legal values; the settings of the server limit some of them.
+        Returns a description of the legal values, which may depend on the settings of the server.
     """
 
     write: Callable[[Any], str]
@@ -49,7 +49,7 @@ class LinkParameter:
     of_system
         Whether the value has no meaning for another system.
     always
-        Whether the default value is also written.
+        Whether a link also contains the default value.
     """
 
     name: str
@@ -59,18 +59,18 @@ class LinkParameter:
 
 
 def choice_format(choices: Mapping[str, Any]) -> Format:
-    """One of some values, by its name."""
+    """Return the form of one of several values, written by name."""
     names = {value: name for name, value in choices.items()}
     return Format(names.__getitem__, choices.__getitem__, lambda: listed(choices))
 
 
 def name_format(names: Iterable[str]) -> Format:
-    """One of some names."""
+    """Return the form of one of several names."""
     return choice_format({name: name for name in names})
 
 
 def number_choice_format(choices: Callable[[], Mapping[str, float]]) -> Format:
-    """One of some labelled numbers, in any usual format: 100000, 1e5, 1E+5, 100 000 and 100,000."""
+    """Return the form of one of several labelled numbers, read in any usual format: 100000, 1e5, 1E+5, 100 000 or 100,000."""
 
     def read(text: str) -> float:
         by_value = {float(choice): choice for choice in choices().values()}
@@ -80,7 +80,7 @@ def number_choice_format(choices: Callable[[], Mapping[str, float]]) -> Format:
 
 
 def number_format(low: float, high: float, legal: str) -> Format:
-    """A number at full precision between two others."""
+    """Return the form of a number from `low` to `high`, written at full precision."""
 
     def read(text: str) -> float:
         number = read_number(text)
@@ -92,7 +92,7 @@ def number_format(low: float, high: float, legal: str) -> Format:
 
 
 def read_number(text: str) -> float:
-    """A finite number."""
+    """Return a finite number; ValueError for other texts."""
     number = float(text)
     if not np.isfinite(number):
         raise ValueError
@@ -100,7 +100,7 @@ def read_number(text: str) -> float:
 
 
 def listed(choices: Iterable[str]) -> str:
-    """Return choices as words."""
+    """Return choices as an enumeration: "a, b or c"."""
     *others, last = choices
     return f"{', '.join(others)} or {last}" if others else last
 
@@ -117,8 +117,8 @@ def _joined(numbers: Iterable[float]) -> str:
 
 
 def _read_times(text: str) -> TimeScale:
-    """A scale of escape times; a single number is its upper end."""
-    return TimeScale(*_read_numbers(text, 2)) if "," in text else TimeScale(_SHORTEST, read_number(text))
+    """Return a scale of escape times; a single number is its upper end."""
+    return TimeScale(*_read_numbers(text, 2)) if "," in text else TimeScale(_DEFAULT_LOW_TIME, read_number(text))
 
 
 def _read_starts(text: str) -> tuple[tuple[float, ...], ...]:
@@ -134,6 +134,7 @@ def _read_watched(text: str) -> WatchedStarts:
 
 
 SWITCH = choice_format({"yes": True, "no": False})
+"""Text form of a switch."""
 
 WINDOW = Format(
     lambda window: _joined(astuple(window)),

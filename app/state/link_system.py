@@ -1,4 +1,4 @@
-"""The system in a link: a case or a formula, the parameters of wells, and the letters of formulas, ``letters=a:1.5,b:-2``."""
+"""The system in a link: a case or a formula, with parameters of the well, and with letters as in ``letters=a:1.5,b:-2``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine.systems.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, 
 from engine.systems.parameters import WELL_PARAMETERS
 from engine.systems.system import TYPED
 
-# All letters of a formula share one link parameter, because other names in links are also letters.
+# All letters of a formula share one link parameter, because single letters already name other parameters.
 _CASE, _FORMULA, _LETTERS = "case", "V", "letters"
 
 
@@ -29,7 +29,7 @@ def write_system(system: System) -> dict[str, str]:
 
 
 def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
-    """Return the unreviewed system of the parts in a link, and a message for letters that its formula does not contain."""
+    """Return the system in a link, not reviewed, and a message if the link contains letters that the formula does not."""
     case = parts.get(_CASE, TYPED if _FORMULA in parts else FIRST_VIEW.system.case)
     formula, given = parts.get(_FORMULA, ""), parts.get(_LETTERS, {})
     letters = _letters(case, formula)
@@ -42,7 +42,7 @@ def system_of(parts: Mapping[str, Any]) -> tuple[System, list[str]]:
 
 
 def _letters(case: str, formula: str) -> tuple[str, ...]:
-    """Return the letters of a known system or of a formula; empty for a formula that is not understood."""
+    """Return the adjustable letters of a system of the catalogue, or the letters of a formula, if it can be parsed."""
     if case != TYPED:
         return System(case).entry.adjustable
     try:

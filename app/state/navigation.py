@@ -1,4 +1,4 @@
-"""Pan and zoom of the window."""
+"""Moves and zooms of the window by keys and double clicks."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ ZOOM_FACTOR = 2.0
 """Factor of a zoom key."""
 
 DIVE_FACTOR = 4.0
-"""Factor of the zoom to a point that is double-clicked."""
+"""Factor of the zoom to a double-clicked point."""
 
 DIRECTIONS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowDown": (0, -1), "ArrowUp": (0, 1)}
 """Direction of each arrow key in x and in the ordinate."""
 
 
 def pan(window: Window, key: str) -> Window:
-    """Move a window by an arrow key."""
+    """Return a window moved by an arrow key."""
     across, up = DIRECTIONS[key]
     dx = PAN_SHARE * across * (window.x_high - window.x_low)
     dy = PAN_SHARE * up * (window.ordinate_high - window.ordinate_low)
@@ -29,14 +29,14 @@ def pan(window: Window, key: str) -> Window:
 
 
 def zoom(window: Window, factor: float, about: tuple[float, float] | None = None) -> Window:
-    """Shrink a window by `factor`; ValueError if its edges become equal in double precision.
+    """Return a window shrunk by `factor`; ValueError if its edges become equal in double precision.
 
     Parameters
     ----------
     window
         The window.
     factor
-        Factor by which the sides become smaller, dimensionless; below 1 they become larger.
+        Old length of a side over its new length.
     about
         x and ordinate of the point that does not move; None for the centre.
     """
@@ -52,7 +52,7 @@ def zoom(window: Window, factor: float, about: tuple[float, float] | None = None
 def window_moves(
     show_window: Callable[[Window | None], None], find_window: Callable[[], Window]
 ) -> dict[str, Callable[[], None]]:
-    """Actions of the keys that move the window.
+    """Return the actions of the keys that move the window.
 
     Parameters
     ----------

@@ -28,19 +28,20 @@ from plots.layers.table import LAYER_OF, LAYERS, SETTINGS
 from plots.pictures.palette import PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT
-"""Maximal length of a value in a link, in characters."""
+"""Largest length of a value in a link, in characters."""
 
 EMBED = "embed"
-"""Parameter of a page in a frame of another page; only one picture is shown. The value is the same as of ``focus``."""
+"""Link parameter that embeds the page in a frame of another page: its value names the only picture that is shown."""
 
-_FIRST_EMBEDDED = "basins"
-_SHOWN = 40
+_DEFAULT_EMBEDDED = "basins"
+# Longest part of a value that a message repeats, in characters.
+_LONGEST_QUOTE = 40
 _PLANE, _FIX, _ENERGY, _JACOBI = "plane", "fix", "h", "C"
-# Prefix of the names of a view for comparison.
+# Prefix of the parameters of the view with which the state is compared.
 _COMPARED = "with_"
 _VIEW_NAMES = (*SYSTEM_FORMATS, _PLANE, _FIX, _ENERGY)
 
-# Attributes of the view state that have one parameter each; the last three are choices of the visitor.
+# Attributes of the view state with one link parameter each: those of a view, then the visitor's own choices.
 _LINKED: dict[str, LinkParameter] = {
     **VIEW_PARAMETERS,
     "focus": LinkParameter("focus", name_format(PICTURES)),
@@ -50,7 +51,7 @@ _LINKED: dict[str, LinkParameter] = {
 
 _SETTING_FORMATS = {name: choice_format(setting.choices) for name, setting in SETTINGS.items()}
 
-# Text forms of values that are read from one parameter.
+# Text forms of the values with one parameter each.
 _FORMATS: dict[str, Format] = {
     **SYSTEM_FORMATS,
     _ENERGY: number_format(-LARGEST_NUMBER, LARGEST_NUMBER, "a number, such as 0.25"),
@@ -69,14 +70,14 @@ LINKED = ("system", "plane", "energy", *_LINKED, "layers", "settings", "compared
 
 
 def write_link(state: ViewState, *, embedded: bool = False) -> str:
-    """Query string of a view state, with its question mark.
+    """Return the query string of a view state, with its question mark.
 
     Parameters
     ----------
     state
-        The view.
+        The view state.
     embedded
-        Whether the page shows only one picture: the one that is shown large, or else the basins.
+        Whether the page shows only one picture: the picture that is shown large, or else the basins.
     """
     written = _write_view(state.view)
     for attribute, parameter in _LINKED.items():
@@ -85,14 +86,14 @@ def write_link(state: ViewState, *, embedded: bool = False) -> str:
             written[parameter.name] = parameter.form.write(value)
     written |= _write_layers(state)
     if embedded:
-        written[EMBED] = written.pop("focus", _FIRST_EMBEDDED)
+        written[EMBED] = written.pop("focus", _DEFAULT_EMBEDDED)
     if state.compared is not None:
         written |= {f"{_COMPARED}{name}": text for name, text in _write_view(state.compared).items()}
     return "?" + urlencode(written, safe=",;:=")
 
 
 def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str, Any], list[str]]:
-    """Parse the parameters of a link; its potential is reviewed later, see `linked_view` and `fit_to_system`.
+    """Parse the parameters of a link. `fit_to_system` adapts the result once the potential is reviewed.
 
     Parameters
     ----------
@@ -125,12 +126,12 @@ def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str
 
 
 def linked_view(values: Mapping[str, Any]) -> View:
-    """Return the view of the values of a link, whose system is not reviewed yet; missing values are those of the first view."""
+    """Return the view of a link, whose system need not be reviewed; missing values are those of the first view."""
     return View(**{name: values[name] for name in FIRST_VIEW.values() if name in values})
 
 
 def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of a link that have a meaning for any system."""
+    """Return the values of a link that do not depend on its system."""
     dropped = {"system", "energy", "jacobi", *(name for name, parameter in VIEW_PARAMETERS.items() if parameter.of_system)}
     if linked_view(values).plane.parameter is not None:
         dropped.add("plane")
@@ -138,14 +139,14 @@ def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[dict[str, Any], list[str]]:
-    """Return the values of a link that can be shown with its system, and a message for an invalid one.
+    """Return the values of a link, completed for its system, and a message for each value that does not fit the system.
 
     Parameters
     ----------
     values
         Values of `read_link`.
     reviewed
-        The review of the system of their `linked_view`, which was not refused.
+        The review of the system in the link, which was not refused.
     """
     constant = values.get("jacobi")
     values = {name: value for name, value in values.items() if name != "jacobi"}
@@ -169,7 +170,7 @@ def refused_link(problem: str) -> str:
 
 
 def refused_comparison(problem: str) -> str:
-    """Return the message for a link whose view for comparison has a system that is refused."""
+    """Return the message for a link that compares with a view whose system is refused."""
     return f"Ignored the view in the link with which to compare: {problem}"
 
 
@@ -188,7 +189,7 @@ def _write_layers(state: ViewState) -> dict[str, str]:
 
 
 def _read_layers(found: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the layers and settings in a link; empty if it contains none."""
+    """Return the layers and settings of a link, if it contains any."""
     values: dict[str, Any] = {}
     if any(name in found for name in LAYERS):
         values["layers"] = frozenset(name for name in LAYERS if found.get(name))
@@ -198,7 +199,7 @@ def _read_layers(found: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _read_each(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, Any], list[str]]:
-    """Return values that are read from one parameter each, by parameter name, and a message for each invalid one."""
+    """Return the values with one parameter each, by parameter, and a message for each invalid value."""
     found: dict[str, Any] = {}
     problems: list[str] = []
     for name, form in _FORMATS.items():
@@ -215,7 +216,7 @@ def _read_each(parameters: Mapping[str, str], prefix: str) -> tuple[dict[str, An
 
 
 def _read_view(parameters: Mapping[str, str], found: Mapping[str, Any], prefix: str) -> tuple[dict[str, Any], list[str]]:
-    """Return system, slice and energy of a link, and messages for invalid ones; `found` has the values from single parameters."""
+    """Return system, slice and energy of a link, and messages; `found` contains the values with one parameter each."""
     system, problems = system_of(found)
     view: dict[str, Any] = {"system": system} if any(name in found for name in SYSTEM_FORMATS) else {}
     if _ENERGY in found:
@@ -235,23 +236,23 @@ def _read_view(parameters: Mapping[str, str], found: Mapping[str, Any], prefix: 
 
 
 def _read_compared(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
-    """Return the view with which a link compares, and messages for invalid values; if there are any, there is no view."""
+    """Return the view with which a link compares, or a message for each invalid value."""
     given = {name: parameters[_COMPARED + name] for name in _VIEW_NAMES if _COMPARED + name in parameters}
     if not given:
         return {}, []
     if _ENERGY in given:
-        # Links of earlier versions contain both ends of an axis h.
+        # Links of earlier versions contain both ends of an axis h: the first is used.
         given[_ENERGY], _, _ = given[_ENERGY].partition(",")
     values, problems = read_link(given, _COMPARED)
     return {} if problems else {"compared": linked_view(values)}, problems
 
 
 def _quoted(name: str, text: str) -> str:
-    # "nan" in a message looks like a result.
+    # A message with "nan" would look like a result of the page.
     return name if "nan" in text.lower() else f"{name}={_shown(text)}"
 
 
 def _shown(text: str) -> str:
     """Return text from a link for messages: truncated, and without markup characters."""
-    safe = "".join(c if c.isascii() and (c.isalnum() or c in " .,+-") else "?" for c in text[:_SHOWN])
-    return safe + " …" if len(text) > _SHOWN else safe
+    safe = "".join(c if c.isascii() and (c.isalnum() or c in " .,+-") else "?" for c in text[:_LONGEST_QUOTE])
+    return safe + " …" if len(text) > _LONGEST_QUOTE else safe

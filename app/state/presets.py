@@ -11,7 +11,7 @@ from app.state.permalink import linked_view, read_link
 from app.state.view import View
 
 GROUPS = ("The paper", "Places", "Explanations", "Other slices", "Other systems")
-"""Kinds of figures in the paper, details found by zooming, analyses that explain both; slices and systems not in the paper."""
+"""Groups of presets, in the order of the page."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,7 +23,7 @@ class Preset:
     key
         Stem of the file name of its thumbnail.
     title, caption
-        Texts on the page: a few words, and a few sentences.
+        A few words, and a few sentences, on the page.
     group
         One of `GROUPS`.
     picture
@@ -31,7 +31,7 @@ class Preset:
     link
         The view as a link, without its question mark.
     invitation
-        One line of text if the view is offered before there is an orbit; empty for the other views.
+        Line of text with which the page offers the preset until there is an orbit; empty if it does not.
     """
 
     key: str
@@ -44,7 +44,7 @@ class Preset:
 
     @property
     def view(self) -> View:
-        """Return the view; choices that the settings of the server do not allow have their defaults."""
+        """The view, with defaults for choices that the settings of the server do not allow."""
         values, _ = read_link(dict(parse_qsl(self.link)))
         return linked_view(values)
 

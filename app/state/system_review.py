@@ -1,4 +1,4 @@
-"""Reviews of systems by jobs, so that the event loop computes nothing for them."""
+"""Reviews of systems, which jobs compute outside the event loop."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from engine.systems.system import TYPED
 
 
 def is_known(system: System) -> bool:
-    """Whether this is a case of the paper, which is reviewed when the server starts."""
+    """Whether the system is a case of the paper, which the server reviews at its start."""
     return system.case in CASES and not system.parameters
 
 
 def review_job(system: System) -> Job[SystemReview]:
-    """Return the job of `review_system`; for formulas that visitors type, time and memory are limited."""
+    """Return the job of `review_system`, which has limits of time and memory for a typed formula."""
     return Job(review_system, (system,), queue=Queue.LIMITED if system.case == TYPED else Queue.LONG_CALL)
 
 
 @cache
 def review_catalogue_entry(case: str) -> SystemReview:
-    """Return the review of a catalogue entry; the server reviews the cases of the paper before it serves pages."""
+    """Return the review of an entry of the catalogue, which is computed once."""
     return review_system(System(case))

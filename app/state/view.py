@@ -1,4 +1,4 @@
-"""A view: the starts of orbits that are shown, and the analyses of them; links, presets and the view state have its fields."""
+"""A view: the system, the slice and the analyses that the page shows. Links, presets and the view state share its fields."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Start = tuple[float, float]
 
 
 class Analysis(StrEnum):
-    """The analysis that is shown beside the maps; links contain the values."""
+    """The analysis beside the maps. Links contain the values, which therefore do not change."""
 
     ORBIT = "orbit"
     STATISTICS = "statistics"
@@ -47,13 +47,16 @@ _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
-    """Return the choices up to a limit, but at least the smallest one."""
+    """Return the choices up to a limit, and always the smallest choice."""
     least = min(choices.values())
     return {name: value for name, value in choices.items() if value <= max(limit, least)}
 
 
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
+"""Longest times of the orbits, by label."""
+
 RESOLUTION_CHOICES = {"112 × 112": 112, "224 × 224": 224, "450 × 450": 450, "900 × 900": 900}
+"""Columns and rows of the map, by label."""
 
 
 def allowed_t_max() -> dict[str, float]:
@@ -71,7 +74,7 @@ PICTURES = ("well", *(name for name in MAPS if name != "curves"))
 
 
 def default_settings() -> dict[str, Any]:
-    """The defaults of the settings of all layers."""
+    """Return the default of each setting of the layers."""
     return {name: setting.default for name, setting in SETTINGS.items()}
 
 
@@ -86,7 +89,7 @@ def _sides() -> dict[str, int]:
 
 @dataclass(frozen=True)
 class View:
-    """A view; the default is the first view of the page. The visitor chooses the colours independently.
+    """A view. By default it is the first view of the page. Colours do not belong to it.
 
     Attributes
     ----------
@@ -95,13 +98,13 @@ class View:
     plane
         The slice.
     energy
-        h, in the units of the potential; None for the initial energy of the system. A slice with an axis h does not use it.
+        h, in the units of the potential; None for the initial energy of the system. Unused on a slice with an axis h.
     t_max
-        Longest time of the orbits.
+        Longest time of the orbits, in the units of the potential.
     resolution
         Columns and rows of the map.
     window, box
-        Part of the plane, and part of it for the statistics; None for the whole interior and for the whole window.
+        The part of the plane in view, None for the whole interior; the part that the statistics count, None for the window.
     layers
         Names of the layers that are on, as in `plots.layers.table.LAYERS`.
     settings
@@ -111,7 +114,7 @@ class View:
     watched
         Starts of the orbits in the player of many orbits.
     starts, chosen
-        Starts of up to `plots.pictures.palette.MOST_ORBITS` orbits, and the index of the chosen one.
+        Starts of up to `plots.pictures.palette.MOST_ORBITS` orbits, and the index of the chosen start.
     """
 
     system: System = _FIRST_SYSTEM
@@ -138,11 +141,11 @@ class View:
 
     @property
     def known_energy(self) -> float | None:
-        """The energy of all starts; None if the slice has an axis h, or before the initial energy of the system is known."""
+        """The energy of all starts; None on a slice with an axis h, or if the initial energy of the system is not known yet."""
         return self.energy if self.plane.energy_axis is None else None
 
     def values(self) -> dict[str, Any]:
-        """The values of all fields, by name."""
+        """Return the values of all fields, by name."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     def within_limits(self) -> View:
@@ -151,7 +154,7 @@ class View:
         return replace(self, t_max=min(self.t_max, t_max), resolution=min(self.resolution, resolution))
 
     def map_spec(self, reviewed: SystemReview) -> MapSpec:
-        """Return the map of this view; ValueError if it has none.
+        """Return the specification of the map; ValueError if it is invalid.
 
         Parameters
         ----------
@@ -162,7 +165,7 @@ class View:
         return MapSpec(reviewed.potential, self.plane, self._map_energy(reviewed), (side, side), self.window, self.t_max)
 
     def _map_energy(self, reviewed: SystemReview) -> Energy:
-        """The energy of all starts, or the range of an axis h."""
+        """Return the energy of all starts, or the range of an axis h."""
         energies = reviewed.energies
         if self.plane.energy_axis is not None:
             return max(reviewed.escape_energy, energies.low), energies.high
@@ -173,4 +176,4 @@ FIRST_VIEW = View()
 """The view of the page without a link."""
 
 VIEW_PARAMETERS: Mapping[str, LinkParameter] = {each.name: each.metadata[_LINK] for each in fields(View) if each.metadata}
-"""The fields that have one link parameter each, in the order of links."""
+"""The fields with one link parameter each, in the order of links."""

@@ -35,13 +35,14 @@ from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
 from plots.pictures.time_scale import TimeScale
 
 WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
+"""Message while the default window is not known."""
 
-# In natural units of time.
+# Longest first t_max of systems without evidence from tori, in natural units of time.
 _LONGEST_FIRST = 1000.0
 
 
 def plane_of_system(plane: Slice, system: System) -> Slice:
-    """Return the same slice for another system; the default slice if the system lacks its parameter."""
+    """Return the slice for another system, or the default slice if the system lacks the parameter on its axis."""
     try:
         return plane.of_system(system)
     except ValueError:
@@ -79,14 +80,14 @@ class _Settings(param.Parameter):
 
 
 def longest_first_t_max(potential: Potential) -> float:
-    """Return the longest t_max with which a system is first shown: short if all bounded orbits must be integrated to it."""
+    """Return the longest first t_max of a system: it is short if all bounded orbits must be integrated until then."""
     allowed = allowed_t_max().values()
     longest = np.inf if potential.tori_are_evidence else _LONGEST_FIRST * potential.well.exact_time_unit
     return max((each for each in allowed if each <= longest), default=min(allowed))
 
 
 class ViewState(param.Parameterized):
-    """What a session shows: the fields of `View` with their legal values, and the choices that belong to the visitor."""
+    """What a session shows: the fields of `View` with their legal values, and choices that belong to no view."""
 
     system = param.ClassSelector(class_=System, default=FIRST_VIEW.system)
     plane = param.ClassSelector(class_=Slice, default=FIRST_VIEW.plane)
@@ -102,7 +103,7 @@ class ViewState(param.Parameterized):
     starts = _Starts(default=FIRST_VIEW.starts)
     chosen = param.Integer(default=FIRST_VIEW.chosen, bounds=(0, MOST_ORBITS - 1))
     compared = param.ClassSelector(
-        class_=View, default=None, allow_None=True, doc="view of whose starts the ends are compared; None for no comparison"
+        class_=View, default=None, allow_None=True, doc="view with which this view is compared; None for no comparison"
     )
     focus = param.Selector(default="", objects=["", *PICTURES], doc="picture that is shown large; empty for none")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
@@ -115,7 +116,7 @@ class ViewState(param.Parameterized):
         super().__init__(t_max=first.t_max, resolution=first.resolution)
         self.param.t_max.objects = list(allowed_t_max().values())
         self.param.resolution.objects = list(allowed_resolutions().values())
-        self._reviewed = review_catalogue_entry(self.system.case)
+        self._review = review_catalogue_entry(self.system.case)
         self.param.update(**values)
 
     def follow(self, show: Callable[..., object], *names: str) -> None:
@@ -129,17 +130,17 @@ class ViewState(param.Parameterized):
 
     @property
     def view(self) -> View:
-        """The view in this state."""
+        """The view without the visitor's own choices."""
         return View(**{name: getattr(self, name) for name in FIRST_VIEW.values()})
 
     @property
     def reviewed(self) -> SystemReview:
-        """The chosen system with its review; RuntimeError if it is not in the catalogue and `show` did not get its review."""
-        if self._reviewed.system != self.system:
+        """The review of the system; RuntimeError outside the catalogue, unless `show` has received the review."""
+        if self._review.system != self.system:
             if self.system.case == TYPED or self.system.parameters:
                 raise RuntimeError(f"{self.system} has not been reviewed")
-            self._reviewed = review_catalogue_entry(self.system.case)
-        return self._reviewed
+            self._review = review_catalogue_entry(self.system.case)
+        return self._review
 
     @property
     def potential(self) -> Potential:
@@ -162,17 +163,17 @@ class ViewState(param.Parameterized):
         return self.starts[self.chosen] if self.chosen < len(self.starts) else None
 
     def map_spec(self) -> MapSpec:
-        """Specification of the map; ValueError if a choice is invalid."""
+        """Return the specification of the map; ValueError if a choice is invalid."""
         return self.view.map_spec(self.reviewed)
 
     def find_window(self) -> Window:
-        """Return the window in view; ValueError while it is not known: the event loop must not compile the kernels for it."""
+        """Return the window in view; ValueError for a default window whose kernels the event loop would have to compile."""
         if self.window is None and not is_ready_for_maps(self.potential):
             raise ValueError(WINDOW_UNKNOWN)
         return self.map_spec().find_window()
 
     def start_state(self, start: Start) -> tuple[float, ...]:
-        """Return x, y, px, py of a start; NaN if it is forbidden."""
+        """Return x, y, px, py of a start; NaN for a forbidden start."""
         x, ordinate = (np.array([value]) for value in start)
         return tuple(start_states(self.potential, self.plane, self.energy, x, ordinate)[0].tolist())
 
@@ -185,7 +186,7 @@ class ViewState(param.Parameterized):
         return Job(integrate_orbit, arguments, queue=Queue.LONG_CALL)
 
     def add_start(self, start: Start) -> bool:
-        """Add a start and choose it; return False if there are already `MOST_ORBITS` other starts."""
+        """Add a start and choose it, or return False if there are already `MOST_ORBITS` other starts."""
         if start in self.starts:
             self.chosen = self.starts.index(start)
         elif len(self.starts) < MOST_ORBITS:
@@ -197,21 +198,21 @@ class ViewState(param.Parameterized):
         self.layers = self.layers | {name} if on else self.layers - {name}
 
     def show(self, reviewed: SystemReview, **values: Any) -> None:
-        """Select a reviewed system together with other values."""
-        self._reviewed = reviewed
+        """Set a reviewed system together with other values."""
+        self._review = reviewed
         values["plane"] = plane_of_system(values.get("plane", self.plane), reviewed.system)
         values["system"] = reviewed.system
         if reviewed.system == self.system:
-            # Param treats it as a change.
+            # Param would call the watchers for an equal system.
             del values["system"]
         self.param.update(**values)
 
     def show_slice(self, plane: Slice) -> None:
-        """Select a slice, and remove window and starts."""
+        """Set a slice, and remove window and starts."""
         self.param.update(plane=plane, window=None, starts=(), chosen=0)
 
     def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
-        """Select a reviewed system at an energy, by default its initial energy, and remove window and starts."""
+        """Set a reviewed system at an energy, by default its initial energy, and remove window and starts."""
         chosen = reviewed.energies.first if energy is None else energy
         longest = self.t_max if reviewed.system.case == self.system.case else longest_first_t_max(reviewed.potential)
         self.show(reviewed, energy=chosen, window=None, starts=(), chosen=0, t_max=min(self.t_max, longest))

@@ -12,7 +12,7 @@ LARGEST_SEED = 2**31 - 1
 
 
 class StartsFrom(StrEnum):
-    """Where the starts are placed; links contain the values."""
+    """Where the starts are placed. Links contain the values."""
 
     WELL = "well"
     VIEW = "view"
@@ -34,18 +34,18 @@ PLACES = {
 
 EXPLANATIONS = {
     StartsFrom.TUBES: (
-        "Half of them start just inside a tube that leads to an exit, and leave at their next pass. The others, just outside, "
-        "turn back there."
+        "Half of the orbits start just inside a tube that leads to an exit, and leave at their next pass. The others start just "
+        "outside, and turn back."
     ),
     StartsFrom.EXITS: (
-        "They enter through the exits, as often as the flux says. The curve is the distribution of the times until they leave."
+        "Orbits enter through the exits, as often as the flux says. The curve is the distribution of the times until they leave."
     ),
 }
 """Explanations of the places whose names are not enough."""
 
 
 def places_for(potential: Potential) -> dict[StartsFrom, str]:
-    """Return the places that a system offers, with their phrases: exits if it has any, tubes if its frame does not rotate."""
+    """Return the places of a system, with their phrases: exits need saddles, and tubes also a frame that does not rotate."""
     missing = set[StartsFrom]()
     if potential.escape_radius is not None:
         missing |= {StartsFrom.EXITS, StartsFrom.TUBES}
@@ -57,30 +57,33 @@ def places_for(potential: Potential) -> dict[StartsFrom, str]:
 COUNTS = (1000, 5000, 20000)
 """Possible numbers of orbits."""
 
-SMALLEST_RADIUS, LARGEST_RADIUS = -9.0, -1.0
-"""Possible radii of a disc: powers of ten, as shares of half the window."""
+SMALLEST_RADIUS = -9.0
+"""Decimal logarithm of the smallest radius of a disc, as a share of half the window."""
+
+LARGEST_RADIUS = -1.0
+"""Decimal logarithm of the largest radius."""
 
 
 @dataclass(frozen=True)
 class WatchedStarts:
-    """A choice of random starts; equal choices give the same starts.
+    """A choice of random starts. Equal choices give equal starts.
 
     Attributes
     ----------
     where
-        The place: the energy surface; the slice in view, the box, or a disc around the chosen start; the exits, moving inward;
+        Place of the starts: the energy surface; the slice in view, the box, or a disc around the chosen start; the exits, inward;
         or the edges of the tubes of the Lyapunov orbits.
     count
         Number of orbits, one of `COUNTS`.
     seed
         Seed of the generator, 0 to 2³¹ − 1.
     radius
-        Power of ten of the radius of the disc, as a share of half the window.
+        Decimal logarithm of the radius of the disc as a share of half the window.
 
     Raises
     ------
     ValueError
-        If a value is not legal; the message names the parameter, its value and what is legal.
+        If a value is not legal, with the legal values.
     """
 
     where: StartsFrom = StartsFrom.WELL

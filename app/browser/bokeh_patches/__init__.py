@@ -1,4 +1,4 @@
-"""Replacements of two private functions of Bokeh, each with the corresponding change for upstream in a file ``*.patch``.
+"""Replacements of two private functions of Bokeh. For each, a file ``*.patch`` contains the change for upstream.
 
-The server also works without them (``ESCAPE_EXPLORER_BOKEH_PATCHES=no``). The tests fail when a replaced function changes.
+The server also works without the replacements (``ESCAPE_EXPLORER_BOKEH_PATCHES=no``). Tests fail if a replaced function changes.
 """

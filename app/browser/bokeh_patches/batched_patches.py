@@ -1,9 +1,9 @@
-"""Send all changes that one callback makes to a document as one message.
+"""One message for all changes that a callback makes to a document.
 
-Replaces ``bokeh.server.session.ServerSession._send_pending_patches``, which sends one message per change and collects all
-models of the document for each: the first frame of a map has 17 changes, 16 ms of work as separate messages and 3 ms as
-one, and the browser then paints once. The protocol allows any number of changes in a message. Bokeh also serializes in a
-thread and waits for it, which gains nothing while threads compete for the interpreter lock.
+This replaces ``bokeh.server.session.ServerSession._send_pending_patches``, which sends a message for each change, and for each
+message collects all models of the document. The first frame of a map has 17 changes, which take 16 ms as separate messages and
+3 ms as one message, after which the browser paints once. The protocol allows any number of changes in a message. Bokeh also
+serializes in a thread and waits for it, which gains nothing while threads compete for the interpreter lock.
 
 The change for upstream is ``batched_patches.patch``.
 """
@@ -36,7 +36,7 @@ def serialize_batches(pending: Sequence[Any]) -> list[tuple[Any, Any]]:
     Parameters
     ----------
     pending
-        Bokeh's pending patches; each has an event, a protocol and connections.
+        Pending patches of Bokeh, each with an event, a protocol and connections.
 
     Returns
     -------

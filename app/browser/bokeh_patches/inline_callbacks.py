@@ -1,8 +1,8 @@
-"""Handle messages and run callbacks on the event loop.
+"""Messages and callbacks of Bokeh on the event loop, without a thread.
 
-Replaces ``_run_in_executor`` in ``bokeh.server.session``, which runs each of them in a thread and waits for it. That costs
-iterations of the event loop and switches of the interpreter lock that take longer than most callbacks: the first frame
-then arrives twice as late for a single session, and ten times as late with 50 sessions. The callbacks of this page only
+This replaces ``_run_in_executor`` in ``bokeh.server.session``, which runs each in a thread and waits for the thread. That costs
+iterations of the event loop and switches of the interpreter lock, which take longer than most callbacks: the first frame
+arrives twice as late for a single session, and ten times as late with 50 sessions. The callbacks of this page only
 submit jobs and return, so they need no thread.
 
 The change for upstream is ``inline_callbacks.patch``.
@@ -22,5 +22,5 @@ def run_callbacks_inline() -> None:
 
 
 async def call_inline[Result](function: Callable[..., Result], *args: Any, **kwargs: Any) -> Result:
-    """Call a function and return its result."""
+    """Call a function in this thread and return its result."""
     return function(*args, **kwargs)

@@ -1,4 +1,4 @@
-"""The player of many orbits in the visitor's browser: it makes the starts, integrates the orbits and paints them."""
+"""The player of many orbits in the visitor's browser, which draws the starts, integrates the orbits and paints them."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ td::before { content: ""; position: absolute; left: 0; top: 0.3em; width: 0.7em;
 
 
 class EnsemblePlayer(JSComponent):
-    """Controls, counters and a chart. The browser sends {where, count, seed, radius} when the visitor chooses other starts.
+    """Controls, counters and a chart. The browser sends {where, count, seed, radius} for each choice of starts.
 
     Parameters
     ----------
     on_choice
-        Called with the choice in the form in which the browser sends it.
+        Takes the choice in this form.
     """
 
-    address = param.String(default=WATCH_ADDRESS, doc="of the module that is loaded when the player is first shown")
+    address = param.String(default=WATCH_ADDRESS, doc="address of the module")
     counts = param.List(default=list(COUNTS), doc="numbers of orbits to choose from")
     radii = param.List(default=[SMALLEST_RADIUS, LARGEST_RADIUS], doc="least and largest radius, as powers of ten")
-    places = param.Dict(default={}, doc="where starts can be in the system, in words")
-    explanations = param.Dict(default={str(where): sentence for where, sentence in EXPLANATIONS.items()}, doc="of some of them")
+    places = param.Dict(default={}, doc="phrase of each place of starts in the system")
+    explanations = param.Dict(default={str(where): sentence for where, sentence in EXPLANATIONS.items()}, doc="of places")
     where = param.String(doc="see `WatchedStarts`")
     count = param.Integer()
     seed = param.Integer()

@@ -1,9 +1,9 @@
 // @ts-check
-/** How long the address of a file is kept, in ms. */
-const KEPT = 60000
+/** Time for which the address of a file is kept, in ms. */
+const KEPT_MS = 60000
 
 /**
- * Saves the files that the server sends in the browser's download folder.
+ * Saves each file that the server sends in the download folder of the browser.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -15,6 +15,6 @@ export function render({model, el}) {
     document.body.append(link)
     link.click()
     link.remove()
-    setTimeout(() => URL.revokeObjectURL(address), KEPT)
+    setTimeout(() => URL.revokeObjectURL(address), KEPT_MS)
   })
 }

@@ -1,4 +1,4 @@
-"""Files for the browser's download folder."""
+"""Files that the browser saves in its download folder."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from panel.custom import JSComponent
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class FileSaver(JSComponent):
-    """A component without size that must be on the page."""
+    """Sends files to the browser; the component has no size, but must be on the page."""
 
     _esm = Path(__file__).with_suffix(".js")
 
@@ -17,5 +17,5 @@ class FileSaver(JSComponent):
         super().__init__(width=0, height=0, margin=0, styles={"position": "absolute"})
 
     def save(self, name: str, content: bytes) -> None:
-        """Have the browser save a file."""
+        """Send a file, which the browser saves."""
         self._send_msg({"name": name, "content": content})

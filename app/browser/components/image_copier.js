@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * A button that copies an image. Browsers allow this only during the click, when there is no image yet: the clipboard receives a
- * promise of the image, which the server then makes and sends.
+ * A button that copies an image. Browsers allow copying only during the click, when there is no image yet: the clipboard gets a
+ * promise of the image that the server makes and sends.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -13,14 +13,14 @@ export function render({model, el}) {
   let deliver = null
   button.addEventListener("click", async () => {
     if (deliver) return
-    // navigator.clipboard is missing on plain http except on localhost, and ClipboardItem in some browsers.
+    // navigator.clipboard is missing over http, except on localhost, and ClipboardItem in some browsers.
     if (!navigator.clipboard?.write || !globalThis.ClipboardItem) {
       model.send_msg({copied: false})
       return
     }
     const image = new Promise(resolve => (deliver = resolve))
     model.send_msg({wanted: true})
-    // The server shows the reason why there is no image.
+    // If the server sends no image, it shows the reason, and nothing is reported here.
     const copied = await navigator.clipboard.write([new ClipboardItem({"image/png": image.then(asPng)})]).then(
       () => true,
       () => false,

@@ -1,4 +1,4 @@
-"""A button that copies an image to the clipboard. Browsers allow this only during the click."""
+"""A button that copies an image to the clipboard, which browsers allow only during the click."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class ImageCopier(JSComponent):
     Parameters
     ----------
     on_wanted
-        Called at a click, without the session's lock; `send` must follow.
+        Handles a click, without the session's lock; `send` must follow.
     on_copied
-        Called with the success of a copy.
+        Handles whether the image could be copied.
     **options
         Parameters of the component.
     """
@@ -33,11 +33,11 @@ class ImageCopier(JSComponent):
         self.on_msg(lambda event: self._receive(event.data))
 
     def send(self, image: bytes | None) -> None:
-        """Send the PNG file to copy; None if there is none."""
+        """Send the image as a PNG file; None if it could not be made."""
         self._send_msg({"image": image})
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: unexpected ones are ignored.
+        # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"wanted": True}:
                 self._on_wanted()

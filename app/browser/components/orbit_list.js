@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The numbers of the orbits in a line, as radio buttons with the colours of the orbits.
+ * The numbers of the orbits in a line, as radio buttons in the colours of the orbits.
  *
  * @param {{model: any, el: HTMLElement}} component
  */

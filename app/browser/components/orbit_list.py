@@ -1,6 +1,6 @@
-"""The numbers of the chosen orbits.
+"""The list of orbits, by number.
 
-Bokeh's radio buttons fail when their choice changes while their view is being built, as happens when a click opens the tab.
+Radio buttons of Bokeh fail if their choice changes while their view is being built, as when a click opens the tab.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ class OrbitList(JSComponent):
     Parameters
     ----------
     on_choose
-        Called with the place of the chosen orbit, without the session's lock.
+        Takes the place of the chosen orbit, without the session's lock.
     **options
         Parameters of the component.
     """
 
     label = param.String(default="Orbits")
-    rows = param.List(item_type=str, doc="text that describes each orbit, shown under the mouse and read to screen readers")
-    chosen = param.Integer(default=0, bounds=(0, None), doc="place of the orbit that is chosen")
+    rows = param.List(item_type=str, doc="text that describes each orbit, as a tooltip and for screen readers")
+    chosen = param.Integer(default=0, bounds=(0, None), doc="place of the chosen orbit")
 
     _esm = Path(__file__).with_suffix(".js")
 
@@ -36,7 +36,7 @@ class OrbitList(JSComponent):
         self.on_msg(lambda event: self._receive(event.data))
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: unexpected ones are ignored.
+        # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"chosen": int(place)} if not isinstance(place, bool) and 0 <= place < len(self.rows):
                 self._on_choose(place)

@@ -2,7 +2,7 @@
 import {number} from "../modules/numbers.js"
 
 /**
- * A button and a slider for the time along the orbits: the steps from `begin` to `end`, played in a loop. Each step is sent.
+ * A button and a slider for the time along the orbits. Steps from `begin` to `end` are played in a loop, and each step is sent.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -36,11 +36,11 @@ export function render({model, el}) {
     button.className = on ? "pause" : "play"
     button.setAttribute("aria-label", on ? "Pause the orbits" : "Play the orbits")
   }
-  // Go to the beginning of another interval; playing continues.
+  // Go to the beginning of another interval, and continue to play.
   const follow = () => {
-    const nothing = model.begin === model.end
-    for (const input of [button, rail]) input.disabled = nothing
-    if (nothing) play(false)
+    const isEmpty = model.begin === model.end
+    for (const input of [button, rail]) input.disabled = isEmpty
+    if (isEmpty) play(false)
     write(0)
   }
   button.addEventListener("click", () => play(timer === undefined))
@@ -49,6 +49,6 @@ export function render({model, el}) {
   model.on("lifecycle:remove", () => clearInterval(timer))
   play(false)
   follow()
-  // When the player returns to the page, it is at the beginning.
+  // A player that returns to the page is at the beginning.
   if (!rail.disabled) go(0)
 }

@@ -1,4 +1,4 @@
-"""The player of the time along the orbits: the browser counts the steps and reports each one."""
+"""The player of the time along the orbits, whose steps the browser counts and reports."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ class OrbitPlayer(JSComponent):
     Parameters
     ----------
     on_step
-        Called with each step that the player shows, 0 to `steps`, without the session's lock.
+        Takes each step that the player shows, 0 to `steps`, without the session's lock.
     **options
         Parameters of the component.
     """
 
     label = param.String(default="Time along the orbits")
-    steps = param.Integer(default=600, doc="of the interval")
-    pause = param.Integer(default=50, doc="between two steps while it plays, in ms")
+    steps = param.Integer(default=600, doc="number of steps of the interval")
+    pause = param.Integer(default=50, doc="time between two steps, in ms")
     begin = param.Number(default=0.0, doc="start of the interval of time")
     end = param.Number(default=0.0, doc="end of the interval of time; an empty interval disables the player")
 
@@ -37,7 +37,7 @@ class OrbitPlayer(JSComponent):
         self.on_msg(lambda event: self._receive(event.data))
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: unexpected ones, and steps of an earlier interval, are ignored.
+        # A browser can send anything: unexpected messages, and steps of an earlier interval, are ignored.
         match message:
             case {"step": int(step), "begin": self.begin, "end": self.end} if 0 <= step <= self.steps and self.begin < self.end:
                 self._on_step(step)

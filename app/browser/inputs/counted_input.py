@@ -1,4 +1,4 @@
-"""Inputs that number their values, so that an older value from the server does not replace a newer one."""
+"""Inputs that count their values, so the browser ignores older values from the server."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from panel.custom import JSComponent
 
 
 class CountedInput(JSComponent):
-    """An input; its part in the browser is `CountedValue` in counted_value.js.
+    """An input whose browser part uses `CountedValue` in counted_value.js.
 
-    Widgets of Bokeh show each value of the server at once, even over a value that is being typed. Panel drops a value that is
-    typed while an earlier action that sets another value is still waiting.
+    Widgets of Bokeh show each value of the server at once, even over a value that is being typed. Panel drops a typed value while
+    an earlier action that sets another value is waiting.
 
     Parameters
     ----------
     on_value
-        Called with each legal value that the visitor enters, and whether the value is final, without the session's lock.
+        Takes each legal value of the visitor, and whether the value is final, without the session's lock.
     value
         The initial value.
     **options
@@ -28,7 +28,7 @@ class CountedInput(JSComponent):
 
     label = param.String()
     disabled = param.Boolean()
-    shown = param.Dict(default={}, doc="value, and how many of the visitor the server knew of when it set this one")
+    shown = param.Dict(default={}, doc="value, and number of the visitor's values that the server knew when it set the value")
 
     def __init__(self, on_value: Callable[[Any, bool], None], value: Any, **options: Any) -> None:
         super().__init__(shown={"value": value, "count": 0}, **options)
@@ -37,7 +37,7 @@ class CountedInput(JSComponent):
 
     @property
     def value(self) -> Any:
-        """The value in the browser, as far as the server knows."""
+        """The last value that the server has shown or received."""
         return self.shown["value"]
 
     def show(self, value: Any) -> None:
@@ -45,20 +45,20 @@ class CountedInput(JSComponent):
         self.shown = self.shown | {"value": value}
 
     def _checked(self, value: Any) -> Any:
-        """Return the value in a message; None if it is not legal."""
+        """Return the value in a message; None for an illegal value."""
         raise NotImplementedError
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: unexpected ones are ignored.
+        # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"value": sent, "count": int(count), "done": bool(done)}:
                 value = self._checked(sent)
-                # The browser shows the last legal value in place of an illegal one.
+                # The browser shows the last legal value in place of an illegal value.
                 self.shown = {"value": self.value if value is None else value, "count": count}
                 if value is not None:
                     self._on_value(value, done)
 
 
 def finite_number(value: Any) -> float | None:
-    """Return a finite number from a message; None for anything else."""
+    """Return a number from a message; None for anything but a finite number."""
     return float(value) if isinstance(value, int | float) and isfinite(value) else None

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The value of an input. Each value that is sent has a number. A value from the server that does not count the last one sent is
- * older than it.
+ * The value of an input. Sent values are numbered. A value from the server with a smaller number than the last sent is older
+ * than the value in the input, and is ignored.
  */
 export class CountedValue {
   /**
@@ -14,36 +14,37 @@ export class CountedValue {
     this.read = read
     this.write = write
     this.count = model.shown.count
-    /** Whether the input has a value that has not been sent. */
+    /** Whether the input has a value that is not sent yet. */
     this.unsent = false
+    /** Whether the last value is final. */
     this.done = true
   }
 
-  /** Show the value from the server, unless the input has a newer one. */
+  /** Show the value from the server, unless the input has a newer value. */
   follow() {
     if (!this.unsent && this.model.shown.count >= this.count) this.write(this.model.shown.value)
   }
 
-  /** The value changes; it is sent when it is final. */
+  /** Begin a change of the value, which is sent when it is final. */
   begin() {
     this.unsent = true
     this.done = false
   }
 
-  /** The value changes, and is sent at once. */
+  /** Send a change of the value at once. */
   change() {
     this.done = false
     this.send()
   }
 
-  /** The value that was begun or changed is final. */
+  /** Send the changed value as final. */
   finish() {
     if (this.done) return
     this.done = true
     this.send()
   }
 
-  /** The value that was begun is dropped. */
+  /** Drop a change that was begun. */
   cancel() {
     this.unsent = false
     this.done = true

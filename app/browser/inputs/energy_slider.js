@@ -2,7 +2,7 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * The slider of the energy. It sends the energy to the server when it is released, and to the page while it moves.
+ * The slider of the energy. It sends the energy to the page while it moves, and to the server when it is released.
  *
  * @param {{model: any, el: HTMLElement}} component
  */
@@ -25,7 +25,7 @@ export function render({model, el}) {
     rail.style.setProperty("--share", String((energy - model.low) / (model.high - model.low)))
     rail.setAttribute("aria-valuetext", number.textContent)
   }
-  // An energy beyond the slider stays until the user moves the thumb.
+  // An energy beyond an end of the slider stays until the user moves the thumb.
   const value = new CountedValue(
     model,
     () => rounded(rail.valueAsNumber),
@@ -57,7 +57,7 @@ export function render({model, el}) {
     if (energy === clamped(model.shown.value)) value.cancel()
     else value.finish()
   }
-  // The step of the keys is the last decimal shown; without it the browser would use a hundredth of the range.
+  // A key changes the last decimal. The browser itself would use steps of a hundredth of the range.
   const press = (/** @type {KeyboardEvent} */ event) => {
     const direction = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1}[event.key]
     if (!direction) return

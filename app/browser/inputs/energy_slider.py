@@ -1,4 +1,4 @@
-"""The slider of the energy: it reports to the server when it is released, and to the engine in the browser while it moves."""
+"""The slider of the energy, which reports to the engine in the browser while it moves, and to the server when it is released."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from app.browser.inputs.counted_input import CountedInput, finite_number
 from app.browser.javascript import component_code
 
 SHOWN = "energyshown"
-"""Browser event with the energy of the pictures while the server has not received it yet."""
+"""Browser event with the energy of the pictures until the server has received it."""
 
 
 class EnergySlider(CountedInput):
-    """A slider for the energy. For an energy beyond its ends, the thumb is at the end.
+    """A slider for the energy. For an energy beyond an end of the slider, the thumb is at that end.
 
     Parameters
     ----------
     on_release
-        Called with each energy that the visitor chooses, without the session's lock.
+        Takes each energy that the visitor chooses, without the session's lock.
     energy
         The initial energy.
     **options
         Parameters of the component.
     """
 
-    note = param.String(doc="shown in place of name and number")
+    note = param.String(doc="text in place of name and number")
     low = param.Number(default=0.0, doc="left end")
     high = param.Number(default=1.0, doc="right end")
     decimals = param.Integer(default=3, doc="decimals of the energies that can be chosen")

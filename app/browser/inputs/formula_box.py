@@ -11,14 +11,14 @@ from app.browser.inputs.counted_input import CountedInput
 from app.browser.javascript import component_code
 
 LONGEST_TYPED = 4000
-"""Largest length of a text, in characters. A lower limit for formulas is checked later, with a message; a box cuts silently."""
+"""Largest length of a text, in characters. The lower limit for formulas is checked later: a message explains it, a box cuts."""
 
 
 class FormulaBox(CountedInput):
     """A box for a formula. The text is final when Enter is pressed or the box is left."""
 
-    placeholder = param.String(doc="shown in an empty box")
-    longest = param.Integer(default=LONGEST_TYPED, doc="most characters of the text")
+    placeholder = param.String(doc="text in an empty box")
+    longest = param.Integer(default=LONGEST_TYPED, doc="largest length of the text, in characters")
 
     _esm = component_code(Path(__file__).with_suffix(".js"))
 

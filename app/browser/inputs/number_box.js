@@ -30,7 +30,7 @@ export function render({model, el}) {
   input.addEventListener("blur", finish)
   // Enter without a change of the number fires no change event.
   input.addEventListener("keydown", event => event.key === "Enter" && finish())
-  // The page shows another number, which the server has not received yet.
+  // Show a number of the page that the server has not received yet.
   const show = (/** @type {any} */ event) => {
     if (!value.unsent) write(Number(event.detail.toPrecision(10)))
   }

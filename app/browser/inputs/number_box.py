@@ -1,4 +1,4 @@
-"""A box for a number."""
+"""Boxes for numbers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class NumberBox(CountedInput):
     Parameters
     ----------
     on_number
-        Called with each final number, without the session's lock.
+        Takes each final number, without the session's lock.
     number
         The initial number.
     **options
@@ -26,7 +26,7 @@ class NumberBox(CountedInput):
     """
 
     step = param.Number(default=0.1, doc="step of the arrow keys and buttons")
-    shown_event = param.String(doc="event of the page with a number to show that is not the server's")
+    shown_event = param.String(doc="browser event with a number to show that the server has not received")
 
     _esm = component_code(Path(__file__).with_suffix(".js"))
 

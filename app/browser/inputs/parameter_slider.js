@@ -2,7 +2,7 @@
 import {CountedValue} from "./counted_value.js"
 
 /**
- * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent; it is final when the
+ * A slider with a box for its number, which may lie beyond the ends of the slider. Each number is sent. It is final when the
  * slider is released or left, or Enter is pressed.
  *
  * @param {{model: any, el: HTMLElement}} component

@@ -1,4 +1,4 @@
-"""A slider and a box for a number; they report each change."""
+"""Sliders with a box for their number, which report each change."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.browser.javascript import component_code
 class ParameterSlider(CountedInput):
     """A slider with a box for its number. The number is final when the slider is released or left, or Enter is pressed.
 
-    For a number beyond the ends of the slider, the thumb is at the end.
+    For a number beyond an end of the slider, the thumb is at that end.
     """
 
     low = param.Number(doc="left end of the slider")

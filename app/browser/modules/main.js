@@ -1,5 +1,5 @@
 // @ts-check
-/** Connects the component of the page, see `app/browser/engine_component.py`, with the modules. */
+/** Connects the component on the page (`app/browser/engine_component.py`) with the modules. */
 
 import {Card} from "./gestures/card.js"
 import {Frames} from "./workers/frames.js"
@@ -10,7 +10,7 @@ import {Pool, workerCount} from "./workers/pool.js"
 import {setPresent} from "./gestures/present.js"
 import {Preview} from "./gestures/preview.js"
 
-/** The smallest module with an instruction on vectors. */
+/** A module with a vector instruction, as small as possible. */
 // prettier-ignore
 const SIMD = Uint8Array.of(
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3,
@@ -24,7 +24,7 @@ const SIMD = Uint8Array.of(
 export function start(model, el) {
   lightPixels()
   if (!WebAssembly.validate(SIMD)) {
-    // Without vector instructions, the last map stays until the next one comes, and the energy cannot be played.
+    // Without vector instructions, the last map stays until the next map arrives, and the energy cannot be played.
     const refuse = () => model.command.name === "play" && model.send_msg({energy: model.command.energy})
     model.on("command", refuse)
     refuse()
@@ -32,7 +32,7 @@ export function start(model, el) {
   }
   const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
   const find = (/** @type {string} */ name) => page.get_model_by_name(name)
-  // In all pictures the sources have the same names.
+  // Sources of different pictures have the same names.
   const findSource = (/** @type {string} */ picture, /** @type {string} */ name) =>
     find(picture)
       .renderers.map((/** @type {any} */ renderer) => renderer.data_source)
@@ -62,26 +62,26 @@ export function start(model, el) {
   document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyreleased", () => preview.release())
   /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
-  let taken = null
+  let known = null
   const tellPresent = () => {
     const [colours, labels] = [() => model.view.colours ?? [], () => model.view.labels ?? []]
     setPresent(
-      taken && model.view.system === taken.system.key ? {...taken, scene: () => preview.scene, colours, labels, host: el} : null,
+      known && model.view.system === known.system.key ? {...known, scene: () => preview.scene, colours, labels, host: el} : null,
     )
   }
-  const takeView = () => {
+  const receiveView = () => {
     if (!model.view.system) return
     preview.setView(model.view)
     tellPresent()
   }
-  const takeSystem = async () => {
+  const receiveSystem = async () => {
     if (!model.system.key) return
     const {key} = model.system
     const modules = {kernels: await kernels, system: await WebAssembly.compile(model.system.module)}
     if (model.system.key !== key) return
     const {module: _, ...system} = model.system
     for (const user of [card, preview]) user.setSystem(system, modules)
-    taken = {system, modules}
+    known = {system, modules}
     tellPresent()
   }
   const obey = () => {
@@ -89,11 +89,11 @@ export function start(model, el) {
     if (name === "play") player.start(energy, low, high)
     else player.stop()
   }
-  model.on("view", takeView)
-  model.on("system", takeSystem)
+  model.on("view", receiveView)
+  model.on("system", receiveSystem)
   model.on("command", obey)
-  takeView()
-  void takeSystem()
+  receiveView()
+  void receiveSystem()
   if (model.command.name === "play") obey()
   document.dispatchEvent(new Event("energyasked"))
 }

@@ -1,10 +1,10 @@
 // @ts-check
-/** Numbers as text: significant digits, typographic signs, and groups of digits that are not torn apart. */
+/** Numbers as text: significant digits, typographic signs, and groups of digits that stay on one line. */
 
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 
 /**
- * A number to so many significant digits, such as "1.9 × 10⁻¹²".
+ * A number with some significant digits, such as "1.9 × 10⁻¹²".
  *
  * @param {number} value
  * @param {number} [digits]
@@ -21,7 +21,7 @@ export function count(value) {
 }
 
 /**
- * A share of 1.
+ * A share of 1, as a percentage.
  *
  * @param {number} value
  * @param {number} [digits]

@@ -1,1 +1,1 @@
-"""From the start of the server to its end: checks, logs, warm-up and shutdown."""
+"""Checks at the start of the server, its logs, warm-up and shutdown."""

@@ -1,4 +1,4 @@
-"""Log records as lines of text or JSON; user input in messages cannot forge records."""
+"""Log records as lines of text or JSON. Input of users in a message cannot forge a record."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from tornado.websocket import WebSocketClosedError
 from app.runtime.settings import LogFormat
 
 LONGEST_MESSAGE = 400
-"""Largest length of a message, in characters. Most of a message may come from a visitor, for example the address of a request."""
+"""Largest length of a message, in characters. A visitor may determine most of a message, as by the address of a request."""
 
+# Number of first characters of a session's id in the log.
 _SESSION_CHARACTERS = 8
-# A shortened message keeps this many characters at its end, which contains the visitor's address.
+# Number of last characters of a shortened message, which contain the visitor's address.
 _LAST_CHARACTERS = 60
 _TRACEBACK_INDENT = "    "
 
@@ -25,7 +26,7 @@ _TRACEBACK_INDENT = "    "
 def short_session_id() -> str | None:
     """Return the first characters of the current session's id; None outside a session.
 
-    The whole id would let readers of the log join the session.
+    With the whole id, a reader of the log could join the session.
     """
     document = pn.state.curdoc
     context = document.session_context if document is not None else None
@@ -33,14 +34,14 @@ def short_session_id() -> str | None:
 
 
 def add_session_id(record: logging.LogRecord) -> bool:
-    """Add the current session to a record. This filter passes all records."""
+    """Add the current session to a record; as a filter, pass all records."""
     if session := short_session_id():
         record.session = session
     return True
 
 
 def shorten_message(record: logging.LogRecord) -> bool:
-    """Shorten a message that is too long by omitting its middle. This filter passes all records."""
+    """Shorten a long message by omitting its middle; as a filter, pass all records."""
     message = record.getMessage()
     if len(message) > LONGEST_MESSAGE:
         first = message[: LONGEST_MESSAGE - _LAST_CHARACTERS - 3]
@@ -49,17 +50,17 @@ def shorten_message(record: logging.LogRecord) -> bool:
 
 
 def is_not_closed_socket(record: logging.LogRecord) -> bool:
-    """Filter out messages that could not be sent because the client had disconnected."""
+    """Whether a record is not about a message to a client that has disconnected."""
     return record.exc_info is None or not isinstance(record.exc_info[1], WebSocketClosedError)
 
 
 def is_not_probe(record: logging.LogRecord) -> bool:
-    """Filter out the 503 answers of the readiness probe."""
+    """Whether a record is not about a request of the readiness probe."""
     return " /readiness " not in record.getMessage()
 
 
 def escape_control_characters(text: str) -> str:
-    """Escape all characters that are not printable, including line ends."""
+    """Return a text with escapes for all characters that are not printable, including line ends."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in text)
 
 

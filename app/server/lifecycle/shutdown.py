@@ -17,9 +17,9 @@ from app.views.components.notice import show_lasting_notice
 
 RESTART_NOTICE = "The server is restarting. Reload this page in a minute: its address holds the view."
 
-# Time for messages to reach the pages, and for a proxy to notice that the server is not ready.
+# Time in which messages reach the pages, and a proxy notices that the server is not ready.
 _GRACE_SECONDS = 0.5
-# Computations check for cancellation about every 50 ms; a compilation cannot be cancelled.
+# Longest time until the process ends. Computations check for cancellation about every 50 ms; compilations cannot be cancelled.
 _LAST_SECONDS = 4.0
 
 _SIGNALS = (signal.SIGTERM, signal.SIGINT)
@@ -28,17 +28,17 @@ log = logging.getLogger(f"bokeh.{__name__}")
 
 
 def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
-    """Stop gracefully on SIGTERM and Ctrl-C, whatever the event loop is doing; call on the thread of the loop.
+    """Stop gracefully on SIGTERM and Ctrl-C, even while the event loop is busy; call on the thread of the loop.
 
-    Replaces the handlers of Bokeh and asyncio, which wait for the event loop. Python writes the numbers of signals to a socket at
-    once, and a thread waits for them there. Like all threads, it is delayed only while a C function keeps the interpreter lock.
+    This replaces the handlers of Bokeh and asyncio, which wait for the event loop. Python writes a signal's number to a socket
+    at once, and a thread waits there. Like all threads, it is delayed only while a C function keeps the interpreter lock.
     """
     loop = asyncio.get_running_loop()
     if os.name != "posix" or threading.current_thread() is not threading.main_thread():
         return
     loop.remove_signal_handler(signal.SIGTERM)
     for number in _SIGNALS:
-        # A shell starts background jobs with SIGINT ignored.
+        # A shell starts background jobs with SIGINT ignored, which is respected.
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _leave_to_thread)
     receiver, sender = socket.socketpair()
@@ -54,7 +54,7 @@ def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
 
 
 def begin_shutdown(state: ProcessState) -> None:
-    """Refuse new sessions, cancel all jobs and limit the time until the process ends; on any thread."""
+    """Refuse new sessions, cancel all jobs and limit the time until the process ends; any thread may call this."""
     _exit_later()
     state.stopping.set()
     log.info("stopping")
@@ -64,7 +64,7 @@ def begin_shutdown(state: ProcessState) -> None:
 
 
 def finish_shutdown(state: ProcessState) -> None:
-    """Exit after Bokeh has released its resources; a regular exit of the interpreter would take seconds."""
+    """Exit at once if the server is stopping; a regular exit of the interpreter would take seconds."""
     if state.stopping.is_set():
         logging.shutdown()
         sys.stdout.flush()
@@ -72,11 +72,11 @@ def finish_shutdown(state: ProcessState) -> None:
 
 
 def _leave_to_thread(number: int, frame: Any) -> None:
-    """Ignore a signal of `_SIGNALS`, which `_wait_for_signal` handles."""
+    """Do nothing: `_wait_for_signal` handles the signal."""
 
 
 def _wait_for_signal(receiver: socket.socket, stop: Callable[[], None]) -> None:
-    """Call `stop` after the first signal of `_SIGNALS`; other signals may have their own handlers."""
+    """Call `stop` after the first signal of `_SIGNALS`; other signals keep their handlers."""
     while receiver.recv(1)[0] not in _SIGNALS:
         pass
     stop()
@@ -94,7 +94,7 @@ def _notify_pages(state: ProcessState) -> None:
 
 
 def _exit_later() -> None:
-    """End the process after `_LAST_SECONDS`. No file is being written here that could be truncated."""
+    """End the process after `_LAST_SECONDS`. No file can be truncated, because none is written here."""
     timer = threading.Timer(_LAST_SECONDS, os._exit, [0])
     timer.daemon = True
     timer.start()

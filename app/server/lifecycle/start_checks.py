@@ -1,4 +1,4 @@
-"""Checks before the server starts: a violation ends the process with one sentence and exit code 2."""
+"""Checks before the server starts. A violation ends the process with one sentence and exit code 2."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 INVALID_SETTING = 2
-"""Exit code."""
+"""Exit code of a process that an invalid setting ends."""
 
 SEVERAL_PROCESSES = (
     "--num-procs: must be 1, as requests of a page could reach a process without its session; "
@@ -21,15 +21,15 @@ def refuse_to_start(sentence: str) -> NoReturn:
     """Write the sentence to stderr and end the process."""
     sys.stderr.write(f"{sentence}\n")
     sys.stderr.flush()
-    # SystemExit would first run the hooks of a server that has not started.
+    # SystemExit would first run the hooks that stop a server, but no server has started.
     os._exit(INVALID_SETTING)
 
 
 def asks_for_several_processes(arguments: Sequence[str]) -> bool:
-    """Whether the arguments of `panel serve` contain ``--num-procs`` with a value other than 1; 0 means one process per core."""
+    """Whether the arguments of `panel serve` ask for more than one process; ``--num-procs=0`` means one for each core."""
     parser = argparse.ArgumentParser(add_help=False, exit_on_error=False)
     parser.add_argument("--num-procs", type=int, default=1)
-    # The rest are arguments of the application.
+    # All arguments after this option belong to the application.
     parser.add_argument("--args", nargs=argparse.REMAINDER)
     try:
         return bool(parser.parse_known_args(arguments)[0].num_procs != 1)

@@ -1,4 +1,4 @@
-"""Compilation of the kernels in the background while the server already answers."""
+"""Compilation of the kernels in the background, while the server already answers."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
 
 
 def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
-    """Return steps that prepare the three cases for some purposes."""
+    """Return the steps that prepare all cases of the paper for some purposes."""
     return {
         f"the kernels of case {name} for {purpose}": partial(_PURPOSES[purpose], potential)
         for purpose in purposes
@@ -59,7 +59,7 @@ STEPS: Mapping[str, Callable[[], object]] = {
     "the charts of statistics": statistics.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
-"""Functions that compile kernels or load them from the disk cache, by what they prepare, in the order of need."""
+"""Functions that compile kernels or load them from the disk cache, in the order of need. The keys say what they prepare."""
 
 
 def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] = STEPS) -> threading.Thread:
@@ -67,7 +67,7 @@ def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], object]] 
 
     A failed step ends the thread and sets `state.kernels_failed`. A shutdown ends the thread before the next step.
     """
-    # The thread is a daemon, because a compilation cannot be cancelled.
+    # A daemon thread does not keep the process alive: a compilation cannot be cancelled.
     thread = threading.Thread(target=_warm_up, args=(state, steps), name="warmup", daemon=True)
     thread.start()
     return thread
@@ -91,7 +91,7 @@ def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], object]]) -> 
             log.exception("%s could not be prepared", name)
             state.kernels_failed.set()
             return
-    # Modules, compiled code and defaults exist as long as the process, so the garbage collector can skip them.
+    # Modules and compiled code exist as long as the process, so the garbage collector can skip them.
     gc.freeze()
     state.kernels_ready.set()
     log.info("ready")

@@ -1,4 +1,4 @@
-"""Measures of a map: some are computed for each map, slow ones on demand."""
+"""Measures of a map. Quick measures are computed for each map, slow measures on demand."""
 
 from __future__ import annotations
 
@@ -20,28 +20,34 @@ from engine.foundations.wording import format_decimals, format_number
 from engine.measures.measure import Quantity
 from engine.results import DecayLaws, UncertaintyExponent
 
-TOLD: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
+DESCRIBED_MEASURES: tuple[Measure, ...] = tuple(measure for measure in MEASURES.values() if measure.sentence is not None)
 """The measures that the page describes in words, in order."""
 
-_MEASURING = "Computing further orbits …"
+
+def counts_in_box(measure: Measure) -> bool:
+    """Whether a measure counts the starts in the box; other measures name what they count in `place`."""
+    return not measure.place
+
+
+_COMPUTING_ORBITS = "Computing further orbits …"
 _UNDEFINED = "Not defined for this map."
 
 
 class BasinMeasuresView:
-    """A table with the numbers of each measure, whose descriptions open on demand, and charts.
+    """Shows a table with the numbers of each measure, whose descriptions open on demand, and charts.
 
     Parameters
     ----------
     state
-        The view state; its box is the region of the measures.
+        View state, whose box is the region of the measures.
     on_measure
-        Called with the name of a slow measure that is to be computed.
+        Computes the slow measure of this name.
     on_copy
-        Called with the numbers as tab-separated text.
+        Copies the numbers, given as tab-separated text.
     """
 
     def __init__(self, state: ViewState, on_measure: Callable[[str], None], on_copy: Callable[[str], None]) -> None:
-        slow = [measure for measure in TOLD if measure.slow]
+        slow = [measure for measure in DESCRIBED_MEASURES if measure.slow]
         self.buttons = {one.name: button(f"Measure the {one.title.lower()}", partial(on_measure, one.name)) for one in slow}
         self.whole = button(COUNT_WHOLE, lambda: state.param.update(box=None))
         self.text = TextPane("", name="measures", sizing_mode="stretch_width")
@@ -57,12 +63,12 @@ class BasinMeasuresView:
         self._remove([*self._sentences])
 
     def _follow_box(self, box: Window | None) -> None:
-        """Show that the measures belong to a box; None is the whole view."""
+        """Name the region of the measures: a box, or with None the whole view."""
         self.whole.visible = box is not None
-        self._remove([measure.name for measure in TOLD if measure.slow and not measure.place])
+        self._remove([measure.name for measure in DESCRIBED_MEASURES if measure.slow and counts_in_box(measure)])
 
     def show(self, name: str, result: Any) -> None:
-        """Show the result of a measure; None means that it is not defined."""
+        """Show the result of a measure; None if the measure is not defined for the map."""
         if name in self.buttons:
             self.buttons[name].disabled = False
         if result is None:
@@ -73,17 +79,17 @@ class BasinMeasuresView:
         self._results[name] = result
         if type(result) in self._charts:
             self._charts[type(result)].show(result)
-        self._tell(name, sentence(result))
+        self._put(name, sentence(result))
 
     def wait_for(self, name: str) -> None:
         """Show that a slow measure is being computed."""
         self.buttons[name].disabled = True
-        self._tell(name, _MEASURING)
+        self._put(name, _COMPUTING_ORBITS)
 
     def say(self, name: str, sentence: str) -> None:
-        """Show why there is no result."""
+        """Show why a measure has no result."""
         self._remove([name])
-        self._tell(name, sentence)
+        self._put(name, sentence)
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Make the content of the section."""
@@ -100,38 +106,38 @@ class BasinMeasuresView:
                 self.buttons[name].disabled = False
         self._write()
 
-    def _tell(self, name: str, sentence: str) -> None:
+    def _put(self, name: str, sentence: str) -> None:
         self._sentences[name] = sentence
         self._write()
 
     def _rows(self) -> list[tuple[str, str, str]]:
-        """The numbers of all measures, at full precision."""
-        found = [(one.title, self._results[one.name]) for one in TOLD if one.name in self._results]
+        """Return the numbers of all measures, at full precision."""
+        found = [(one.title, self._results[one.name]) for one in DESCRIBED_MEASURES if one.name in self._results]
         return [row for title, result in found for row in number_rows(title, result.numbers())]
 
     def _write(self) -> None:
         region = "In the box drawn on the maps" if self.whole.visible else "In the whole view"
-        told = [(measure, self._sentences[measure.name]) for measure in TOLD if measure.name in self._sentences]
-        body = "".join(_rows_of(measure, self._results.get(measure.name), sentence) for measure, sentence in told)
+        described = [(one, self._sentences[one.name]) for one in DESCRIBED_MEASURES if one.name in self._sentences]
+        body = "".join(_rows_of(measure, self._results.get(measure.name), sentence) for measure, sentence in described)
         table = f"<table aria-label='measures'><caption>{region}</caption>{body}</table>" if body else ""
-        details = (f"<p id='told-{one.name}' class='help-text' popover>{escape(sentence)}</p>" for one, sentence in told)
+        details = (f"<p id='told-{one.name}' class='help-text' popover>{escape(sentence)}</p>" for one, sentence in described)
         self.text.object = with_terms(f"{table}{''.join(details)}")
 
 
 def _rows_of(measure: Measure, result: Any, sentence: str) -> str:
-    """The title of a measure with its explanation, and a row for each number; without numbers, its description."""
+    """Return the title of a measure with its meaning, and a row for each number; without numbers, its description."""
     shown = [] if result is None else [(quantity.label, _value(quantity, result)) for quantity in measure.quantities]
     numbers = {label: text for label, text in shown if label and text}
     details = f" <button type='button' class='term' popovertarget='told-{measure.name}'>details</button>"
     place = f", {measure.place}" if measure.place else ""
-    said = "" if numbers else f"<br>{escape(sentence)}"
-    head = f"<b>{measure.title}</b>{details if numbers else ''}<br>{measure.meaning}{place}{said}"
+    description = "" if numbers else f"<br>{escape(sentence)}"
+    head = f"<b>{measure.title}</b>{details if numbers else ''}<br>{measure.meaning}{place}{description}"
     rows = "".join(f"<tr><td>{label}</td><td class='number'>{text}</td></tr>" for label, text in numbers.items())
     return f"<tbody><tr><th colspan=2>{head}</th></tr>{rows}</tbody>"
 
 
 def _value(quantity: Quantity, result: Any) -> str:
-    """A number with its error or its interval; empty if it is not known."""
+    """Return a number with its error or its interval; empty if the number is not known."""
     found = quantity.read(result)
     value, *bars = found if isinstance(found, tuple) else (found,)
     if not math.isfinite(value):

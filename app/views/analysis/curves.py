@@ -1,4 +1,4 @@
-"""Curves of measures against energy or a parameter; a click opens the map at a value."""
+"""Curves of measures against energy or a parameter, on which a click opens the map at a value."""
 
 from __future__ import annotations
 
@@ -28,12 +28,23 @@ from engine.systems.parameters import symbol_of
 from plots.pictures.charts import CURVE_PANELS, SHARES, find_numbers
 from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, THRESHOLD, Entry
 
-START, STOP = "Compute the curves", "Stop"
-SWEPT_VALUES, REFINED_VALUES = 25, 8
-"""Energies, or values of a parameter, of the curves, and further ones where the shares change most."""
+START = "Compute the curves"
+"""Label of the button while nothing is computed."""
+
+STOP = "Stop"
+"""Label of the button while the curves are computed."""
+
+SWEPT_VALUES = 25
+"""Number of evenly spaced energies, or values of a parameter, of the curves."""
+
+REFINED_VALUES = 8
+"""Number of further values, where the shares change most."""
 
 _VALUES = SWEPT_VALUES + REFINED_VALUES
 HINT = f"The shares and each measure at {_VALUES} values, closer together where the shares change: a minute or more."
+"""Text while there are no curves."""
+
+# Colours of the numbers of a measure, in order.
 _COLOURS = MEASURED, LAW_COLOURS["exponential"]
 _NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": [], "fate": []}
 _DASH = "8 8"
@@ -45,18 +56,18 @@ _NO_POINTS: dict[str, list[float]] = {"value": [], **{f"{name}{end}": [] for nam
 
 
 class CurvesView:
-    """Figures with one axis of energies, or of a parameter.
+    """Draws the curves of all measures, in figures that share an axis of the energy or of a parameter.
 
     Parameters
     ----------
     state
         The view state.
     on_sweep
-        Called when the button is pressed.
+        Starts or stops the computation when the button is pressed.
     on_value
-        Called with the energy or parameter value of the point that is clicked.
+        Opens the map at the energy or parameter value of a clicked point.
     later
-        Wraps functions of the session; used to make the figures.
+        Wraps a function to run in a later iteration of the event loop, for the making of the figures.
     """
 
     def __init__(
@@ -84,7 +95,7 @@ class CurvesView:
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
         self._legend = TextPane(margin=(0, 10))
         self._figures: list[figure] = []
-        self._unbuilt = InTurns(
+        self._panels_in_turns = InTurns(
             [self._build_shares, *(partial(self._build_panel, each) for each in CURVE_PANELS)], self._add, later
         )
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
@@ -97,7 +108,7 @@ class CurvesView:
             self.show(self.shown)
 
     def _follow_system(self, system: System) -> None:
-        """Remove the curves of another system, and offer the parameters of this one."""
+        """Remove the curves of the previous system, and offer the parameters of the new system."""
         if self.shown is not None:
             self.show(None)
         self.against.options = {"h": "h"} | {plain_symbol(symbol_of(name)): name for name in system.parameter_names}
@@ -115,10 +126,10 @@ class CurvesView:
         self.button.label = STOP if running else START
 
     def show(self, curves: Sweep | None) -> None:
-        """Draw the curves of the system that is followed; None removes them."""
+        """Draw curves of the system in view; None removes the curves."""
         self.shown = curves
         if curves is not None:
-            self._unbuilt.begin()
+            self._panels_in_turns.begin()
         self._plots.visible = curves is not None
         if curves is None:
             self.points.data, self._shares.data = _NO_POINTS, _NO_SHARES
@@ -131,7 +142,7 @@ class CurvesView:
         self.points.data = points
         shares, outcomes = curves["share"].T, curves.outcomes
         entries = self._entries(outcomes)
-        # Symmetric exits have equal shares: dashed curves, which are drawn last, leave the solid ones visible.
+        # Symmetric exits have equal shares: dashed curves, drawn last, leave the solid curves below visible.
         order = sorted(range(len(shares)), key=_is_dashed)
         self._shares.data = {
             "xs": [curves.values] * len(shares),
@@ -140,9 +151,9 @@ class CurvesView:
             "dash": [_DASH if _is_dashed(k) else "solid" for k in order],
             "fate": [outcomes[k - 1].action if k else "are bounded" for k in order],
         }
-        swept = curves.dataset.attrs["requested"]
-        if len(swept) > 1:
-            set_range(self._axis, swept[0], swept[-1])
+        requested = curves.dataset.attrs["requested"]
+        if len(requested) > 1:
+            set_range(self._axis, requested[0], requested[-1])
         self._name_axes()
         self._mark()
         self._scale_values(curves)
@@ -150,7 +161,7 @@ class CurvesView:
         self._legend.object = legend(entries)
 
     def _scale_values(self, curves: Sweep) -> None:
-        """Fit the ranges of all plots except that of the shares."""
+        """Fit the vertical ranges to the numbers; the range of the shares is fixed."""
         for panel in CURVE_PANELS:
             numbers, axis = find_numbers(panel, curves), self._values[panel.name]
             if not panel.curve.logarithmic:
@@ -163,7 +174,7 @@ class CurvesView:
         self.text.object = escape(sentence)
 
     def open_near(self, value: float) -> None:
-        """Open the map of the measured value that is nearest to this one."""
+        """Open the map at the computed value nearest to a value."""
         values = np.asarray(self.points.data["value"])
         if values.size:
             self._on_value(float(values[np.argmin(np.abs(values - value))]))
@@ -173,7 +184,7 @@ class CurvesView:
         return [Entry("bounded", palette.bounded), *palette.end_entries(outcomes)]
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the button and the container of the plots, which are made with the first curves."""
+        """Make the button and the container of the figures, which the first curves add."""
         row = flex_row(self.against, self.button, gap="8px", align="end")
         row.css_classes = ["whole-row"]
         return [row, self.text, self._plots]
@@ -225,7 +236,7 @@ class CurvesView:
 
 
 def _is_dashed(code: int) -> bool:
-    """Whether the curve of an outcome is dashed; 0 stands for bounded starts."""
+    """Whether the curve of a fate is dashed; code 0 stands for bounded starts."""
     return code > 0 and code % 2 == 0
 
 
@@ -238,7 +249,7 @@ def _make_key(panel: Measure) -> pn.viewable.Viewable:
 
 
 def _progress(curves: Sweep, seconds: float) -> str:
-    """What the curves show; while they are computed, how long that will take at the pace of the past `seconds`."""
+    """Return what the curves show and, until they are complete, the time left at the pace of the past `seconds`."""
     request = curves.dataset.attrs
     done, total = curves.values.size, request["count"]
     energy = f" at h = {format_number(request['energy'], 6)}" if request["along"] else ""

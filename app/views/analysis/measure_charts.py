@@ -1,4 +1,4 @@
-"""Charts beside the measures of a map: uncertain pairs of starts with their power law, and survival with its decay laws."""
+"""Charts for the measures of a map: uncertain pairs of starts with their power law, and survival with its decay laws."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from engine.measures.decay_laws import LawFit
 from engine.results import DecayLaws, UncertaintyExponent
 from plots.pictures.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
+# Number of points of the curve of a law.
 _LAW_POINTS = 200
 _PAIRS_TEXT = (
     "<b>@share{percent}</b> of the pairs have different fates<br>at a separation of @separation{number}@note<br>"
@@ -26,7 +27,7 @@ _NO_PAIRS: dict[str, list[Any]] = {name: [] for name in ("separation", "share", 
 
 
 class PairsChart:
-    """The uncertain share against separation, with the fitted power law; the chart is on the page while it has a result."""
+    """Draws the uncertain share against separation with the fitted power law, while there is a result."""
 
     def __init__(self) -> None:
         self._separations, self._uncertain = Range1d(1e-10, 1.0), Range1d(1e-3, 1.0)
@@ -35,7 +36,7 @@ class PairsChart:
         self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
 
     def show(self, found: UncertaintyExponent | None) -> None:
-        """Show the shares and the fit; None removes them."""
+        """Show the shares and the fit; None hides the chart."""
         self.view.visible = found is not None
         if found is None:
             self.pairs.data, self._line.data = _NO_PAIRS, {"separation": [], "share": []}
@@ -62,7 +63,7 @@ class PairsChart:
         return self.view
 
     def draw(self) -> figure:
-        """Make its figure."""
+        """Make the figure of the chart."""
         plot = square_figure(
             "uncertainty", "Uncertain pairs of starts", x_axis_label="separation", y_axis_label="uncertain share",
             x_range=self._separations, y_range=self._uncertain, x_axis_type="log", y_axis_type="log",
@@ -76,7 +77,7 @@ class PairsChart:
 
 
 class SurvivalChart:
-    """S(t) with the fitted laws; the chart is on the page while there are escapes."""
+    """Draws the share of survivors S(t) with the fitted laws, while there are escapes."""
 
     def __init__(self) -> None:
         self._times, self._survivors = Range1d(1.0, 100.0), Range1d(1e-3, 1.0)
@@ -85,7 +86,7 @@ class SurvivalChart:
         self.view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
 
     def show(self, laws: DecayLaws | None) -> None:
-        """Show S(t) with the fitted laws; None keeps the laws until the next ones are known."""
+        """Show S(t) with the fitted laws; None keeps the last S(t) and laws until the next are known."""
         if laws is None:
             return
         self.steps.data = {"t": laws.times, "share": laws.survival}
@@ -105,13 +106,13 @@ class SurvivalChart:
         return self.view
 
     def draw(self) -> figure:
-        """Make its figure."""
+        """Make the figure of the chart."""
         plot = square_figure(
             "survival", "Still inside", x_axis_label="t", y_axis_label="share of the starts",
             x_range=self._times, y_range=self._survivors, x_axis_type="log", y_axis_type="log",
         )  # fmt: skip
         plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
-        # The hover tool finds lines between points, but not steps.
+        # The hover tool finds lines, but not steps, so an invisible line joins the points.
         line = plot.add_glyph(self.steps, Line(x="t", y="share", line_alpha=0.0))
         plot.add_tools(chart_hover(_SURVIVAL_TEXT, [line], mode="vline", line_policy="prev"))
         for law, source in self._laws.items():

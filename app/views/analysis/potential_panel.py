@@ -1,4 +1,4 @@
-"""The choice of the potential: known ones by name, a typed formula, their parameters, and the resulting properties."""
+"""The choice of the potential: known potentials by name, a typed formula, parameters, and the resulting properties."""
 
 from __future__ import annotations
 
@@ -25,52 +25,51 @@ from plots.pictures.palette import MOST_CHANNELS
 from plots.texts.accepted_potentials import refusal
 from plots.texts.mathml import potential_formula, potential_symbol
 
-# Ends of the sliders; their boxes, links and the command line allow wider ranges.
-_LOW, _HIGH = 0.2, 2.0
-_ENDS = {"rotation": (-1.0, 1.0)}
-# Ends of the slider of a letter; they are farther apart if its value lies beyond half of them.
-_LETTER_REACH = 2.0
+# Ends of the sliders of parameters. Their boxes, links and the command line allow wider ranges.
+_SLIDER_ENDS = (0.2, 2.0)
+_OTHER_SLIDER_ENDS = {"rotation": (-1.0, 1.0)}
+# Distance of the ends of a letter's slider from 0; for values beyond half of it, the distance is twice the value.
+_LEAST_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
     "for example 0.5(x^2+y^2) - a x^2 y. “; well (1, 0)” moves the axes to the minimum near (1, 0); “; masses (8, 8)” "
     "is for masses of 8."
 )
-# Texts that buttons add: a term, or a clause after all terms.
+# Texts that buttons add to the formula: a term, or a clause after all terms.
 _TERMS = {"+ letter": " + a x y"}
 _CLAUSES = {"+ body": "; centre (0, 0) 0.001", "+ escape radius": "; escape 10"}
 NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outcomes is compiled first, which takes some seconds."
-"""Note about a formula that the maps do not follow while it is typed."""
-
+"""Note about a formula that the maps show only after Enter."""
 
 _DEFINITION = "V = ½(ω₁²x² + ω₂²y²) + ε V₁, and Φ = V − ½Ω²(x² + y²) in a frame that rotates at the rate Ω"
 
 
 class Propose(Protocol):
-    """Callback that receives the system of the widgets."""
+    """Receives the system of the widgets."""
 
     def __call__(self, system: System, *, done: bool) -> None:
-        """`done` is False while the visitor is typing or dragging."""
+        """Take a system; `done` is False while the visitor is typing or dragging."""
 
 
 class PotentialPanel:
-    """Widgets of the choice.
+    """Widgets that propose a potential, and show the properties of the proposal.
 
     Parameters
     ----------
     used
-        The system of the maps.
+        The review of the system of the maps.
     propose
-        Called with each system that is chosen, typed, or set by a slider.
+        Receives each system that is chosen, typed, or set by a slider.
     """
 
     def __init__(self, used: SystemReview, propose: Propose) -> None:
         self._propose = propose
         self._well: tuple[float, float] | None = None
         self.used = used
-        """The system of the maps."""
+        """The review of the system of the maps."""
         self.shown = used.system
-        """The system of the widgets; it may differ from that of the maps."""
+        """The system of the widgets, which may differ from the system of the maps."""
         known = {f"{entry.title}: {entry.description}": name for name, entry in CATALOGUE.items()}
         self.known = pn.widgets.Select(
             label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width", margin=(5, 0)
@@ -96,7 +95,7 @@ class PotentialPanel:
         self.known.param.watch(lambda event: self._take_known(event.new), "value")
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Return the parts of a column; parts of fixed height come first, so that no part moves while the formula is typed."""
+        """Return the parts of a column, parts of fixed height first: no part moves while the formula is typed."""
         buttons = flex_row(self.reset, self.move, gap="8px")
         return [
             self.known,
@@ -113,21 +112,21 @@ class PotentialPanel:
 
     def _make_slider(self, name: str) -> ParameterSlider:
         label, _, (lowest, highest) = WELL_PARAMETERS[name]
-        low, high = _ENDS.get(name, (_LOW, _HIGH))
+        low, high = _OTHER_SLIDER_ENDS.get(name, _SLIDER_ENDS)
         return ParameterSlider(
             partial(self._slide, name), 1.0, label=plain_symbol(label), low=low, high=high, lowest=lowest, highest=highest,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 
     def _make_letter_slider(self, name: str, value: float) -> ParameterSlider:
-        reach = max(_LETTER_REACH, 2.0 * abs(value))
+        reach = max(_LEAST_REACH, 2.0 * abs(value))
         return ParameterSlider(
             partial(self._slide, name), value, label=name, low=-reach, high=reach, lowest=-LARGEST_VALUE, highest=LARGEST_VALUE,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 
     def _show_letters(self, system: System) -> None:
-        """Show a slider for each letter of the formula; a slider that remains keeps its range."""
+        """Show a slider for each letter of the formula. The slider of a letter that remains keeps its range."""
         letters = tuple(name for name in _parameter_names(system) if name not in WELL_PARAMETERS)
         if letters != tuple(self.letter_sliders):
             before = self.letter_sliders
@@ -145,7 +144,7 @@ class PotentialPanel:
         self.show(used)
 
     def show(self, reviewed: SystemReview, note: str = _HINT) -> None:
-        """Show the properties of the system of the widgets, and a note or the reason why the maps cannot show it."""
+        """Show the properties of the system of the widgets, and a note, or the reason why the maps cannot show the system."""
         problem = refusal(reviewed)
         self.typeset.object = potential_formula(reviewed.potential)
         passed = f"<p>{_channels(reviewed)}</p><p class='quiet'>{escape(note)}</p>"
@@ -154,7 +153,7 @@ class PotentialPanel:
         self.facts.object = _points(reviewed) + _remarks(reviewed)
 
     def wait(self) -> None:
-        """Show that the system of the widgets is under review."""
+        """Show that the system of the widgets is being reviewed."""
         self._write("<p>Reviewing …</p>")
 
     def say(self, sentence: str) -> None:
@@ -164,7 +163,7 @@ class PotentialPanel:
         self.typeset.object = self.facts.object = ""
 
     def _write(self, message: str) -> None:
-        """Show a message, and the system of the maps if it differs."""
+        """Show a message, and the system of the maps if the widgets have another system."""
         used = self.used
         shows = f"The maps still show {used.system.title}: V = {used.formula}"
         draft = f"<p class='quiet'>{escape(shows)}</p>" if self.shown != used.system else ""
@@ -174,7 +173,7 @@ class PotentialPanel:
         self._well, self.move.visible = well, well is not None
 
     def _choose(self, system: System) -> None:
-        """Show a system in all widgets, and use it."""
+        """Show a system in all widgets, and propose it."""
         self._show(system)
         self._propose(system, done=True)
 
@@ -183,7 +182,7 @@ class PotentialPanel:
         self._show_around_text(system)
 
     def _show_around_text(self, system: System) -> None:
-        """Update all widgets except the text, which is being typed."""
+        """Show a system in all widgets except the formula, which is being typed."""
         self.shown = system
         self.known.value = system.case
         names = _parameter_names(system)
@@ -200,11 +199,11 @@ class PotentialPanel:
         if case == self.used.system.case:
             self._choose(self.used.system)
         else:
-            # A typed potential begins with the formula of the previous one.
+            # A typed potential begins with the formula of the previous potential.
             self._choose(self.shown.as_typed if case == TYPED else System(case))
 
     def _take_text(self, text: str, done: bool) -> None:
-        """Propose the text that the visitor types."""
+        """Propose the system of a typed formula, or the system of the maps if the formula is the same."""
         used = self.used.system
         self._show_around_text(used if text == _text(used) else _typed(text, self.shown))
         self._propose(self.shown, done=done)
@@ -216,29 +215,29 @@ class PotentialPanel:
             self._choose(replace(typed, formula=f"{typed.formula}; well ({x:.6g}, {y:.6g})"))
 
     def _add(self, term: str = "", clause: str = "") -> None:
-        """Add a term or a clause to the text."""
+        """Add a term or a clause to the formula."""
         typed = self.shown.as_typed
         terms, semicolon, clauses = typed.formula.partition(";")
         self._choose(replace(typed, formula=f"{terms.rstrip()}{term}{semicolon}{clauses}{clause}"))
 
     def _slide(self, name: str, number: float, done: bool) -> None:
-        """Propose the number of a slider."""
+        """Propose the system with the number of a slider."""
         self._show_around_text(replace(self.shown, parameters={**self.shown.parameters, name: number}))
         self._propose(self.shown, done=done)
 
 
 def _text(system: System) -> str:
-    """The formula of a system without its parameters."""
+    """Return the formula of a system without the values of its parameters."""
     return system.entry.formula
 
 
 def _typed(text: str, before: System) -> System:
-    """Return a system of a formula; parameters of the previous system that it still has are kept."""
+    """Return the system of a typed formula; parameters that the previous system also has keep their values."""
     return System(TYPED, text, {name: before.value_of(name) for name in (*WELL_PARAMETERS, *_letters(text))})
 
 
 def _letters(text: str) -> tuple[str, ...]:
-    """The letters of a formula; empty while it is not understood."""
+    """Return the letters of a formula; empty if it cannot be parsed."""
     try:
         return formula_letters(text)
     except ValueError:
@@ -246,7 +245,7 @@ def _letters(text: str) -> tuple[str, ...]:
 
 
 def _parameter_names(system: System) -> tuple[str, ...]:
-    """The parameters of a system, even while its formula is not understood."""
+    """Return the parameters of a system, even if its formula cannot be parsed."""
     return (*WELL_PARAMETERS, *_letters(system.formula)) if system.case == TYPED else system.parameter_names
 
 
@@ -265,7 +264,7 @@ def _channels(review: PotentialReview) -> str:
 
 
 def _points(review: PotentialReview) -> str:
-    """A table of the critical points."""
+    """Return a table of the critical points."""
     rows = "".join(
         f"<tr><td>{point.kind.value}</td><td>({format_number(point.x)}, {format_number(point.y)})</td>"
         f"<td>{format_number(point.energy)}</td><td>{point.channel or ''}</td></tr>"

@@ -1,4 +1,4 @@
-"""Statistics of the map: shares of each fate, escape times and their histogram, escape probability at each crossing."""
+"""Statistics of the map: shares of the fates, escape times and their histogram, and escape probabilities at crossings."""
 
 from __future__ import annotations
 
@@ -29,31 +29,36 @@ from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
 from plots.pictures.charts import BINS, MOST_CROSSINGS
 
-CROSSINGS, PROBABILITY = "n", "p"
-"""Columns of the second chart."""
+CROSSINGS = "n"
+"""Column of the numbers of crossings in the second chart."""
+
+PROBABILITY = "p"
+"""Column of the escape probabilities in the second chart."""
 
 _TIMES_TEXT = "<b>@top{count} starts</b> escape<br>from t = @left{number} to @right{number}"
 _PROBABILITIES_TEXT = (
     f"n = @{CROSSINGS} upward crossings:<br><b>@{PROBABILITY}{{percent}}</b> of the orbits still inside<br>"
     "escape before the next one"
 )
-_NUMBERS = [str(n) for n in range(MOST_CROSSINGS + 1)]
-_BAR = "#5b8db8"
+# Numbers of crossings, as categories of an axis.
+_CROSSING_LABELS = [str(n) for n in range(MOST_CROSSINGS + 1)]
+_BAR_COLOUR = "#5b8db8"
 _TICK = callback_code(NUMBERS, "number(tick)")
+# Largest number of labels of the axis of time.
 _MOST_TICKS = 5
 
 
 class StatisticsView:
-    """A table and two charts of the whole view, or of a box drawn on a map.
+    """Counts the starts of the whole view, or of a box drawn on a map, in a table and two charts.
 
     Parameters
     ----------
     state
-        The view state; the button removes its box.
+        View state, whose box a button removes.
     results
         The results of the session.
     on_copy
-        Called with the table as tab-separated text.
+        Copies the table, given as tab-separated text.
     """
 
     def __init__(self, state: ViewState, results: ShownResults, on_copy: Callable[[str], None]) -> None:
@@ -68,7 +73,7 @@ class StatisticsView:
         results.param.watch(lambda event: self._show(event.new), "frame")
 
     def _show(self, frame: EscapeMap | None) -> None:
-        """Count the pixels of a frame, once it has its full resolution."""
+        """Count the pixels of a frame of full resolution."""
         if frame is not None and frame.stride == 1:
             self._frame = frame
             self._count()
@@ -87,13 +92,13 @@ class StatisticsView:
         return [left, histogram, probabilities]
 
     def _count(self) -> None:
-        """Count while the section is on the page."""
+        """Count and show the pixels of the last frame, if the tab is open."""
         if self._frame is None or not self._is_built or self._state.analysis is not Analysis.STATISTICS:
             return
         statistics = compute_statistics(self._frame, self._state.box)
         self.table.object = self._table(statistics)
         self._show_times(*statistics.time_histogram(BINS))
-        self._show_probabilities(statistics.escape_probabilities[: len(_NUMBERS)])
+        self._show_probabilities(statistics.escape_probabilities[: len(_CROSSING_LABELS)])
 
     def _show_times(self, edges: np.ndarray, counts: np.ndarray) -> None:
         drawn = self._times.handles
@@ -103,13 +108,13 @@ class StatisticsView:
         drawn["y_range"].update(start=0.0, end=1.05 * max(float(counts.max()), 1.0))
 
     def _show_probabilities(self, probabilities: np.ndarray) -> None:
-        shown = np.zeros(len(_NUMBERS))
+        shown = np.zeros(len(_CROSSING_LABELS))
         shown[: len(probabilities)] = probabilities
-        self._probabilities.handles["source"].data = {CROSSINGS: _NUMBERS, PROBABILITY: shown}
+        self._probabilities.handles["source"].data = {CROSSINGS: _CROSSING_LABELS, PROBABILITY: shown}
         self._probabilities.handles["y_range"].end = 1.05 * float(shown.max()) or 1.0
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
-        """Name, colour and code of each fate in the table."""
+        """Return name, colour and code of each fate in the table."""
         palette, outcomes = self._state.colours, statistics.outcomes
         entries = zip(palette.end_entries(outcomes), outcomes, strict=True)
         ends = [(entry.label, entry.colour, fate) for fate, (entry, outcome) in enumerate(entries, 1) if outcome.occurs]
@@ -130,7 +135,7 @@ class StatisticsView:
         return f"<table aria-label='statistics'><caption>{caption}</caption>{body}</table>"
 
     def _rows(self) -> list[tuple[str, ...]]:
-        """The table, with shares at full precision."""
+        """Return the rows of the table, with shares at full precision."""
         if self._frame is None:
             return []
         statistics = compute_statistics(self._frame, self._state.box)
@@ -152,13 +157,13 @@ def _facts(statistics: EscapeStatistics) -> dict[str, str]:
 
 
 def _draw_times() -> hv.Histogram:
-    style = {"color": _BAR, "line_color": None, "logx": True, "xlabel": "escape time (logarithmic)", "ylabel": "starts"}
+    style = {"color": _BAR_COLOUR, "line_color": None, "logx": True, "xlabel": "escape time (logarithmic)", "ylabel": "starts"}
     return hv.Histogram((np.array([1.0, 10.0]), np.zeros(1))).opts(**style, **_frame())
 
 
 def _draw_probabilities() -> hv.Bars:
-    bars = hv.Bars([(number, 0.0) for number in _NUMBERS], (CROSSINGS, "upward crossings n"), (PROBABILITY, "p"))
-    style = {"color": _BAR, "line_color": None, "ylabel": "p", "ylim": (0.0, 1.0)}
+    bars = hv.Bars([(number, 0.0) for number in _CROSSING_LABELS], (CROSSINGS, "upward crossings n"), (PROBABILITY, "p"))
+    style = {"color": _BAR_COLOUR, "line_color": None, "ylabel": "p", "ylim": (0.0, 1.0)}
     return bars.opts(**style, **_frame())
 
 
@@ -176,7 +181,7 @@ def _frame() -> dict[str, Any]:
 
 
 def _simplify(plot: Any, _element: Any) -> None:
-    """Remove background and ticks; the same look as `square_figure`."""
+    """Remove background and tick marks, as `square_figure` does."""
     plot.state.min_border_top = 28
     plot.state.sizing_mode = "scale_width"
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
@@ -186,21 +191,21 @@ def _simplify(plot: Any, _element: Any) -> None:
 
 
 def _few_ticks(low: float, high: float) -> list[float]:
-    """Powers of ten, and twice and five times these unless that would be too many labels."""
+    """Return 1, 2 and 5 times the powers of ten from `low` to `high`, or only the powers if these are too many labels."""
     decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
     fine, powers = ([m * ten for ten in decades for m in steps if low <= m * ten <= high] for steps in ((1, 2, 5), (1,)))
     return fine if len(fine) <= _MOST_TICKS else powers
 
 
 def _plot(element: hv.Element, name: str, title: str) -> Any:
-    """Return the plot of an element with its help text. Changing its data is 20 times faster than drawing it again."""
+    """Return the plot of an element with its help text. Changing its data is 20 times faster than a new plot."""
     plot = hv.renderer("bokeh").get_plot(element)
     plot.state.elements = [HTML(html=title_with_help(title, name))]
     return plot
 
 
 def _describe(plot: Any, text: str) -> None:
-    """Describe the bar under the mouse, even if the mouse is above a low bar."""
+    """Make the plot describe the bar under the mouse, also while the mouse is above a low bar."""
     plot.state.add_tools(chart_hover(text, [plot.handles["glyph_renderer"]], mode="vline"))
 
 
@@ -209,5 +214,5 @@ def _number(value: float) -> str:
 
 
 def prepare() -> None:
-    """Load the part of HoloViews that draws with Bokeh. This takes longer than a single iteration of the event loop may."""
+    """Load the part of HoloViews that draws with Bokeh, which would delay the event loop too long."""
     hv.renderer("bokeh")

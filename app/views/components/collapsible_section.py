@@ -1,4 +1,4 @@
-"""Parts of the page that are built when they are first shown."""
+"""Parts of the page whose content is built when it is first shown: stacks, folds and drawers."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Build = Callable[[], Sequence[pn.viewable.Viewable]]
 
 
 class Stack:
-    """A column that shows one of several contents, or none; only the content that is shown is on the page.
+    """A column that shows one of several contents, or none. The page contains no other content of the column.
 
     Parameters
     ----------
     builds
-        Functions that make the contents, by name; each is called when its content is first shown.
+        Functions that make the contents, by name. Each is called when its content is first shown.
     css_class
         CSS class of the column.
     head
@@ -36,11 +36,11 @@ class Stack:
         self.shown: str | None = None
 
     def layout(self) -> pn.viewable.Viewable:
-        """The column as a part of the page."""
+        """Return the column."""
         return self._column
 
     def show(self, name: str | None) -> None:
-        """Put a content on the page in place of the present one; None for no content."""
+        """Show a content in place of the present content; None for no content."""
         self.shown = name
         if name is not None and name not in self._contents:
             self._contents[name] = [*self._builds[name]()]
@@ -48,12 +48,12 @@ class Stack:
         self._column.param.update(objects=parts, visible=bool(parts))
 
     def rebuild(self) -> None:
-        """Make the contents again: the present one now, the others when they are shown."""
+        """Make the contents again: the present content now, other contents when they are next shown."""
         self._contents.clear()
         self.show(self.shown)
 
     def toggle(self, name: str) -> None:
-        """Show a content, or take it off the page."""
+        """Show a content, or hide it if it is shown."""
         self.show(None if self.shown == name else name)
 
 
@@ -72,15 +72,15 @@ class Fold(Stack):
         return self.shown is not None
 
     def open(self, visible: bool) -> None:
-        """Put the content on the page, or take it off."""
+        """Show or hide the content."""
         self.show("content" if visible else None)
 
     def parts(self) -> list[pn.viewable.Viewable]:
-        """The button and the section."""
+        """Return the button and the column."""
         return [self.button, self.layout()]
 
     def show(self, name: str | None) -> None:
-        """Put the content on the page, or take it off."""
+        """Show or hide the content."""
         super().show(name)
         self.button.label = f"{'▾' if self.is_open else '▸'} {self._title}"
 
@@ -91,9 +91,9 @@ class Drawers(Stack):
     Parameters
     ----------
     drawers
-        Label of the button, title and maker of each drawer, by name; the label is empty if the drawer has no button here.
+        Label of the button, title and builder of each drawer, by name; no label for a drawer with a button elsewhere.
     on_show
-        Called when a drawer is opened or closed, with whether one is open.
+        Handles the opening or closing of a drawer, given whether a drawer is open now.
     """
 
     def __init__(
@@ -108,27 +108,27 @@ class Drawers(Stack):
         self.buttons.param.watch(self._press, "value")
 
     def show(self, name: str | None) -> None:
-        """Open a drawer and close the others; None closes all."""
+        """Open a drawer, and close any other; None closes all."""
         before = self.shown
-        # All changes are sent in one message: a button pressed in between would be added to the button that is still marked.
+        # All changes are sent in one message. Between two messages, a press would add a button to the button still marked.
         with pn.io.hold():
             super().show(name)
-            self.buttons.param.update(value=self._marked(), css_classes=self._classes(is_open=name is not None))
+            self.buttons.param.update(value=self._marked_buttons(), css_classes=self._classes(is_open=name is not None))
             if name != before:
                 self._on_show(name is not None)
 
     def _press(self, event: Any) -> None:
         pressed = [name for name in event.new if name != self.shown]
-        if event.new != self._marked():
+        if event.new != self._marked_buttons():
             self.show(pressed[-1] if pressed else None)
 
-    def _marked(self) -> list[str]:
-        """The buttons to mark: the button of the open drawer, if it has one."""
+    def _marked_buttons(self) -> list[str]:
+        """Return the buttons to mark: the button of the open drawer, if it has one."""
         return [name for name in self.buttons.options.values() if name == self.shown]
 
     @staticmethod
     def _classes(*, is_open: bool) -> list[str]:
-        """The classes of the buttons; in narrow windows the maps become smaller while a drawer is open."""
+        """Return the CSS classes of the buttons; in a narrow window, the maps shrink while a drawer is open."""
         return ["solid", "drawer-buttons", *(["drawer-open"] if is_open else [])]
 
     def _with_head(self, title: str, build: Build) -> Build:

@@ -2,13 +2,13 @@
 import {number} from "../../browser/modules/numbers.js"
 
 /**
- * Texts at the mouse, for Bokeh's hover tools; see `app/browser/javascript.py`.
+ * Texts of Bokeh's hover tools; `app/browser/javascript.py` makes callbacks of these functions.
  *
  * @typedef {Record<string, any>} Columns
  */
 
 /**
- * How the orbit of a pixel ends; "ends" are the words of a map on the codes that follow those of the names.
+ * How the orbit of a pixel ends. A map describes codes beyond the names in its column "ends".
  *
  * @param {number} code
  * @param {string[]} names
@@ -20,13 +20,13 @@ export function fateName(code, names, {ends}) {
 }
 
 /**
- * What is known of a pixel, in lines. Columns of layers that are off, and of maps that they are not computed for, have other sizes.
+ * What is known of a pixel, in lines. A column whose layer is off, or not computed for the map, has another size.
  *
  * @param {number} pixel
- * @param {{maps: Columns, compared: Columns}} columns  of the pictures, and of the other view
- * @param {{bounded: number, first: number, firstEvidence: number}} codes  the first of each kind
- * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words  by code;
- *   those of the layers by their columns, empty if the map has its own, and what the numbers in other columns of layers are
+ * @param {{maps: Columns, compared: Columns}} columns  of the maps, and of the map of the other view
+ * @param {{bounded: number, first: number, firstEvidence: number}} codes  of bounded orbits, first difference, first evidence
+ * @param {{evidence: string[], layers: Record<string, string[]>, values: Record<string, string>, fates: string[]}} words
+ *   of evidence and fates by code, of layers by column and code (empty if the map has its own), of numbers by column
  */
 export function pixelDetails(pixel, {maps, compared}, codes, words) {
   const fates = maps.fate[0]

@@ -1,4 +1,4 @@
-"""Parts of the page that are made one after the other, each in its own iteration of the event loop."""
+"""Parts of the page that are made one by one, each in its own iteration of the event loop."""
 
 from __future__ import annotations
 
@@ -11,31 +11,32 @@ Later = Callable[[Callable[[], None]], Callable[[], None]]
 """Wraps a function so that it runs in a later iteration of the event loop."""
 
 Make = Callable[[], Sequence[pn.viewable.Viewable]]
+"""Makes a part of the page."""
 
 
 class InTurns:
-    """Makes parts once they are needed; between two parts, other pages are served.
+    """Makes parts once they are needed, and lets the server serve other pages between two parts.
 
     Parameters
     ----------
     makes
         Functions that make the parts.
     add
-        Called with each new part.
+        Adds a new part to the page.
     later
-        Wraps functions of the session.
+        Wraps a function to run in a later iteration of the event loop.
     """
 
     def __init__(self, makes: Iterable[Make], add: Callable[[Sequence[pn.viewable.Viewable]], None], later: Later) -> None:
-        self._left, self._add = deque(makes), add
+        self._missing, self._add = deque(makes), add
         self._continue = later(self._make_next)
 
     def begin(self) -> None:
         """Make the parts that do not exist yet."""
-        if self._left:
+        if self._missing:
             self._continue()
 
     def _make_next(self) -> None:
-        if self._left:
-            self._add(self._left.popleft()())
+        if self._missing:
+            self._add(self._missing.popleft()())
             self.begin()

@@ -1,4 +1,4 @@
-"""Legends: each colour of a picture with its meaning."""
+"""Legends, which say what each colour of a picture means."""
 
 from __future__ import annotations
 
@@ -9,34 +9,34 @@ from engine.foundations.wording import format_number, format_whole
 from plots.layers.picture import ColourScale, ColourTable, Legend
 from plots.pictures.palette import Entry, Mark, short_label
 
-# Colours of a scale, between which the browser interpolates.
+# Number of intervals of a colour scale, in which the browser interpolates.
 _STEPS = 12
 
 
 def patch(colour: str, label: str = "", title: str = "") -> str:
-    """Return HTML of a patch of a colour, with a label (HTML) beside it and a tooltip (HTML)."""
+    """Return HTML of a coloured patch with a label and a tooltip, both HTML."""
     hint = f" title='{title}'" if title else ""
     return f"<span class='patch'{hint} style='--colour:{colour}'>{label}</span>"
 
 
 def legend_items(entries: Iterable[Entry]) -> str:
-    """HTML of the entries of a legend."""
+    """Return HTML of the entries of a legend."""
     return "".join(patch(_background(entry), escape(entry.label)) for entry in entries)
 
 
 def chips(entries: Iterable[Entry]) -> str:
-    """Return HTML of the entries of a legend where there is little room: a number or a word, with the whole label as tooltip."""
+    """Return HTML of the entries of a narrow legend: each is a number or a word, with the whole label as tooltip."""
     parts = ((entry.colour, escape(entry.label), escape(short_label(entry.label))) for entry in entries)
     return "".join(patch(colour, short, label) for colour, label, short in parts)
 
 
 def legend(entries: Iterable[Entry]) -> str:
-    """HTML of a legend that wraps."""
+    """Return HTML of a legend that wraps."""
     return f"<div class='legend'>{legend_items(entries)}</div>"
 
 
 def picture_legend(of: Legend) -> str:
-    """Return HTML of the entries of the legend below a picture, where there is little room."""
+    """Return HTML of the legend below a picture."""
     scale = _scale(of.scale) if of.scale is not None else ""
     sentence = f" <span>{escape(of.sentence)}</span>" if of.sentence else ""
     return f"{_classes(of)}{scale}{sentence}{legend_items(of.over)}"
@@ -67,7 +67,7 @@ def _number(value: float) -> str:
 
 
 def _table(table: ColourTable) -> str:
-    """Return one line with each hue and its tones, explained by the tooltip of a patch, and the order of the tones."""
+    """Return one line with the tones of each hue, whose tooltips explain them, and with the order of the tones."""
     names = [escape(name) for name in table.names]
     hues = "".join(_hue(end, names, tones) for end, tones in zip(names, table.tones, strict=True))
     return f"{hues}<span>tones: from {', '.join(names)}</span>"

@@ -1,4 +1,4 @@
-"""Short messages in the corner of the page: temporary ones, warnings, and permanent ones about the connection to the server."""
+"""Short messages in the corner of the page: passing messages, warnings, and lasting messages about the server."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ from bokeh.models import CustomJS
 from app.views.components.texts import TextPane
 
 CONNECTION_LOST = "The connection to the server is lost. Reload this page: its address holds the view."
+"""Message of the browser when it loses the server."""
+
 NAME = "notice"
-"""Name of the Bokeh model, by which the server finds it in a document."""
+"""Name by which the server and the browser find the Bokeh model of the pane in a document."""
 
 PASSING_SECONDS = 5.0
-"""Duration of temporary notices."""
+"""Duration of a passing message, in seconds."""
 
 _ON_CONNECTION_LOST = """
 const pane = Bokeh.documents[0].get_model_by_name(name)
@@ -26,24 +28,24 @@ pane.setv({text: html}, {sync: false})
 
 
 class _NamedPane(TextPane):
-    """A pane whose Bokeh model has the name that `show_lasting_notice` and the browser look for."""
+    """A pane whose Bokeh model is named `NAME`."""
 
     def _get_properties(self, doc: Document) -> dict[str, Any]:
         return {**super()._get_properties(doc), "name": NAME}
 
 
 class Notice:
-    """Shows one message at a time."""
+    """Shows the messages of a session, one at a time."""
 
     def __init__(self) -> None:
         self._pane = _NamedPane("", width=0, height=0, margin=0, styles={"position": "absolute"}, css_classes=["notices"])
 
     def layout(self) -> pn.viewable.Viewable:
-        """The pane; its position on the page does not matter."""
+        """Return the pane, which may be anywhere on the page."""
         return self._pane
 
     def show(self, sentence: str, picture: str = "") -> None:
-        """Show a message, below a picture (HTML), for a few seconds."""
+        """Show a message, below a picture (HTML), for `PASSING_SECONDS`."""
         self._pane.object = _passing(sentence, picture)
 
     def warn(self, sentence: str) -> None:
@@ -67,7 +69,7 @@ def show_passing_notice(document: Document, sentence: str) -> None:
 
 
 def watch_connection(document: Document) -> None:
-    """Have the browser show `CONNECTION_LOST` when the server is gone."""
+    """Have the browser show `CONNECTION_LOST` when it loses the server."""
     # The Bokeh model of the pane holds escaped HTML.
     args = {"name": NAME, "html": escape(_html(CONNECTION_LOST))}
     document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
@@ -80,7 +82,7 @@ def _set_text(document: Document, html: str) -> None:
 
 
 def _passing(sentence: str, picture: str = "") -> str:
-    # With the time, a repeated message is a change, so that it is shown again.
+    # The time makes a repeated message a change, which is shown again.
     duration = f"style='animation-duration: {PASSING_SECONDS}s'"
     return _html(sentence, f"class='notice passing' {duration} data-time='{time.monotonic_ns()}'", picture=picture)
 

@@ -1,16 +1,16 @@
 // @ts-check
 /** Labels of an axis whose plain numbers would be too long. */
 
-/** Parts of a unit that are shown: differences of close numbers are not more exact than that. */
-const PARTS = 100
+/** Number of steps of a label in its unit: differences of close numbers are not more exact. */
+const STEPS = 100
 
 /**
- * The distance of a tick from a number that the page states.
+ * The distance of a tick from a base, which a note below the picture states.
  *
  * @param {number} tick
  * @param {number} base
  * @param {number} unit  of the distance
  */
 export function offsetLabel(tick, base, unit) {
-  return String(Math.round(((tick - base) / unit) * PARTS) / PARTS).replace("-", "−")
+  return String(Math.round(((tick - base) / unit) * STEPS) / STEPS).replace("-", "−")
 }

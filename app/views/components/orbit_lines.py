@@ -1,4 +1,4 @@
-"""Lines of the chosen orbits, each in its colour: their order, their opacity and their columns."""
+"""Lines of orbits, each in its colour: their order, opacity and data columns."""
 
 from __future__ import annotations
 
@@ -13,56 +13,58 @@ from plots.pictures.orbit_curves import OrbitCurves
 from plots.pictures.palette import MOST_ORBITS
 
 Curve = tuple[np.ndarray, np.ndarray]
-"""Horizontal and vertical coordinates."""
+"""Horizontal and vertical coordinates of the points of a curve."""
 
+# Opacity of the orbits that are not chosen.
 _OTHERS_ALPHA = 0.35
+# A curve that encloses nothing.
 _NO_AREA = np.full(1, np.nan), np.full(1, np.nan)
 
 
-def in_front(drawings: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[int, OrbitCurves]]:
-    """The numbers of the orbits that are known, and their curves; the chosen orbit is last and lies over the others."""
-    known = [(slot, drawing) for slot, drawing in enumerate(drawings) if drawing is not None]
+def in_front(orbits: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[int, OrbitCurves]]:
+    """Return the known orbits, each with its place in the list; the chosen orbit is last, and so drawn over the others."""
+    known = [(slot, orbit) for slot, orbit in enumerate(orbits) if orbit is not None]
     return sorted(known, key=lambda item: item[0] == chosen)
 
 
-def opacities(drawings: Sequence[tuple[int, OrbitCurves]], chosen: int) -> list[float]:
-    """The opacity of each orbit: the chosen orbit is the most visible."""
-    return [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in drawings]
+def opacities(orbits: Sequence[tuple[int, OrbitCurves]], chosen: int) -> list[float]:
+    """Return the opacity of each orbit, which is highest for the chosen orbit."""
+    return [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in orbits]
 
 
 def line_style(mapper: LinearColorMapper) -> dict[str, Any]:
-    """Style of the lines of orbits, each in its colour."""
+    """Return the style of lines, each in the colour of its orbit."""
     return {"line_color": {"field": "slot", "transform": mapper}, "line_alpha": "alpha", "line_width": 1.5}
 
 
 def band_style(mapper: LinearColorMapper) -> dict[str, Any]:
-    """Style of the envelopes of orbits, each in its colour."""
+    """Return the style of envelopes, each in the colour of its orbit."""
     return {"fill_color": {"field": "slot", "transform": mapper}, "fill_alpha": "alpha", "line_color": None}
 
 
 def lines(name: str) -> ColumnDataSource:
-    """A source of lines of orbits."""
+    """Return an empty data source for the lines of orbits."""
     return ColumnDataSource({"xs": [], "ys": [], "slot": [], "alpha": []}, name=name)
 
 
 def band_columns(
-    drawings: Sequence[tuple[int, OrbitCurves]], outlines: Sequence[Curve], alphas: Sequence[float]
+    orbits: Sequence[tuple[int, OrbitCurves]], outlines: Sequence[Curve], alphas: Sequence[float]
 ) -> dict[str, list[Any]]:
-    """Columns of a source of envelopes. Their number is always the largest number of orbits; some have no points.
+    """Return the columns of a data source with `MOST_ORBITS` envelopes, of which some have no points.
 
-    Bokeh determines what is in view before it has indexed new data, and fails if an envelope has been removed.
+    Their number must not change: Bokeh uses an index of the old envelopes on the new data, and fails if an envelope is missing.
     """
-    missing = MOST_ORBITS - len(drawings)
+    missing = MOST_ORBITS - len(orbits)
     shown = [outline if outline[0].size else _NO_AREA for outline in outlines] + [_NO_AREA] * missing
-    columns = line_columns(drawings, shown, [ENVELOPE_ALPHA * alpha for alpha in alphas])
+    columns = line_columns(orbits, shown, [ENVELOPE_ALPHA * alpha for alpha in alphas])
     return columns | {"slot": columns["slot"] + [0] * missing, "alpha": columns["alpha"] + [0.0] * missing}
 
 
 def line_columns(
-    drawings: Sequence[tuple[int, OrbitCurves]], curves: Sequence[Curve], alphas: Sequence[float]
+    orbits: Sequence[tuple[int, OrbitCurves]], curves: Sequence[Curve], alphas: Sequence[float]
 ) -> dict[str, list[Any]]:
-    """The columns of a source of lines."""
-    return {"xs": _axis(curves, 0), "ys": _axis(curves, 1), "slot": [slot for slot, _ in drawings], "alpha": [*alphas]}
+    """Return the columns of a data source of lines."""
+    return {"xs": _axis(curves, 0), "ys": _axis(curves, 1), "slot": [slot for slot, _ in orbits], "alpha": [*alphas]}
 
 
 def _axis(curves: Sequence[Curve], axis: int) -> list[Any]:

@@ -1,4 +1,4 @@
-"""Bokeh figures with the same look, as large as their place on the page; text and axis colours come from the stylesheet."""
+"""Bokeh figures of one style, which fill their place on the page; the stylesheet colours texts and axes."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ from plots.pictures.histories import find_decades
 _OFFSET_LABEL = callback_code(Path(__file__).with_name("offset_ticks.js"), "offsetLabel(tick, base, unit)")
 
 HOVER_TEXTS = Path(__file__).with_name("hover_texts.js")
-"""The functions that write the texts of hover tools."""
+"""JavaScript module with the texts of hover tools."""
 
 HOVER_FORMATS = {name: callback_code(NUMBERS, f"{name}(value)") for name in ("number", "count", "percent")}
-"""JavaScript that formats a `value`: four digits, a whole number in groups of digits, or a share."""
+"""JavaScript that formats a `value`, by name of the format: four digits, a whole number in groups of digits, or a percentage."""
 
 _HOVER_VALUE = re.compile(r"([@$]\w+)\{(\w+)\}")
 
 _MOMENTUM = re.compile(r"^p([xy])$")
 
+# Width of a history over its height.
 _HISTORY_ASPECT = 2.2
 _HISTORY_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 25}
 
-# The borders left and right of the frame together are as wide as those above and below, so that a square figure has a square
-# frame.
+# Borders in pixels. Left and right together are as wide as above and below together, so a square figure has a square frame.
 _CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
 
 # The title of a picture is above its frame, the legend below the labels of the axis.
 _PICTURE_BORDERS = {"min_border_left": 48, "min_border_right": 10, "min_border_top": 22, "min_border_bottom": 36}
 
-# Labels with two decimals fit into the left border; longer ones would make the frame narrower than high.
+# Power of ten of the last decimal of a label. Longer labels would not fit into the left border, and make the frame narrower.
 _FINEST_LABEL = -2
 
 # A compact picture has a title, but no axes; a small one has nothing around its frame.
@@ -55,8 +55,8 @@ _BORDERS = {"compact": _COMPACT_BORDERS, "small": _SMALL_BORDERS}
 
 
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
-    """A square figure of a picture (see `square_figure`); `annotate_picture` writes around its frame."""
-    # Frames that are aligned with those of larger pictures would not be square.
+    """Return the square figure of a picture (see `square_figure`), around whose frame `annotate_picture` writes."""
+    # A frame aligned with the frames of larger pictures would not be square.
     plot = square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
     for axis in (*plot.below, *plot.left):
         axis.major_label_text_font_size = "14px"
@@ -65,14 +65,14 @@ def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
 
 
 def history_figure(name: str, title: str, **options: Any) -> figure:
-    """A low figure against the time of orbits (see `square_figure`); the title names its values."""
+    """Return a low figure with the time of orbits as abscissa (see `square_figure`); its title names the values."""
     plot = square_figure(name, title, aspect_ratio=_HISTORY_ASPECT, **_HISTORY_BORDERS, **options)
     plot.elements[0].html += "<i class='axis-name abscissa'>t →</i>"
     return plot
 
 
 def set_borders(plot: figure, kind: str) -> None:
-    """Set the borders of a picture according to its kind: "compact" and "small" pictures have no axes."""
+    """Set the borders of a picture of a kind. "compact" and "small" pictures have no axes, pictures of other kinds do."""
     for axis in (*plot.below, *plot.left):
         axis.visible = kind not in _BORDERS
     plot.update(**_BORDERS.get(kind, _PICTURE_BORDERS))
@@ -88,9 +88,9 @@ def annotate_picture(
     plot
         The picture.
     title, under_way
-        Texts above the frame: its title, and what is being computed.
+        Texts above the frame: the title, and what is being computed.
     names
-        Names of the axes, beside the axes.
+        Names of the axes, written beside them.
     legend, notes
         Texts below the frame; the legend is HTML, see `legends.picture_legend`.
     """
@@ -103,12 +103,12 @@ def annotate_picture(
         f"<div class='foot legend' data-picture='{plot.name}'>{legend}"
         f"{''.join(f'<small>{note}</small>' for note in notes)}</div>"
     )
-    # The model is reused: for each new one, Bokeh searches all models of the page.
+    # The model is reused, because Bokeh would search all models of the page for a new model.
     plot.elements[0].html = html
 
 
 def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) -> list[str]:
-    """Label the axes of pictures of a window; return the meaning of labels that are not plain numbers."""
+    """Label the axes of pictures of a window, and return sentences that explain labels other than plain numbers."""
     edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
     offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in edges]
     for plot in plots:
@@ -122,7 +122,7 @@ def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) 
 
 
 def square_figure(name: str, title: str, **options: Any) -> figure:
-    """A figure with a title and a help text, without tools; square, unless the options say otherwise.
+    """Return a figure with a title and a help text, without tools; it is square unless the options say otherwise.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
 
 
 class FigurePane(pn.pane.Bokeh):
-    """A figure whose events reach the server whenever it is on the page; Panel removes the callbacks when it leaves the page.
+    """A figure with callbacks for events, which are set whenever it comes to the page: Panel removes them when it leaves.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ class FigurePane(pn.pane.Bokeh):
 
 @contextmanager
 def batched_additions(plots: Sequence[figure]) -> Iterator[None]:
-    """Add models to the figures of a page; Bokeh searches all models of the page once for all, not once for each."""
+    """Return a context in which Bokeh searches the models of the page once for all models that are added to the figures."""
     document = plots[0].document if plots else None
     with document.models.freeze() if document is not None else nullcontext():
         yield
@@ -192,7 +192,7 @@ def chart_hover(text: str, renderers: Sequence[GlyphRenderer], **options: Any) -
     Parameters
     ----------
     text
-        HTML with the values as ``@column{format}`` or ``$variable{format}``; the format is a name in `HOVER_FORMATS`.
+        HTML with values written ``@column{format}`` or ``$variable{format}``, where the format is a name in `HOVER_FORMATS`.
     renderers
         The renderers whose points are described.
     **options

@@ -1,4 +1,4 @@
-"""Panes of text, and percentages as the page writes them."""
+"""Panes of text, and the notation of symbols and percentages on the page."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ from typing import Any
 import panel as pn
 from bokeh.document import Document
 
-# Lines do not break between a number and its equals sign or power of ten; groups of digits and the per cent sign are close to it.
+# Spaces beside an equals or a multiplication sign, where lines do not break.
 _AROUND_SIGN = re.compile(r"(?<=\w) (?=(?:=|≈) [−-]?\d)|(?<=[=≤×]) (?=[−-]?\d)|(?<=\d) (?=×)")
 _SUBSCRIPT = re.compile(r"\b(?:([A-Za-z])_|(p)(?=[xy]\b)|(ω)(?=[12]\b))([a-z]{1,3}|\d)\b")
 _POWER = re.compile(r"\b([et])\^(\d+(?:\.\d+)?)")
 _DIGITS = str.maketrans("12", "₁₂")
+# Narrow spaces before a per cent sign and between groups of digits.
 _IN_NUMBER = re.compile(r"(?<=\d) (?=%|\d{3}\b)")
 
 
 def typeset(html: str) -> str:
     """Return HTML whose lines do not break inside a number, with subscripts and powers, such as px, ω1, S_b and e^6.5."""
-    # Every second part is a tag.
+    # Text and tags alternate.
     parts = re.split(r"(<[^>]*>)", html)
     for space, places in (("\N{NO-BREAK SPACE}", _AROUND_SIGN), ("\N{NARROW NO-BREAK SPACE}", _IN_NUMBER)):
         parts[::2] = [places.sub(space, part) for part in parts[::2]]
@@ -28,15 +29,15 @@ def typeset(html: str) -> str:
 
 
 def plain_symbol(symbol: str) -> str:
-    """The symbol of a parameter with subscripts, for labels that are not HTML."""
+    """Return the symbol of a parameter with subscripts, for labels that are not HTML."""
     return symbol.translate(_DIGITS)
 
 
 class TextPane(pn.pane.HTML):
-    """HTML text with typographic spaces; it may change while it is not on the page.
+    """A pane of HTML with typographic spaces, whose text may also change while the pane is not on the page.
 
-    Panel sets the stylesheets again with each text, using the document of the model. A model that is not on the page has no
-    document and would load a stylesheet from Panel's content delivery network, which the page must not do.
+    With each text, Panel also sets the stylesheets, which depend on the model's document. A model that is not on the page has
+    no document, and would load a stylesheet from Panel's content delivery network, which the page must not do.
     """
 
     def _transform_object(self, obj: Any) -> dict[str, Any]:
@@ -45,23 +46,23 @@ class TextPane(pn.pane.HTML):
     def _get_properties(self, doc: Document | None) -> dict[str, Any]:
         properties: dict[str, Any] = super()._get_properties(doc)
         if doc is None:
-            # The model keeps its stylesheets.
+            # Without this entry, the model keeps its stylesheets.
             properties.pop("stylesheets", None)
         return properties
 
 
 class StatusPane(TextPane):
-    """Text whose changes screen readers read out after what they are reading."""
+    """A pane whose new text screen readers announce once they have finished the present text."""
 
     def _get_properties(self, doc: Document | None) -> dict[str, Any]:
         return {**super()._get_properties(doc), "html_attributes": {"role": "status"}}
 
 
 def percent(share: float, decimals: int = 1) -> str:
-    """A share between 0 and 1 as a percentage: 3.3 %."""
+    """Return a share between 0 and 1 as a percentage: "3.3 %"."""
     return f"{100.0 * share:.{decimals}f} %"
 
 
 def percent_range(low: float, high: float, decimals: int = 2) -> str:
-    """Two shares between 0 and 1 as a range of percentages: 3.21 to 3.40 %."""
+    """Return two shares between 0 and 1 as a range of percentages: "3.21 to 3.40 %"."""
     return f"{100.0 * low:.{decimals}f} to {percent(high, decimals)}"

@@ -19,18 +19,18 @@ _STYLESHEET = Path(__file__).parents[2] / "static" / "theme.css"
 
 @cache
 def theme_css() -> str:
-    """The text of the stylesheet."""
+    """Return the text of the stylesheet."""
     return _STYLESHEET.read_text(encoding="utf-8")
 
 
 class PlainTheme(Theme):
-    """A theme without its own stylesheets; Panel's themes look for their files at each change of a component."""
+    """A theme without stylesheets of its own: Panel's themes look for their files at each change of a component."""
 
     _name = "default"
 
 
 class ExplorerDesign(Design):
-    """Gives all components of a page one shared Bokeh model of the stylesheet."""
+    """Gives all components of a page the same Bokeh model of the stylesheet."""
 
     modifiers = {Viewable: {"stylesheets": [Inherit, "theme"]}}  # noqa: RUF012
     _themes = {"default": PlainTheme, "dark": PlainTheme}  # noqa: RUF012

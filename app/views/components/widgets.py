@@ -13,14 +13,14 @@ COUNT_WHOLE = "Count the whole view"
 """Label of the buttons that remove the box."""
 
 FULL_HEIGHT = {"max-height": "none"}
-"""By default Bokeh limits a layout to the height of the window, so that the following parts overlap it."""
+"""Styles of a layout as high as its content: Bokeh limits the height to the window, and the next parts would overlap."""
 
 Rows = Iterable[Sequence[str]]
-"""The texts of the cells."""
+"""The rows of a table: the texts of their cells."""
 
 
 class _NamedGroup:
-    """Mixin: the widget's element gets a role and its label as accessible name, which Bokeh does not set."""
+    """Mixin that gives the widget's element a role and an accessible name, its label, which Bokeh does not set."""
 
     _role: ClassVar[str] = "group"
 
@@ -39,18 +39,17 @@ class SegmentedControl(_NamedGroup, pn.widgets.RadioBoxGroup):
 
 
 class Switches(_NamedGroup, pn.widgets.CheckBoxGroup):
-    """Checkboxes drawn as switches; `value` lists those that are on."""
+    """Checkboxes drawn as switches; `value` lists the options that are on."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(inline=True, css_classes=["switches"], **options)
 
 
 def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **options: Any) -> pn.widgets.Button:
-    """Return a button; `kind` is "default", "primary" for the main action of a section, or "light" for one without a frame."""
+    """Return a button; `kind` is "default", "primary" (the main action of a section) or "light" (without a frame)."""
 
     def click(event: Any) -> None:
-        # Panel runs callbacks of widgets without the session's lock, which changes of plain Bokeh models need; `hold` provides
-        # it.
+        # Panel runs callbacks of widgets without the session's lock, which changes of Bokeh models need. `hold` provides it.
         with pn.io.hold():
             on_click()
 
@@ -60,19 +59,19 @@ def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **
 
 
 def copy_button(rows: Callable[[], Rows], on_copy: Callable[[str], None], **options: Any) -> pn.widgets.Button:
-    """A button that copies the rows at the time of the click; `on_copy` is called with the text."""
+    """Return a button that passes the present rows to `on_copy`, as tab-separated text."""
     return button("Copy table", lambda: on_copy("\n".join("\t".join(row) for row in rows())), **options)
 
 
 def number_rows(title: str, numbers: Mapping[str, Any]) -> list[tuple[str, str, str]]:
-    """Rows of numbers at full precision, each with a title and its name."""
+    """Return a row for each number: a title, the name of the number, and its value at full precision."""
     return [(title, name, repr(value) if isinstance(value, float) else str(value)) for name, value in numbers.items()]
 
 
 def flex_row(*views: pn.viewable.Viewable, justify: str = "start", align: str = "start", gap: str = "4px") -> pn.Column:
-    """A row that is as high as its content.
+    """Return a row as high as its content.
 
-    It is a Column with another flex direction, because a Row would be at least as wide as all its children together.
+    The row is a `Column` with another flex direction, because a `Row` would not become narrower than its children together.
 
     Parameters
     ----------
@@ -92,15 +91,15 @@ def flex_row(*views: pn.viewable.Viewable, justify: str = "start", align: str = 
 
 
 def keep_place(*, shown: bool) -> dict[str, str]:
-    """Styles of a part that keeps its space while it is hidden, so that the browser does not lay out the page again."""
+    """Return styles that show or hide a part but keep its space, which saves the browser a new layout of the page."""
     return {"visibility": "visible" if shown else "hidden"}
 
 
 def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, name: str) -> Bound:
-    """Make a widget show an attribute of a state, and write to it."""
+    """Connect a widget with an attribute of a state: each follows the other."""
 
     def write(event: Any) -> None:
-        # Held for the same reason as in `button`.
+        # `hold` provides the session's lock, as in `button`.
         with pn.io.hold():
             state.param.update({name: event.new})
 
@@ -111,6 +110,6 @@ def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, na
 
 
 def set_value(widget: pn.widgets.Widget, value: Any) -> None:
-    """Show a value unless it is already shown: Panel would drop a choice of the browser that it has not handled yet."""
+    """Set the value of a widget only if it differs: setting it would drop a choice of the browser that waits to be handled."""
     if widget.value != value:
         widget.value = value

@@ -16,13 +16,14 @@ from plots.pictures.image_columns import NO_LAYER, difference_column, map_column
 from plots.pictures.palette import Palette
 
 Columns = dict[str, list[Any]]
-"""Columns of a data source of images."""
+"""Columns of a data source of maps."""
 
-_IMAGE = ("fate", "x", "y", "dw", "dh", "ends")
+# Columns of the other map.
+_MAP_COLUMNS = ("fate", "x", "y", "dw", "dh", "ends")
 
 
 class ComparedMap:
-    """The image of the other map with its limiting curve, in the window of the other map.
+    """Draws the other map with its limiting curve, in its own window.
 
     Parameters
     ----------
@@ -31,15 +32,15 @@ class ComparedMap:
     """
 
     def __init__(self, ranges: MapRanges) -> None:
-        # The tool is in the toolbar from the start, because Bokeh warns when tools and pictures change together.
+        # The hover tool exists before the picture, because Bokeh warns if tools and pictures change together.
         self.source = ColumnDataSource(_no_map(), name="compared_map")
         self.hover = fate_hover(self.source, ranges.x, ranges.ordinate)
         self.other: OtherView | None = None
-        """The map that is shown; None if there is none."""
+        """The view of the other map; None without a map."""
         self._outlines = CurveLayers()
 
     def draw(self, plot: figure, mapper: LinearColorMapper) -> None:
-        """Add image and curve to a figure."""
+        """Add the map and its curve to a figure."""
         image = plot.add_glyph(self.source, Image(image="fate", dw="dw", dh="dh", color_mapper=mapper))
         self._outlines.draw(plot, full=False)
         self.hover.renderers = [image]
@@ -48,7 +49,7 @@ class ComparedMap:
         """Show the other map."""
         self.other = OtherView(title, frame.spec.outcomes, frame.spec.plane.axis_symbols)
         columns = map_columns(frame)
-        self.source.data = {name: columns[name] for name in _IMAGE}
+        self.source.data = {name: columns[name] for name in _MAP_COLUMNS}
         self._outlines.show(frame.spec)
 
     def remove(self) -> None:
@@ -65,7 +66,7 @@ class ComparedMap:
         self._outlines.set_dark(dark)
 
     def difference(self, columns: Columns, plane: Slice) -> Columns:
-        """Return the column ``difference`` for the columns of a map of a slice; blank without another map of the same axes."""
+        """Return the column ``difference`` for a map of a slice, given its columns; blank without another map with its axes."""
         is_compared = self.other is not None and self.other.axes == plane.axis_symbols
         return difference_column(columns, self.source.data) if is_compared else {"difference": NO_LAYER}
 

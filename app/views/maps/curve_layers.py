@@ -1,4 +1,4 @@
-"""Curves over the pictures: zero-velocity curve, equipotentials, and Lyapunov orbits with the numbers of their exits."""
+"""Curves over the pictures: limiting curve, equipotentials, and Lyapunov orbits with the numbers of their exits."""
 
 from __future__ import annotations
 
@@ -17,23 +17,25 @@ from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, LineColours, Palette
 
+# Distance of an exit's number from the origin, as a share of the distance of the middle of the Lyapunov orbit.
+_NUMBER_PLACE = 0.86
 # Number of maps whose curves are cached.
-_TRACED = 128
+_CACHED_MAPS = 128
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
 
 
 class TracedCurves(NamedTuple):
-    """The lines of the zero-velocity curve, and of the equipotentials at critical energies and between them."""
+    """Lines of the zero-velocity curve, of the equipotentials at critical energies, and of the faint equipotentials."""
 
     limit: list[np.ndarray]
     critical: list[np.ndarray]
     levels: list[np.ndarray]
 
 
-@functools.lru_cache(maxsize=_TRACED)
+@functools.lru_cache(maxsize=_CACHED_MAPS)
 def trace_curves(spec: MapSpec) -> TracedCurves:
-    """Return the curves of a map's plane, window and energy; this can be slow, so the job of a map calls it first."""
+    """Return the curves of a map. They can take time, so the job of the map calls this first, and the result is cached."""
     window, h = spec.find_window(), spec.common_energy
     limit = trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window)
     if h is None:
@@ -50,7 +52,7 @@ def _joined(levels: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:
 
 
 class CurveLayers:
-    """Sources of the curves, drawn into any number of figures."""
+    """Draws the curves of a map into any number of figures."""
 
     def __init__(self) -> None:
         self._limit = ColumnDataSource({"xs": [], "ys": []}, name="zero_velocity_curve")
@@ -58,15 +60,15 @@ class CurveLayers:
         self._critical = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
         self._exits = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
         self._labels = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
-        # Figures to which Lyapunov orbits are added once there are some, and whether with numbers.
+        # Figures without Lyapunov orbits, which are added when there are some, each with whether exits get numbers.
         self._without_exits: list[tuple[figure, bool]] = []
         self._palette: Palette = PAPER
         self._line_colours: LineColours = LIGHT
         # Glyphs whose colour depends on the theme, by the name of the colour in `LineColours`.
-        self._themed: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
+        self._themed_glyphs: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
 
     def draw(self, plot: figure, *, full: bool) -> None:
-        """Add the curves to a figure; the equipotentials only if `full`."""
+        """Add the curves to a figure. Only `full` figures get equipotentials and the numbers of exits."""
         if full:
             self._draw_themed(plot, self._levels, "equipotential", 1.0)
             self._draw_themed(plot, self._critical, "critical_equipotential", 1.5)
@@ -76,10 +78,10 @@ class CurveLayers:
     def _draw_exits(self) -> None:
         plots, self._without_exits = self._without_exits, []
         with batched_additions([plot for plot, _ in plots]):
-            for plot, numbered in plots:
+            for plot, has_numbers in plots:
                 plot.add_glyph(self._exits, MultiLine(line_color=self._line_colours.halo, line_width=5))
                 plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
-                if numbered:
+                if has_numbers:
                     number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
                     number.text_font_style = "bold"
                     plot.add_glyph(self._labels, number)
@@ -87,7 +89,7 @@ class CurveLayers:
     def _draw_themed(self, plot: figure, source: ColumnDataSource, name: str, width: float) -> None:
         line = MultiLine(line_color=getattr(self._line_colours, name), line_width=width)
         plot.add_glyph(source, line)
-        self._themed[name].append(line)
+        self._themed_glyphs[name].append(line)
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the exits for the next `show`."""
@@ -96,16 +98,16 @@ class CurveLayers:
     def set_dark(self, dark: bool) -> None:
         """Use the line colours of the dark or the light theme."""
         self._line_colours = DARK if dark else LIGHT
-        for name, glyphs in self._themed.items():
+        for name, glyphs in self._themed_glyphs.items():
             for glyph in glyphs:
                 glyph.line_color = getattr(self._line_colours, name)
 
     def show(self, spec: MapSpec) -> None:
-        """Draw the curves of a map's plane, window and energy."""
+        """Draw the curves of a map."""
         h, traced = spec.common_energy, trace_curves(spec)
         self._limit.data = _lines(traced.limit)
         orbits = find_lyapunov_orbits(spec.potential, h) if spec.plane.shows_positions and h is not None else ()
-        # Empty data is not sent again.
+        # No data is sent if there were no orbits before.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
         self._critical.data = _lines(traced.critical)
@@ -117,18 +119,17 @@ class CurveLayers:
         colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
         self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
-        # The number of texts stays the same, some without a position: Bokeh fails when texts with individual colours become
-        # fewer.
+        # There are always `MOST_CHANNELS` texts, some without a position: Bokeh fails if texts with own colours become fewer.
         missing = MOST_CHANNELS - len(orbits)
         self._labels.data = {
-            "x": [*(0.86 * point[0] for point in middles), *[np.nan] * missing],
-            "y": [*(0.86 * point[1] for point in middles), *[np.nan] * missing],
+            "x": [*(_NUMBER_PLACE * point[0] for point in middles), *[np.nan] * missing],
+            "y": [*(_NUMBER_PLACE * point[1] for point in middles), *[np.nan] * missing],
             "text": [*(orbit.name for orbit in orbits), *[""] * missing],
             "colour": [*colours, *[self._palette.bounded] * missing],
         }
 
     def entries(self, spec: MapSpec) -> list[Entry]:
-        """Legend entries of the curves that are shown on this plane."""
+        """Return the legend entries of the curves of a map."""
         entries = [Entry(spec.plane.limiting_curve(spec.potential.mass), self._line_colours.limiting_curve)]
         if spec.common_energy is not None:
             has_exits = spec.potential.escape_radius is None

@@ -1,4 +1,4 @@
-"""Hover text of a pixel, the same on all pictures, with the meaning of its colours."""
+"""Hover text of a pixel, which says what its colours mean, on all pictures alike."""
 
 from __future__ import annotations
 
@@ -22,15 +22,18 @@ _TEXT = (
     "{details}<div>($x{{custom}}, $y{{custom}})</div></div>"
 )
 
-
 _FATES = list(OUTCOMES.values())
 
 
 def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """Return a tool that shows the outcome of the orbit under the mouse; the caller adds images of fate codes to its renderers.
+    """Return a tool that shows the outcome of the orbit under the mouse; the caller sets images of fate codes as its renderers.
 
+    Parameters
+    ----------
     source
         Columns ``fate`` and ``ends`` of `plots.pictures.image_columns.map_columns`.
+    x, ordinate
+        Ranges of the pictures.
     """
     formatters = _fate_and_place(source, x, ordinate)
     return HoverTool(
@@ -47,16 +50,16 @@ def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> 
 
 
 def pixel_hover(source: ColumnDataSource, compared: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """Return a tool that describes the orbit under the mouse; the caller adds images to its renderers.
+    """Return a tool that describes the orbit under the mouse; the caller sets images as its renderers.
 
-    One formatter reads all columns, because Bokeh does not call formatters for NaN, the escape time of bounded orbits.
+    A single formatter reads all columns: Bokeh calls no formatter for NaN, such as the escape time of a bounded orbit.
 
     Parameters
     ----------
     source
         Columns of `plots.pictures.image_columns.map_columns` and of the layers.
     compared
-        Pixels of the view with which this one is compared.
+        Columns of the map of the other view.
     x, ordinate
         Ranges of the pictures.
     """

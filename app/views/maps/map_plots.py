@@ -1,4 +1,4 @@
-"""The pictures of a plane, linked in zoom, hover and clicks; they share one data source, so one message repaints all."""
+"""The pictures of a slice, linked in zoom, hover and clicks. They share a data source, so one message repaints all."""
 
 from __future__ import annotations
 
@@ -49,15 +49,15 @@ from plots.pictures.palette import PAPER, Palette
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
 
 MAPS = tuple(name for name in PICTURES if name != "well")
-"""The maps of starts; the picture of the well is beside them."""
+"""Names of the maps of starts: all pictures but the well."""
 
 PICTURES_ALONE = ("well", "basins", "times", "crossings")
-"""The pictures of a view without layers, in their order on the page."""
+"""The pictures of a view without layers or comparison, in their order on the page."""
 
 PICTURES_COMPARED = ("basins", "compared", "well", "differences")
-"""The pictures of a view that is compared with another one."""
+"""The pictures of a view that is compared with another view."""
 
-# A window that is hardly smaller than the whole interior, such as that of a neighbouring energy, does not count as enlarged.
+# Least magnification that a note mentions: the window of a neighbouring energy is hardly smaller than the whole interior.
 _LEAST_MAGNIFICATION = 1.5
 
 
@@ -68,17 +68,17 @@ class MapActions:
     Attributes
     ----------
     tap
-        Called with x and ordinate of the pixel that is clicked.
+        Handles a click on the pixel at x and ordinate.
     dive
-        Called with x and ordinate of a point that is double-clicked, after `tap`.
+        Handles a double click at x and ordinate; `tap` has handled the first click.
     zoom
-        Called with the window when the ranges have stopped changing; None is the whole interior.
+        Shows the window to which the user has moved the pictures; None is the whole interior.
     rest
-        Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
+        Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
     box
-        Called with the box whose pixels are to be counted.
+        Counts the pixels in a box.
     choose
-        Called with the name of the picture that is to be shown large.
+        Shows the picture of this name large.
     """
 
     tap: Callable[[float, float], None]
@@ -90,13 +90,13 @@ class MapActions:
 
 
 def prepare_curves(spec: MapSpec) -> None:
-    """Trace the curves over a map, which takes up to half a second for some potentials."""
+    """Trace the curves over a map and in the well, which takes up to half a second, so that `MapsView.show` finds them."""
     trace_curves(spec)
     trace_curves(well_spec(spec.potential, highest_energy(spec.energy)))
 
 
 class MapsView:
-    """Draws frames of maps and the marks over them; for `alone` see `PictureGrid`."""
+    """Draws the frames of maps, and marks and curves over them. With `alone`, only the picture shown large is visible."""
 
     def __init__(self, actions: MapActions, *, alone: bool = False) -> None:
         self._actions = actions
@@ -109,7 +109,7 @@ class MapsView:
         self._locked_times: TimeScale | None = None
         self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
-        # Results of the layers that are shown; they may be incomplete.
+        # Results of the layers that are on, which may be incomplete, by layer.
         self._results: dict[str, Any] = {}
         # Layers that are being computed.
         self._computing: frozenset[str] = frozenset()
@@ -136,8 +136,8 @@ class MapsView:
         self.describe()
 
     def begin_touch(self) -> None:
-        """The page is used by touch: two fingers zoom."""
-        # The tool of the wheel would also respond to two fingers.
+        """Adapt to touch input: two fingers zoom."""
+        # The wheel tool would also respond to two fingers.
         others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
         self._toolbar.update(tools=others, active_scroll=None)
 
@@ -149,7 +149,7 @@ class MapsView:
         self._toolbar.active_drag = self._drags.get(drag)
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        """Paint a frame; the ranges follow a new window."""
+        """Paint a frame, and go to the window of a new map."""
         if frame.spec != self._spec:
             self.ranges.follow(frame.spec.find_window())
             self._spec, self._results = frame.spec, {}
@@ -161,7 +161,7 @@ class MapsView:
         self.source.data = columns | self.compared.difference(columns, frame.spec.plane)
 
     def show_compared(self, frame: EscapeMap | None, title: str = "") -> None:
-        """Show the map of another view with its title; None removes it."""
+        """Show the map of the other view with its title; None removes the map."""
         if frame is None:
             self.compared.remove()
         else:
@@ -185,7 +185,7 @@ class MapsView:
         self._show_legends()
 
     def show_layer(self, name: str, frame: EscapeMap, result: Any) -> None:
-        """Show the result of a layer on its map, as far as it is known."""
+        """Show the result of a layer, which may be incomplete, over its map."""
         layer = LAYERS[name]
         self._results[name] = result
         if layer.pixels is not None:
@@ -196,13 +196,13 @@ class MapsView:
         self._show_legends()
 
     def mark_computing(self, layers: frozenset[str]) -> None:
-        """Show in the frames of these layers, and of no others, that they are being computed."""
+        """Show that these layers, and no other layers, are being computed."""
         if layers != self._computing:
             self._computing = layers
             self._show_legends()
 
     def remove_layer(self, name: str) -> None:
-        """Remove the pixels of a layer, which the hover text would otherwise still describe."""
+        """Remove a layer, also its pixels, which the hover text would still describe."""
         self._results.pop(name, None)
         self.overlays.remove(name)
         pixels = LAYERS[name].pixels
@@ -232,32 +232,32 @@ class MapsView:
         self.describe()
 
     def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
-        """Return the centre of the pixel at a point, so that its orbit is the one whose colour is shown."""
+        """Return the centre of the pixel at a point: the start whose outcome the pixel shows."""
         pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
         if self._spec is None or pixel is None:
             return x, ordinate
         columns, rows = self._spec.pixel_centres()
         return float(columns[pixel[1]]), float(rows[pixel[0]])
 
-    def _tapped(self, event: PointEvent) -> None:
+    def _tap(self, event: PointEvent) -> None:
         self._last_tap = self.snapped(event.x, event.y)
         self._actions.tap(*self._last_tap)
 
-    def _tapped_again(self, event: PointEvent) -> None:
-        """Two quick clicks, even at two positions, are one tap and one double tap."""
+    def _tap_again(self, event: PointEvent) -> None:
+        """Handle the second of two quick clicks, which Bokeh reports as a double tap even at two positions."""
         if self.snapped(event.x, event.y) == self._last_tap:
             self._last_tap = None
             self._actions.dive(event.x, event.y)
         else:
-            self._tapped(event)
+            self._tap(event)
 
-    def _boxed(self, event: SelectionGeometry) -> None:
+    def _count_in_box(self, event: SelectionGeometry) -> None:
         edges = event.geometry
         if event.final and edges["x0"] < edges["x1"] and edges["y0"] < edges["y1"]:
             self._actions.box(Window(edges["x0"], edges["x1"], edges["y0"], edges["y1"]))
 
     def describe(self) -> None:
-        """Update axes, outlines and legends."""
+        """Update curves, axes and legends."""
         spec = self._spec
         if spec is None:
             return
@@ -266,7 +266,7 @@ class MapsView:
         self._show_legends()
 
     def _show_legends(self) -> None:
-        """Write title, legend and names of the axes into each picture."""
+        """Write title, legend, notes and names of the axes around each frame."""
         spec = self._spec
         if spec is None:
             return
@@ -284,7 +284,7 @@ class MapsView:
                 annotate_picture(self.figures[name], ENTRIES[name].title, axes, legend, notes, self._under_way(name))
 
     def _under_way(self, picture: str) -> str:
-        """Return what is being computed for a picture: the picture, or what layers draw over it; empty if nothing is."""
+        """Return what is being computed for a picture: itself, or what layers draw over it; empty if nothing is."""
         layers = [LAYERS[name] for name in LAYERS if name in self._computing]
         if any(layer.picture is not None and layer.picture.name == picture for layer in layers):
             return "computing …"
@@ -298,14 +298,13 @@ class MapsView:
         self._paint(name)
         self._fingers.follow_on(plot)
         events: dict[type[Event], Callable[[Any], None]] = {
-            Tap: self._tapped,
-            DoubleTap: self._tapped_again,
-            SelectionGeometry: self._boxed,
+            Tap: self._tap,
+            DoubleTap: self._tap_again,
+            SelectionGeometry: self._count_in_box,
             PinchEnd: lambda event: self.ranges.end_gesture(),
         }
         if name == "basins":
-            # The end of a drag; after a step of the wheel it is reported half a second late. One of the linked pictures is
-            # enough.
+            # Bokeh reports the end of a drag, and half a second late a step of the wheel. One of the linked pictures is enough.
             events[RangesUpdate] = lambda event: self.ranges.end_gesture()
         self._panes[name] = FigurePane(plot, events)
 
@@ -316,7 +315,7 @@ class MapsView:
             self.compared.draw(plot, self._mappers[name])
             self.marks.draw(plot, sections=False)
             return
-        # Names of models that the browser changes by itself, see modules/painting/pictures.js.
+        # modules/painting/pictures.js finds the map, and paints previews into it, by these tags.
         plot.tags = ["map", MAPS.index(name)]
         image = plot.add_glyph(self.source, Image(image=picture.column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if picture.has_times:
@@ -327,19 +326,19 @@ class MapsView:
         self.marks.draw(plot, sections=name == "basins")
 
 
-# The box selects pixels to count; without renderers the image keeps its look.
+# Tools that draw a box. Without renderers, the image keeps its look inside and outside of a box.
 _BOX_TOOLS = {Drag.ZOOM: partial(BoxZoomTool, match_aspect=True), Drag.COUNT: partial(BoxSelectTool, renderers=[])}
 
 
 def _toolbar(pan: PanTool, *hovers: HoverTool) -> Toolbar:
-    """The tools of all pictures."""
+    """Return the toolbar of all pictures."""
     wheel = WheelZoomTool()
     spans = [Span(dimension=dimension, line_alpha=0.35) for dimension in ("width", "height")]
     return Toolbar(tools=[pan, wheel, CrosshairTool(overlay=spans), *hovers], active_drag=pan, active_scroll=wheel)
 
 
 def _blank() -> dict[str, list[Any]]:
-    """A picture of one undecided pixel."""
+    """Return the columns of a map of one undecided pixel."""
     codes = np.zeros((1, 1), np.uint8)
     images = ("fate", "crossing_class", "crossings", *LAYER_COLUMNS, "difference")
     columns: dict[str, list[Any]] = {name: [codes] for name in images}

@@ -1,4 +1,4 @@
-"""The ranges of the maps: they follow the displayed map and two fingers, and report the window to which the user moves them."""
+"""The ranges of the maps, which follow the displayed map and two fingers, and report the window to which the user moves."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from engine import MapSpec, Window
 from engine.maps.spec import finest_pixel
 
 GESTURE_PAUSE_MS = 500
-"""Drags and steps of the wheel that follow each other within this time make one entry of the browser's history."""
+"""Longest pause between drags or steps of the wheel that share an entry of the browser's history, in milliseconds."""
 
 REST_MS = 90
-"""A window is computed when the ranges have not changed for this time, which is longer than the time between two wheel steps."""
+"""Time without change after which the ranges report their window, in milliseconds; longer than between two wheel steps."""
 
 _FOLLOW = callback_code(Path(__file__).with_name("two_fingers.js"), "followFingers(cb_obj, ranges, held)")
 
 Edges = tuple[float, float, float, float]
-"""Ends of the ranges of x and of the ordinate: low, high, low, high."""
+"""Ends of the ranges: low and high of x, low and high of the ordinate."""
 
 
 class MapRanges:
@@ -36,85 +36,84 @@ class MapRanges:
     Parameters
     ----------
     on_zoom
-        Called with the window when the ranges have stopped changing; None is the whole interior. It must call `finish_report`, at
-        once or later; until then the ranges follow no other window, because the user may have moved them again.
+        Shows the window to which the ranges were moved; None is the whole interior. It must call `finish_report`, now or later.
+        Until then the ranges follow no other window, because the user may have moved them again.
     on_rest
-        Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
+        Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
     """
 
     def __init__(self, on_zoom: Callable[[Window | None], None], on_rest: Callable[[], None]) -> None:
         self.x, self.ordinate = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._on_zoom = on_zoom
-        self._shown: Window | None = None
+        self._window: Window | None = None
         self._home: Window | None = None
-        self._rest, self._gesture = _Pause(REST_MS, self._rested), _Pause(GESTURE_PAUSE_MS, on_rest)
-        self._following, self._reports = False, 0
+        self._rest_pause, self._gesture_pause = _Pause(REST_MS, self._report), _Pause(GESTURE_PAUSE_MS, on_rest)
+        self._is_following, self._open_reports = False, 0
         for edges in (self.x, self.ordinate):
-            edges.on_change("start", self._moved)
-            edges.on_change("end", self._moved)
+            edges.on_change("start", self._note_move)
+            edges.on_change("end", self._note_move)
 
     def follow(self, window: Window) -> None:
-        """Go to the window of a new map, unless the ranges are being moved."""
-        self._shown = window
-        if self._rest.waits or self._reports:
+        """Go to the window of a new map, unless the user is moving the ranges."""
+        self._window = window
+        if self._rest_pause.waits or self._open_reports:
             return
-        # A range that is written while the user moves it in the browser would undo the move, so rounding differences are not
-        # written.
+        # Writing a range undoes a move in the browser at the same time, so mere rounding differences are not written.
         if is_near(self._edges, window):
             return
-        self._following = True
+        self._is_following = True
         self.x.update(start=window.x_low, end=window.x_high)
         self.ordinate.update(start=window.ordinate_low, end=window.ordinate_high)
-        self._following = False
+        self._is_following = False
 
     def go_to(self, window: Window) -> None:
-        """Go to a window that does not come from a move; a move that is not reported yet is dropped."""
-        if not self._reports:
-            self._rest.cancel()
+        """Go to a window that does not come from a move, and drop a move that is not reported yet."""
+        if not self._open_reports:
+            self._rest_pause.cancel()
         self.follow(window)
 
     def finish_report(self) -> None:
-        """End a report: its window is shown, or refused."""
-        self._reports -= 1
-        if self._shown is not None:
-            self.follow(self._shown)
+        """End a report, whose window is shown or refused, and go to the window of the map."""
+        self._open_reports -= 1
+        if self._window is not None:
+            self.follow(self._window)
 
     def set_home(self, home: MapSpec) -> None:
-        """Set the map of the whole interior, and with it the smallest window, at which zooming ends."""
+        """Set the map of the whole interior, which also determines the smallest window."""
         self._home = home.find_window()
         pixels = zip(finest_pixel(home, self._home), home.resolution, strict=True)
-        # Twice the least distance of pixels, because the edges are rounded as well.
+        # Twice the least distance of pixels, because the edges are also rounded.
         self.x.min_interval, self.ordinate.min_interval = (2.0 * finest * count for finest, count in pixels)
 
     @property
     def magnification(self) -> float:
-        """Width of the whole interior in units of the width of the window shown."""
-        if self._home is None or self._shown is None:
+        """Width of the whole interior over the width of the window; 1 without a map."""
+        if self._home is None or self._window is None:
             return 1.0
-        return (self._home.x_high - self._home.x_low) / (self._shown.x_high - self._shown.x_low)
+        return (self._home.x_high - self._home.x_low) / (self._window.x_high - self._window.x_low)
 
     def end_gesture(self) -> None:
-        """Handle the end of a drag, or a step of the wheel; another step may follow."""
-        self._rested()
+        """Report the window after a drag or a step of the wheel, and wait for the end of the gesture."""
+        self._report()
         document = self.x.document
-        if document is not None and not self._gesture.waits:
-            self._gesture.start(document)
+        if document is not None and not self._gesture_pause.waits:
+            self._gesture_pause.start(document)
 
-    def _moved(self, _name: str, _old: float, _new: float) -> None:
-        """The ranges change: wait until they stop."""
+    def _note_move(self, _name: str, _old: float, _new: float) -> None:
+        """Wait until the ranges stop changing."""
         document = self.x.document
-        if not self._following and document is not None:
-            self._gesture.cancel()
-            self._rest.start(document)
+        if not self._is_following and document is not None:
+            self._gesture_pause.cancel()
+            self._rest_pause.start(document)
 
-    def _rested(self) -> None:
-        """The ranges have stopped: report the window."""
-        self._rest.cancel()
+    def _report(self) -> None:
+        """Report the window to which the ranges were moved, if it is new."""
+        self._rest_pause.cancel()
         x_low, x_high, low, high = edges = self._edges
         # The server and the browser may change a range at the same time.
-        if not (x_low < x_high and low < high) or self._shown is None or is_near(edges, self._shown):
+        if not (x_low < x_high and low < high) or self._window is None or is_near(edges, self._window):
             return
-        self._reports += 1
+        self._open_reports += 1
         self._on_zoom(None if self._home is not None and is_near(edges, self._home) else Window(*edges))
 
     @property
@@ -123,10 +122,10 @@ class MapRanges:
 
 
 class _Pause:
-    """Calls a function when some time has passed since the last start.
+    """Calls a function after some time without another start.
 
-    Bokeh runs a timeout callback that is due even if it is removed while it waits for the lock of the document. Such a callback
-    is no longer the latest one, and does nothing.
+    Bokeh runs a due timeout callback even if it is removed while it waits for the lock of the document. Such a callback is of
+    an earlier start, and does nothing.
     """
 
     def __init__(self, length_ms: int, on_end: Callable[[], None]) -> None:
@@ -151,20 +150,20 @@ class _Pause:
 
     def _end(self, start: int) -> None:
         if self.waits and start == self._starts:
-            # A callback that runs is already removed.
+            # Bokeh has removed the running callback.
             self._cancel = None
             self._on_end()
 
 
 def is_near(edges: Edges, window: Window) -> bool:
-    """Whether the ends of two ranges are those of a window up to rounding in the browser."""
+    """Whether the ends of the ranges are the edges of a window, up to rounding in the browser."""
     width, height = window.x_high - window.x_low, window.ordinate_high - window.ordinate_low
     apart = np.abs(np.subtract(edges, astuple(window)))
     return bool(np.all(apart <= 1e-6 * np.array([width, width, height, height])))
 
 
 class TwoFingers:
-    """Changes two ranges so that the point between the fingers stays between them, at the scale of their distance.
+    """Changes two ranges in the browser: the point between two fingers stays there, and the scale follows their distance.
 
     Bokeh's `WheelZoomTool` zooms in steps and does not move the picture.
     """
@@ -173,6 +172,6 @@ class TwoFingers:
         self._follow = CustomJS(args={"ranges": [x, y], "held": []}, code=_FOLLOW)
 
     def follow_on(self, plot: figure) -> None:
-        """Let a picture with these ranges follow the fingers."""
+        """Make a picture with these ranges follow the fingers."""
         for event in (PinchStart, Pinch):
             plot.js_on_event(event, self._follow)

@@ -1,4 +1,4 @@
-"""The tools of the maps: the button for the whole plane, and the effect of a drag."""
+"""The tools of the maps: a button that shows the whole plane, and the choice of what a drag does."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.views.components.widgets import SegmentedControl, button, flex_row, kee
 
 
 class Drag(StrEnum):
-    """The effect of dragging over a map."""
+    """What a drag over a map does."""
 
     PAN = "Move"
     ZOOM = "Zoom"
@@ -21,14 +21,14 @@ class Drag(StrEnum):
 
 
 class MapToolbar:
-    """A button that shows the whole plane, and the choice of `Drag`. The browser's own buttons go back and forward.
+    """A button that shows the whole plane, and a choice of `Drag`. The browser's buttons go back to earlier windows.
 
     Parameters
     ----------
     state
-        The view state; the button removes its window.
+        View state, whose window the button removes.
     set_drag
-        Called with the mode that is chosen.
+        Sets the chosen effect of a drag.
     """
 
     def __init__(self, state: ViewState, set_drag: Callable[[Drag], None]) -> None:
@@ -42,15 +42,15 @@ class MapToolbar:
             css_classes=["segmented", "narrow"],
         )
         self.drag.param.watch(lambda event: set_drag(event.new), "value")
-        # The button is visible only while it has an effect.
+        # Without a window, the button would have no effect.
         state.follow(lambda window: self.home.param.update(styles=keep_place(shown=window is not None)), "window")
 
     def layout(self, *before: pn.viewable.Viewable) -> pn.viewable.Viewable:
-        """A row of the parts `before`, the choice, and the button."""
+        """Return a row of the parts `before`, the choice, and the button."""
         row = flex_row(*before, self.drag, self.home, align="center")
         row.css_classes = ["status-line"]
         return row
 
     def begin_touch(self) -> None:
-        """The page is used by touch: one finger scrolls the page until another mode is chosen."""
+        """Adapt to touch input: a drag scrolls the page until another effect is chosen."""
         self.drag.param.update(options=[Drag.SCROLL, Drag.PAN, Drag.ZOOM, Drag.COUNT], value=Drag.SCROLL)

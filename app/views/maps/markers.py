@@ -1,4 +1,4 @@
-"""Marks on the pictures: numbered starts of orbits, their surface of section, and the box whose pixels are counted."""
+"""Marks on the pictures: numbered starts of orbits, section points of the orbits, and the box whose pixels are counted."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from engine import Window
 from plots.pictures.palette import LIGHT, MARK_EDGE, PAPER, Palette
 
 MOST_SECTION_POINTS = 2000
-"""Largest number of section points that are drawn of one orbit."""
+"""Largest number of section points that are drawn for an orbit."""
 
 NO_POINTS = np.zeros((0, 2))
-"""An empty section."""
+"""The section of an orbit without section points."""
 
 
 class Markers:
-    """Sources of the marks; each kind of mark is added to the figures when it is first shown."""
+    """Marks the figures; each kind of mark is added to them when it is first shown."""
 
     def __init__(self) -> None:
-        # Figures to which a kind of mark must still be added, by kind.
+        # Figures to which marks must still be added, by kind of mark.
         self._pending: dict[str, list[figure]] = {"starts": [], "sections": [], "box": []}
         self._starts = ColumnDataSource({"x": [], "y": [], "slot": [], "text": []}, name="starts")
         self._sections = ColumnDataSource({"x": [], "y": [], "slot": []}, name="sections")
@@ -32,7 +32,7 @@ class Markers:
         self._mapper = LinearColorMapper(palette=list(PAPER.orbits), low=-0.5, high=len(PAPER.orbits) - 0.5)
 
     def draw(self, plot: figure, *, sections: bool) -> None:
-        """Mark a figure; section points are drawn only if `sections`, because painting them takes time."""
+        """Add a figure to mark; section points, which take time to paint, are drawn only if `sections`."""
         for kind in ("starts", "box", *(["sections"] if sections else [])):
             self._pending[kind].append(plot)
 
@@ -55,7 +55,7 @@ class Markers:
             for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, colour))
         ]
         style = {"x_offset": 6, "y_offset": -4, "text_font_size": "14px", "text_font_style": "bold", "text_color": MARK_EDGE}
-        # The outline of a text covers the text, so the number is drawn once more without outline.
+        # The outline of a text covers the text, so the number is drawn again without outline.
         numbers = [Text(text_outline_color=outline, **style) for outline in (LIGHT.halo, None)]
         return [(self._starts, glyph) for glyph in (*crosses, *numbers)]
 
@@ -70,7 +70,7 @@ class Markers:
             self._starts.data = marks
 
     def show_sections(self, sections: Sequence[np.ndarray]) -> None:
-        """Draw the section points of each orbit, arrays of shape (n, 2)."""
+        """Draw the section points of each orbit, given as arrays of shape (n, 2)."""
         shown = [points[:MOST_SECTION_POINTS] for points in sections]
         if any(len(points) for points in shown):
             self._draw("sections")

@@ -1,4 +1,4 @@
-"""The marks of pixels and the curves that layers draw over the pictures."""
+"""The marks of pixels, and the curves, that layers draw over the pictures."""
 
 from __future__ import annotations
 
@@ -19,37 +19,37 @@ _CURVE_COLUMNS = ("xs", "ys", "colour", "width", "alpha", "halo_width", "halo_al
 
 
 class Overlays:
-    """Marks and curves of one map; those of a layer are added to the figures when it is first shown.
+    """Draws marks and curves of layers over the pictures; a layer is added to the figures when it is first shown.
 
     Parameters
     ----------
     source
-        The columns of all pictures, which contain the pixel columns of the layers.
+        Data source of all pictures, which contains the pixel columns of the layers.
     """
 
     def __init__(self, source: ColumnDataSource) -> None:
         self._source = source
         self.curves = {name: ColumnDataSource(_no_curves(), name=name) for name in _LAYERS}
-        # Figures to which the parts of a layer must still be added.
-        self._waiting: dict[str, list[figure]] = {name: [] for name in _LAYERS}
+        # Figures to which a layer must still be added, by layer.
+        self._figures_without: dict[str, list[figure]] = {name: [] for name in _LAYERS}
         self._palette = PAPER
         self._strokes: dict[str, Sequence[Stroke]] = {}
         self._spec: MapSpec | None = None
 
     def draw(self, plot: figure, picture: str) -> None:
-        """Draw the parts that lie over a picture into its figure."""
+        """Add a figure of a picture, over which layers will be drawn."""
         for layer in _LAYERS.values():
-            self._waiting[layer.name] += [plot] if layer.over_picture(picture) is not None else []
+            self._figures_without[layer.name] += [plot] if layer.over_picture(picture) is not None else []
 
     def begin(self, spec: MapSpec) -> None:
-        """Remove the curves if the map has changed."""
+        """Remove the curves of another map."""
         if spec != self._spec:
             self._spec = spec
             for name in _LAYERS:
                 self.remove(name)
 
     def show(self, name: str, result: Any) -> None:
-        """Draw the result of a layer, if it draws anything over pictures."""
+        """Draw the result of a layer, if the layer draws over pictures."""
         over = LAYERS[name].over
         if over is None:
             return
@@ -73,7 +73,7 @@ class Overlays:
         self.curves[name].data = _curve_columns(self._strokes[name], self._palette)
 
     def _add_to_figures(self, layer: Layer) -> None:
-        plots, self._waiting[layer.name] = self._waiting[layer.name], []
+        plots, self._figures_without[layer.name] = self._figures_without[layer.name], []
         with batched_additions(plots):
             for plot in plots:
                 self._add_marks(plot, layer)
@@ -104,7 +104,7 @@ def _curve_columns(strokes: Sequence[Stroke], palette: Palette) -> dict[str, lis
         "width": [stroke.width for _, stroke in lines],
         "alpha": [stroke.alpha for _, stroke in lines],
         "halo_width": [stroke.halo_width for _, stroke in lines],
-        # The browser also draws lines of width 0.
+        # The browser draws even lines of width 0.
         "halo_alpha": [float(stroke.halo_width > 0.0) for _, stroke in lines],
     }
 

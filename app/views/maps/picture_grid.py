@@ -1,4 +1,4 @@
-"""The arrangement of the pictures: side by side, or one of them enlarged above a row of the others."""
+"""The arrangement of the pictures: side by side, or one enlarged above a row of the others."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
 from plots.layers.table import LAYER_OF, PICTURES
 
 SHORT_TITLES = {"well": "Well"} | {name: picture.short_title for name, picture in PICTURES.items() if name != "curves"}
-"""Titles of all pictures in order, where there is little room."""
+"""Short titles of all pictures, in order."""
 
 FIRST = "basins"
-"""The largest picture until another one is chosen; on narrow screens the only one."""
+"""The picture that is largest, or on narrow screens the only picture, until another is chosen."""
 
-# Up to this many pictures have the same size; of more pictures, one is twice as large as the others.
+# Largest number of pictures of the same size; of more pictures, one is twice as large as the others.
 _MOST_EQUAL = 4
 
 
 class PictureGrid:
-    """The pictures on the page; the stylesheet places them by the classes that are set here.
+    """Puts the pictures on the page and sets their CSS classes, by which the stylesheet places them.
 
     Parameters
     ----------
     on_choose
-        Called with the name of the picture that is to be shown large.
+        Shows the picture of this name large.
     alone
-        Whether only the picture that is shown large is visible.
+        Whether only the picture shown large is visible.
     """
 
     def __init__(self, on_choose: Callable[[str], None], *, alone: bool = False) -> None:
         self._panes: dict[str, FigurePane] = {}
-        self._enlarged = ""
+        self._enlarged_picture = ""
         # Pictures that show nothing.
-        self._empty: frozenset[str] = frozenset()
-        # Without a map yet, the axes show nothing of this system.
+        self._empty_pictures: frozenset[str] = frozenset()
+        # Before the first map, the pictures do not belong to the system.
         classes = ["maps", "stale", *(["alone"] if alone else [])]
         self._column = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=classes)
         self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"], visible=False)
@@ -45,7 +45,7 @@ class PictureGrid:
         self._on_choose = on_choose
 
     def layout(self) -> pn.viewable.Viewable:
-        """The grid as a part of the page."""
+        """Return the grid."""
         return self._column
 
     @property
@@ -54,62 +54,63 @@ class PictureGrid:
         return tuple(self._panes)
 
     def show(self, panes: dict[str, FigurePane]) -> None:
-        """Put pictures on the page, by name and in this order; hidden ones would still be painted with every frame."""
+        """Put pictures on the page in this order, and remove other pictures, which would be painted with each frame if hidden."""
         self._panes = panes
         self._place()
 
     def enlarge(self, name: str) -> None:
-        """Show a picture large; an empty name, or a picture that is not on the page, shows all side by side."""
-        self._enlarged = name
+        """Show a picture large; all are side by side if the name is empty or its picture not on the page."""
+        self._enlarged_picture = name
         self._place()
 
     def mark_empty(self, name: str, empty: bool) -> None:
-        """Set whether a picture shows nothing; the picture of its layer is then not the largest."""
-        marked = self._empty | {name} if empty else self._empty - {name}
-        if marked != self._empty:
-            self._empty = marked
+        """Set whether a picture shows nothing. The picture of a layer is not the largest if it shows nothing."""
+        marked = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
+        if marked != self._empty_pictures:
+            self._empty_pictures = marked
             self._place()
 
     def mark_stale(self, stale: bool) -> None:
-        """Grey the pictures out while they do not belong to the controls, or show them normally."""
+        """Grey out pictures that do not belong to the controls, or show them normally."""
         self._set_class("stale", stale)
 
     def offer_choice(self) -> None:
-        """Offer a choice of the picture, because a narrow page shows only one."""
+        """Offer a choice of the picture, because a narrow page shows only one picture."""
         self.picker.visible = True
         self._place()
 
     def _choose(self, name: str | None) -> None:
-        # None, and the picture that is picked: the picker follows the page.
-        if name is not None and name != self._picked:
+        # Other values come from the page itself, which the picker follows.
+        if name is not None and name != self._largest_picture:
             self._on_choose(name)
 
     @property
-    def _picked(self) -> str:
-        """The picture that is larger than the others: the enlarged one, or that of the last layer that shows something."""
-        layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty]
-        return self._enlarged if self._enlarged in self._panes else [FIRST, *layers][-1]
+    def _largest_picture(self) -> str:
+        """The largest picture: the enlarged picture, or else the picture of the last layer that shows something."""
+        layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty_pictures]
+        return self._enlarged_picture if self._enlarged_picture in self._panes else [FIRST, *layers][-1]
 
     def _place(self) -> None:
-        # The classes of a Bokeh pane cannot be changed once it is on the page, but those of its figure can.
-        picked, is_enlarged, are_many = self._picked, self._enlarged in self._panes, len(self._panes) > _MOST_EQUAL
+        # A Bokeh pane on the page cannot change its CSS classes, but its figure can.
+        largest, is_enlarged = self._largest_picture, self._enlarged_picture in self._panes
+        are_many = len(self._panes) > _MOST_EQUAL
         other = "small" if is_enlarged else "compact" if are_many else "equal"
         with pn.io.hold():
             self._set_class("enlarged", is_enlarged)
             self._set_class("many", are_many and not is_enlarged)
             for name, pane in self._panes.items():
                 plot: figure = pane.object
-                kinds = ["well" if name == "well" else "map", "picked" if name == picked else other]
+                kinds = ["well" if name == "well" else "map", "picked" if name == largest else other]
                 if plot.css_classes != kinds:
                     plot.css_classes = kinds
                     set_borders(plot, kinds[1])
-            self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=picked)
+            self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=largest)
             parts = [*([self.picker] if self.picker.visible else []), *self._panes.values()]
             if parts != self._column.objects:
                 self._column.objects = parts
 
     def _set_class(self, name: str, on: bool) -> None:
-        """Set or remove a class of the grid in the stylesheet."""
+        """Set or remove a CSS class of the grid."""
         others = [each for each in self._column.css_classes if each != name]
         classes = [*others, name] if on else others
         if classes != self._column.css_classes:

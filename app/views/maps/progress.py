@@ -1,4 +1,4 @@
-"""Progress of the map: the shares of its outcomes, a sentence, and a button that stops or continues it, or offers a layer."""
+"""Progress of the map: the shares of its outcomes, a sentence, and a button that stops or continues the map or offers a layer."""
 
 from __future__ import annotations
 
@@ -20,10 +20,14 @@ from engine.propagation.fates import UNRESOLVED
 from plots.layers.table import LAYERS
 from plots.pictures.palette import PAPER, Entry, Palette
 
-STOP, CONTINUE = "Stop", "Continue"
+STOP = "Stop"
+"""Label of the button while the map is computed."""
+
+CONTINUE = "Continue"
+"""Label of the button of a stopped map."""
 
 STOPPED = "stopped"
-"""Class of the text of a map that has been stopped: a preview of the browser does not replace it."""
+"""CSS class of the text of a stopped map, which a preview of the browser does not replace."""
 
 
 class ProgressView:
@@ -32,15 +36,15 @@ class ProgressView:
     Parameters
     ----------
     on_cancel, on_resume
-        Called when the button is pressed while the map is computed, and after it has been stopped.
+        Stop the map, and continue a stopped map.
     on_layer
-        Called with the name of a layer that is offered for a map when its button is pressed.
+        Switches on the layer of this name, which the button offers.
     """
 
     def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None], on_layer: Callable[[str], None]) -> None:
         offers = {layer.title: partial(on_layer, name) for name, layer in LAYERS.items()}
         self._actions: dict[str, Callable[[], None]] = {STOP: on_cancel, CONTINUE: on_resume, **offers}
-        # Time and undecided share at the beginning of the last stage.
+        # Time and undecided share at the beginning of the last stage of the integration.
         self._last_stage: tuple[float, float] | None = None
         self._palette = PAPER
         self._frame: EscapeMap | None = None
@@ -50,41 +54,41 @@ class ProgressView:
         self.button = button(STOP, self._press, margin=0, styles=keep_place(shown=False), css_classes=["solid", "stop"])
 
     def layout(self) -> list[pn.viewable.Viewable]:
-        """The text and the button, on one line."""
+        """Return the text and the button, which share a line."""
         return [self.text, self.button]
 
     def start(self) -> None:
-        """A new map is requested."""
+        """Show that a map is requested."""
         self._last_stage = self._frame = None
         self._set(running=True, label=STOP, sentence="Starting …")
 
     def show_reviewing(self) -> None:
-        """The potential of the link is reviewed before a map is requested."""
+        """Show that the potential of a link is being reviewed."""
         self._set(running=False, label=STOP, sentence="Reviewing the potential …")
 
     def show_compiling(self) -> None:
-        """The kernels of the map are compiled first."""
+        """Show that the kernels of the map are being compiled."""
         self._write("Preparing this kind of potential, once, which takes some seconds …")
 
     def show(self, frame: EscapeMap) -> None:
-        """Show the shares of a frame, and how far it is or what is known of a complete map."""
+        """Show the shares of a frame, and its progress, or the result of a complete map."""
         sentence = _result(frame) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
         offered = [layer.title for layer in LAYERS.values() if layer.is_offered(frame)]
         self._frame = frame
         self._set(running=not frame.complete, label=next(iter(offered), STOP), sentence=sentence)
-        # The text beside an offer is long.
+        # The stylesheet puts a button of class "stop" over the status line, where the text beside an offer needs the space.
         self.button.css_classes = ["solid", "offer" if offered else "stop"]
         self.button.styles = keep_place(shown=bool(offered) or not frame.complete)
         self.bar.value = int(100 * frame.progress)
 
     def stop(self) -> None:
-        """The map is stopped and can be continued."""
+        """Show that the map is stopped, and offer to continue it."""
         self._set(running=False, label=CONTINUE, sentence=f"Stopped: {self._sentence}")
         self.button.styles = keep_place(shown=True)
         self.text.css_classes = ["status", STOPPED]
 
     def fail(self) -> None:
-        """There is no map; the last picture stays."""
+        """Show that there is no map."""
         self._frame = None
         self._set(running=False, label=STOP, sentence="")
 
@@ -97,7 +101,7 @@ class ProgressView:
         self._actions[self.button.label]()
 
     def _time_left(self, frame: EscapeMap) -> str:
-        """Estimate the time from the share of pixels that the last and longest stage has decided so far."""
+        """Estimate the time left from the share of pixels decided so far in the last stage, which takes longest."""
         now = time.monotonic()
         if frame.horizon < frame.spec.t_max:
             self._last_stage = None
@@ -122,7 +126,7 @@ class ProgressView:
 
 
 def _shares(frame: EscapeMap, palette: Palette) -> str:
-    """A bar and a line with the share of each outcome of the interior starts, in the colours of the basins."""
+    """Return a bar and a line with the share of each outcome of the interior starts, in the colours of the basins."""
     shares, outcomes = frame.fractions(), frame.spec.outcomes
     ends = [(palette.entry(fate, outcomes), fate) for fate, end in enumerate(outcomes, 1) if end.occurs]
     others = [(Entry("stay", palette.bounded), Fate.BOUNDED)]
@@ -142,7 +146,7 @@ def _stage(frame: EscapeMap) -> str:
 
 
 def _result(frame: EscapeMap) -> str:
-    """The integration time of a complete map, a warning if it is needed, and details that open on demand."""
+    """Return the integration time of a complete map, a warning if needed, and details that open on demand."""
     details = (
         f"Shares of the interior starts, integrated until t = {format_whole(frame.spec.t_max)}{_share_on_evidence(frame)}. "
         f"The relative energy error is at most {format_number(frame.worst_energy_error, 2)}."
@@ -154,7 +158,7 @@ def _result(frame: EscapeMap) -> str:
 
 
 def _rounding(frame: EscapeMap) -> str:
-    """A warning if double precision does not support the pixels of a deep zoom."""
+    """Return a warning if double precision does not resolve the pixels of a deep zoom."""
     if not frame.is_rounded:
         return ""
     assert frame.rounded_share is not None
@@ -164,7 +168,7 @@ def _rounding(frame: EscapeMap) -> str:
 
 
 def _share_on_evidence(frame: EscapeMap) -> str:
-    """The share of bounded orbits that are called bounded before t_max; empty if there are none."""
+    """Return the share of the bounded orbits that are called bounded before t_max; empty if none is."""
     evidence = frame.evidence[frame.fate == Fate.BOUNDED]
     early = ~np.isin(evidence, (Evidence.NONE, Evidence.INTEGRATED))
     return f"; {percent(np.mean(early), 0)} of those that stay do so on evidence" if early.any() else ""

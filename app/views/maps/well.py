@@ -19,16 +19,17 @@ from plots.pictures.palette import LIGHT, MARK_EDGE, PAPER, Palette
 
 TITLE = "The well in (x, y)"
 
+# The line of a long path, which is drawn as an image.
 _NO_LINE = np.zeros(0), np.zeros(0)
 
 
 def well_spec(potential: Potential, energy: float) -> MapSpec:
-    """Return the map in (x, y) whose curves are those of the well."""
+    """Return the specification of a map in (x, y) whose curves are the curves of the well."""
     return MapSpec(potential, SPACE, energy, window=find_well_window(potential, energy))
 
 
 class WellView:
-    """Return the whole interior at the energy of the maps; along an axis h, at that of the chosen orbit, or the highest one."""
+    """Draws the whole interior at the energy of the map; with an axis h, at the energy of the chosen orbit, or the highest."""
 
     def __init__(self) -> None:
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
@@ -39,17 +40,17 @@ class WellView:
         self.outlines = CurveLayers()
         self._palette = PAPER
         self._spec: MapSpec | None = None
-        self._drawings: list[tuple[int, OrbitCurves]] = []
+        self._orbits: list[tuple[int, OrbitCurves]] = []
         self._time: float | None = None
         self._has_orbits = False
-        # Key of the outlines, because maps of other windows and several orbits share them.
-        self._outlined: tuple[MapSpec, Palette] | None = None
+        # What the drawn curves depend on: maps of other windows, and most orbits, need no new curves.
+        self._outline_key: tuple[MapSpec, Palette] | None = None
         self.plot = map_figure("well", TITLE, *self._ranges)
         self.outlines.draw(self.plot, full=True)
         self.pane = FigurePane(self.plot)
 
     def _draw_orbits(self) -> None:
-        """Add the paths, trails and points to the figure, when there is an orbit."""
+        """Add the glyphs of paths, trails and points to the figure."""
         style = line_style(self._mapper)
         with batched_additions([self.plot]):
             self.plot.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh", global_alpha="alpha"))
@@ -60,7 +61,7 @@ class WellView:
             self.plot.add_glyph(self._points, point)
 
     def set_palette(self, palette: Palette) -> None:
-        """Set the colours of channels and orbits."""
+        """Set the colours of exits and orbits."""
         self._palette = palette
         self._mapper.palette = list(palette.orbits)
         self.outlines.set_palette(palette)
@@ -71,21 +72,21 @@ class WellView:
         self._spec = spec
         self._outline()
 
-    def show_orbits(self, drawings: Sequence[OrbitCurves | None], chosen: int) -> None:
-        """Draw orbits, highlighting the chosen one; None for orbits that are not known yet. Orbits of other wells are omitted."""
-        if chosen < len(drawings) and (shown := drawings[chosen]) is not None:
+    def show_orbits(self, orbits: Sequence[OrbitCurves | None], chosen: int) -> None:
+        """Draw the known orbits in the well of the chosen orbit, which is highlighted; None stands for an unknown orbit."""
+        if chosen < len(orbits) and (shown := orbits[chosen]) is not None:
             well = shown.orbit.potential
-            drawings = [each if each is not None and each.orbit.potential == well else None for each in drawings]
-        if not any(drawings) and not self._drawings:
+            orbits = [each if each is not None and each.orbit.potential == well else None for each in orbits]
+        if not any(orbits) and not self._orbits:
             return
         if not self._has_orbits:
             self._has_orbits = True
             self._draw_orbits()
-        self._drawings = in_front(drawings, chosen)
-        alphas = opacities(self._drawings, chosen)
-        short = [_NO_LINE if one.visits is not None else one.path for _, one in self._drawings]
-        self._paths.data = line_columns(self._drawings, short, alphas)
-        long = [(slot, one) for slot, one in self._drawings if one.visits is not None]
+        self._orbits = in_front(orbits, chosen)
+        alphas = opacities(self._orbits, chosen)
+        short = [_NO_LINE if one.visits is not None else one.path for _, one in self._orbits]
+        self._paths.data = line_columns(self._orbits, short, alphas)
+        long = [(slot, one) for slot, one in self._orbits if one.visits is not None]
         self._shades.data = {
             "image": [one.shaded(self._palette.orbits[slot]) for slot, one in long],
             "x": [one.window.x_low for _, one in long],
@@ -100,33 +101,33 @@ class WellView:
     def set_time(self, t: float | None) -> None:
         """Mark each orbit at a time, with its trail; None marks the starts."""
         self._time = t
-        moments = [(slot, moment(drawing.orbit, 0.0 if t is None else t)) for slot, drawing in self._drawings]
+        moments = [(slot, moment(one.orbit, 0.0 if t is None else t)) for slot, one in self._orbits]
         slots = [slot for slot, _ in moments]
         self._points.data = {"x": [now.x[-1] for _, now in moments], "y": [now.y[-1] for _, now in moments], "slot": slots}
         trails = {"xs": [now.x for _, now in moments], "ys": [now.y for _, now in moments]}
         self._trails.data = {**trails, "slot": slots, "alpha": [1.0] * len(slots)}
 
     def describe(self) -> None:
-        """Write title, legend and names of the axes into the picture."""
-        if self._outlined is not None:
-            spec = self._outlined[0]
+        """Write title, legend and names of the axes around the frame."""
+        if self._outline_key is not None:
+            spec = self._outline_key[0]
             annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend_items(self.outlines.entries(spec)))
 
     def _outline(self) -> None:
         """Draw the curves of the well, unless they are already drawn."""
-        spec, chosen = self._spec, self._drawings[-1][1] if self._drawings else None
+        spec, chosen = self._spec, self._orbits[-1][1] if self._orbits else None
         if spec is None:
             return
         potential, energy = spec.potential, highest_energy(spec.energy)
         if chosen is not None and (spec.common_energy is None or spec.plane.parameter is not None):
-            # Along an axis h or a parameter, the well is that of the chosen orbit.
+            # On a slice of several energies or potentials, the chosen orbit determines the well.
             potential, energy = chosen.orbit.potential or potential, chosen.orbit.energy
-        outlined = well_spec(potential, energy), self._palette
-        if outlined == self._outlined:
+        key = well_spec(potential, energy), self._palette
+        if key == self._outline_key:
             return
-        self._outlined = outlined
-        self.outlines.show(outlined[0])
-        self._go_to(outlined[0].find_window())
+        self._outline_key = key
+        self.outlines.show(key[0])
+        self._go_to(key[0].find_window())
         self.describe()
 
     def _go_to(self, window: Window) -> None:

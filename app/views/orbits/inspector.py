@@ -1,4 +1,4 @@
-"""The inspector of the orbits: it is built for the first orbit and shown while there are orbits; each part has its place."""
+"""The inspector of the orbits, which is built for the first orbit and shown while there are orbits."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.views.orbits.separation_plot import SeparationPlot
 
 
 class Inspector:
-    """The verdict on the chosen orbit, the player, the histories, the indicators and values, and a line to type a start."""
+    """Arranges the verdict on the chosen orbit, the player, histories, indicators and values, and the boxes to type a start."""
 
     def __init__(
         self, controls: OrbitControls, playback: Playback, plots: OrbitPlots, separation: SeparationPlot, later: Later
@@ -24,33 +24,33 @@ class Inspector:
         self._starts = self._orbits = 0
         self._head: list[pn.viewable.Viewable] = []
         self._details: list[pn.viewable.Viewable] = []
-        self._plotted: list[pn.viewable.Viewable] = []
-        self._figures = InTurns([plots.build, separation.build], self._add_figures, later)
+        self._figure_panes: list[pn.viewable.Viewable] = []
+        self._figures_in_turns = InTurns([plots.build, separation.build], self._add_figures, later)
         self._entry = controls.entry()
         self._grid = pn.Column(
             controls.note, *self._entry, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
         )
 
     def layout(self) -> pn.viewable.Viewable:
-        """The whole inspector."""
+        """Return the inspector."""
         return self._grid
 
     def follow(self, starts: int, orbits: int) -> None:
-        """Show the panes for a number of starts, some of which may have no orbit."""
+        """Show the panes that are needed for a number of starts, and for the orbits among them."""
         self._starts, self._orbits = starts, orbits
         if starts >= 1 and not self._head:
             self._head, self._details = [self._controls.head(self._playback.layout())], self._controls.details()
         if orbits >= 1:
-            self._figures.begin()
+            self._figures_in_turns.begin()
         self._arrange()
 
     def _add_figures(self, figures: Sequence[pn.viewable.Viewable]) -> None:
-        self._plotted += figures
+        self._figure_panes += figures
         self._arrange()
 
     def _arrange(self) -> None:
         starts, orbits = self._starts, self._orbits
-        shown = [*(self._plotted if orbits >= 1 else []), *self._details] if starts >= 1 else []
+        shown = [*(self._figure_panes if orbits >= 1 else []), *self._details] if starts >= 1 else []
         parts = [*(self._head if starts >= 1 else []), self._controls.note, *shown, *self._entry]
         if parts != self._grid.objects:
             self._grid.objects = parts

@@ -1,4 +1,4 @@
-"""Controls of the orbits: their numbers, the verdict on the chosen one and its values, and starts to type."""
+"""Controls of the orbits: the list of orbits, verdict and values of the chosen orbit, and boxes to type a start."""
 
 from __future__ import annotations
 
@@ -24,13 +24,17 @@ from plots.pictures.orbit_curves import initial_state
 from plots.pictures.palette import PALETTES, Palette
 
 HINT = "Click a map: the orbit that starts there is drawn, with its exit and time. Up to five."
-_BOX = 180
+"""Message while there are no orbits."""
+
+# Width of the boxes, in pixels.
+_BOX_WIDTH = 180
+# Largest length of a typed number, in characters.
 _LONGEST_NUMBER = 40
 
 
 @dataclass(frozen=True)
 class OrbitActions:
-    """Callbacks of the buttons."""
+    """Callbacks of the buttons; `add` gets x and ordinate of a typed start, `copy` a text."""
 
     add: Callable[[float, float], None]
     find_divergent_start: Callable[[], None]
@@ -40,14 +44,14 @@ class OrbitActions:
 
 
 class OrbitControls:
-    """Number boxes for a start, the list of orbits of a view state, and the results of the chosen one."""
+    """Boxes for a start, the list of the orbits, and the results of the chosen orbit."""
 
     def __init__(self, state: ViewState, actions: OrbitActions) -> None:
         self._state, self._actions = state, actions
-        self._shown: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
-        # These are text boxes, because number boxes do not report Enter.
-        self.x = pn.widgets.TextInput(label="x", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
-        self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
+        self._orbits_and_chosen: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
+        # Text boxes, because number boxes do not report Enter.
+        self.x = pn.widgets.TextInput(label="x", value="0", max_length=_LONGEST_NUMBER, width=_BOX_WIDTH)
+        self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX_WIDTH)
         self.button = button("Integrate", self._submit, kind="primary", align="end")
         self.list = OrbitList(self._choose, visible=False)
         self.divergent_start = button("Find divergent start", actions.find_divergent_start, margin=0)
@@ -71,11 +75,11 @@ class OrbitControls:
         state.follow(lambda name: self._set_colours(PALETTES[name]), "palette")
 
     def entry(self) -> list[pn.viewable.Viewable]:
-        """The boxes for a typed start, which open on demand."""
+        """Return the boxes for a typed start, which open on demand."""
         return Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")]).parts()
 
     def head(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
-        """The numbers of the orbits, the verdict on the chosen one, buttons, and the player."""
+        """Return the list of the orbits, the verdict on the chosen orbit, buttons, and the player."""
         buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
         buttons.margin = (5, 10)
         return pn.Column(
@@ -84,23 +88,23 @@ class OrbitControls:
         )  # fmt: skip
 
     def details(self) -> list[pn.viewable.Viewable]:
-        """The interval of time in view, each indicator's verdict on the chosen orbit, and its values, which open at a click."""
+        """Return the interval of time in view, the indicators' verdicts on the chosen orbit, and values that open on demand."""
         return [self._interval_row, self.indicators, *Fold("Values", lambda: [self.reason, self.values, self.copy]).parts()]
 
     def _follow_plane(self, plane: Slice) -> None:
         """Label the boxes with the axes of the plane."""
         self.x.label, self.ordinate.label = plane.axis_symbols
-        decided = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
-        self.open_plane.visible = bool(decided)
-        if decided:
-            self.open_plane.label = f"Open {SECTION.title} at this {' and '.join(axis.symbol for axis in decided)}"
+        energy_or_parameter = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
+        self.open_plane.visible = bool(energy_or_parameter)
+        if energy_or_parameter:
+            self.open_plane.label = f"Open {SECTION.title} at this {' and '.join(axis.symbol for axis in energy_or_parameter)}"
 
     def _set_colours(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
         self.list.styles = {f"--orbit-{place + 1}": colour for place, colour in enumerate(palette.orbits)}
 
     def show_interval(self, interval: tuple[float, float] | None, duration: float) -> None:
-        """Show which part of the duration is in view; None is the whole duration."""
+        """Show the interval of time in view; None is the whole duration."""
         self._interval_row.visible = interval is not None
         begin, end, whole = (format_time(t) for t in (*(interval or (0.0, duration)), duration))
         self.interval.object = f"Shown: t = {begin} to {end} of {whole}"
@@ -110,7 +114,7 @@ class OrbitControls:
         self.note.param.update(object=escape(sentence), visible=bool(sentence))
 
     def end_message(self, *, has_orbits: bool) -> None:
-        """Remove a message about an orbit that is no longer shown."""
+        """Remove a message about earlier orbits; without orbits, show `HINT`."""
         self.say("" if has_orbits else HINT)
 
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
@@ -124,8 +128,8 @@ class OrbitControls:
         self.indicators.object = with_terms(f"<table aria-label='chaos indicators'>{rows}</table>") if rows else ""
 
     def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
-        """Show the numbers of the orbits, and the verdict on the chosen one with its values."""
-        self._shown = (tuple(orbits), chosen)
+        """Show the list of the orbits, and verdict and values of the chosen orbit."""
+        self._orbits_and_chosen = (tuple(orbits), chosen)
         rows = [_row(orbits, place) for place in range(len(orbits))]
         self.list.param.update(rows=rows, chosen=chosen, visible=bool(orbits))
         if not orbits:
@@ -137,8 +141,8 @@ class OrbitControls:
         self.values.object = _values(one.orbit)
 
     def _rows(self) -> list[tuple[str, str, str]]:
-        """Values of the chosen orbit at full precision, and the value and verdict of each indicator."""
-        orbits, chosen = self._shown
+        """Return the values of the chosen orbit at full precision, and value and verdict of each indicator."""
+        orbits, chosen = self._orbits_and_chosen
         orbit = orbits[chosen].orbit if orbits else None
         if orbit is None:
             return []
@@ -148,7 +152,7 @@ class OrbitControls:
 
     def _choose(self, place: int) -> None:
         # Orbits may have been removed in the meantime.
-        if place != self._shown[1] and place < len(self._state.starts):
+        if place != self._orbits_and_chosen[1] and place < len(self._state.starts):
             with pn.io.hold():
                 self._state.chosen = place
 
@@ -164,7 +168,7 @@ class OrbitControls:
 
 
 def _row(orbits: Sequence[ChosenOrbit], place: int) -> str:
-    """Label of an orbit in the list; a start that looks like an earlier one is shown by the difference."""
+    """Return the label of an orbit in the list; a start that looks like an earlier start is written as a difference."""
     x, ordinate = orbits[place].start
     text = f"{format_number(x)}, {format_number(ordinate)}"
     for other, one in enumerate(orbits[:place]):

@@ -1,4 +1,4 @@
-"""Histories of the chosen orbits, each in its colour: a plot for each of `ORBIT_QUANTITIES`."""
+"""Histories of the orbits, each in its colour: a figure for each of `ORBIT_QUANTITIES`."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
 from plots.pictures.palette import MARK_EDGE, PAPER, THRESHOLD, Palette
 
-# All histories have the same times.
+# The history whose times stand for all histories, which have the same times.
 _FIRST = ORBIT_QUANTITIES[0].name
 
 
 class OrbitPlots:
-    """Three figures of the orbits; `build` makes them when there is an orbit to draw.
+    """Draws the histories; `build` makes the figures when there is an orbit to draw.
 
     Parameters
     ----------
     on_brush
-        Called with the interval of time that is drawn over a history; None, after a double click, is the whole duration.
+        Shows the interval of time that is drawn over a history, or the whole duration (None) after a double click.
     """
 
     def __init__(self, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
@@ -48,34 +48,34 @@ class OrbitPlots:
         self._histories = {name: lines(f"{name}_histories") for name in self._ranges}
         self._bands = {name: lines(f"{name}_bands") for name in self._ranges}
         self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
-        self._drawings: list[tuple[int, OrbitCurves]] = []
+        self._orbits: list[tuple[int, OrbitCurves]] = []
         self.set_palette(PAPER)
 
     def build(self) -> list[FigurePane]:
         """Make a figure of each of `ORBIT_QUANTITIES`."""
-        events = {SelectionGeometry: self._brushed, DoubleTap: lambda event: self._on_brush(None)}
+        events = {SelectionGeometry: self._select_interval, DoubleTap: lambda event: self._on_brush(None)}
         return [FigurePane(self._draw(quantity), events) for quantity in ORBIT_QUANTITIES]
 
     def begin_touch(self) -> None:
-        """The page is used by touch: dragging over a history scrolls the page."""
+        """Adapt to touch input: a drag over a history scrolls the page."""
         self._by_touch = True
 
-    def show(self, drawings: Sequence[OrbitCurves | None], chosen: int, interval: tuple[float, float] | None = None) -> None:
-        """Draw orbits, highlighting the chosen one; None stands for an orbit that is not known yet.
+    def show(self, orbits: Sequence[OrbitCurves | None], chosen: int, interval: tuple[float, float] | None = None) -> None:
+        """Draw the known orbits and highlight the chosen orbit; None stands for an orbit that is not known yet.
 
-        The histories extend over `interval`; None is the whole duration.
+        The axis of time covers `interval`; None is the whole duration.
         """
-        self._drawings = in_front(drawings, chosen)
-        alphas = opacities(self._drawings, chosen)
+        self._orbits = in_front(orbits, chosen)
+        alphas = opacities(self._orbits, chosen)
         for name in self._ranges:
-            histories = [drawing.histories[name] for _, drawing in self._drawings]
-            self._histories[name].data = line_columns(self._drawings, [history.line for history in histories], alphas)
-            self._bands[name].data = band_columns(self._drawings, [history.outline for history in histories], alphas)
+            histories = [curves.histories[name] for _, curves in self._orbits]
+            self._histories[name].data = line_columns(self._orbits, [history.line for history in histories], alphas)
+            self._bands[name].data = band_columns(self._orbits, [history.outline for history in histories], alphas)
         self._scale(interval)
 
     def set_time(self, t: float | None) -> None:
         """Mark a time on all histories; None removes the mark."""
-        self._now.update(visible=t is not None and bool(self._drawings), location=t or 0.0)
+        self._now.update(visible=t is not None and bool(self._orbits), location=t or 0.0)
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the orbits."""
@@ -97,32 +97,32 @@ class OrbitPlots:
             plot.add_layout(Span(location=quantity.threshold, dimension="width", **style))
         return plot
 
-    def _brushed(self, event: SelectionGeometry) -> None:
+    def _select_interval(self, event: SelectionGeometry) -> None:
         begin, end = event.geometry["x0"], event.geometry["x1"]
         if event.final and begin < end:
             self._on_brush((max(begin, 0.0), end))
 
     def _scale(self, interval: tuple[float, float] | None) -> None:
-        """Set the axes: the axis of time covers the interval, or the longest orbit."""
-        everything = [drawing for _, drawing in self._drawings if drawing.histories[_FIRST].line[0].size]
-        if not everything:
+        """Set the axes; the axis of time covers the interval, or the longest orbit."""
+        drawn = [curves for _, curves in self._orbits if curves.histories[_FIRST].line[0].size]
+        if not drawn:
             return
-        earliest = min(float(drawing.histories[_FIRST].line[0][0]) for drawing in everything)
-        begin, end = interval or (earliest, max(float(drawing.orbit.t[-1]) for drawing in everything))
+        earliest = min(float(curves.histories[_FIRST].line[0][0]) for curves in drawn)
+        begin, end = interval or (earliest, max(float(curves.orbit.t[-1]) for curves in drawn))
         if end > earliest:
             set_range(self._times, max(begin, earliest), end)
         for quantity in ORBIT_QUANTITIES:
-            histories = [drawing.histories[quantity.name] for drawing in everything]
+            histories = [curves.histories[quantity.name] for curves in drawn]
             set_range(self._ranges[quantity.name], *quantity.limits(histories))
 
 
 def prepare() -> None:
-    """Draw a long path once, so that datashader compiles its code."""
+    """Compute the curves of a long orbit once: datashader compiles its code for them."""
     potential = CASES["III"]
     state = start_states(potential, SECTION, 0.2, np.zeros(1), np.full(1, 0.1))[0]
     compute_orbit_curves(potential, integrate_orbit(potential, state, 5000.0))
 
 
 def _brush() -> BoxSelectTool:
-    """Return a tool to draw an interval of time; without renderers the curves keep their look."""
+    """Return a tool to draw an interval of time. Without renderers, the curves keep their look."""
     return BoxSelectTool(dimensions="width", renderers=[])

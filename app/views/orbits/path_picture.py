@@ -1,4 +1,4 @@
-"""The path of an orbit as a small picture, for a message beside a map that covers the well."""
+"""The path of an orbit as a small picture, for a message on a page that shows no well."""
 
 from __future__ import annotations
 
@@ -6,17 +6,19 @@ import math
 
 from plots.pictures.orbit_curves import OrbitCurves
 
-# Only the first samples of a longer path are drawn, because all of them would fill the picture.
+# Number of samples that are drawn: a longer path would fill the picture.
 _MOST_SAMPLES = 3000
+# Largest number of points of the drawn line.
 _MOST_POINTS = 600
+# Width and height of the picture, in pixels.
 _SIDE = 120
 
 
-def path_picture(drawing: OrbitCurves, colour: str) -> str:
-    """HTML of the path in (x, y) within the window of its well, with a dot at the start."""
-    x, y = (values[:_MOST_SAMPLES] for values in drawing.path)
+def path_picture(curves: OrbitCurves, colour: str) -> str:
+    """Return HTML of the path in (x, y) within the window of its well, with a dot at the start."""
+    x, y = (values[:_MOST_SAMPLES] for values in curves.path)
     step = max(1, math.ceil(x.size / _MOST_POINTS))
-    window = drawing.window
+    window = curves.window
     scale = _SIDE / (window.x_high - window.x_low)
     places = zip((x[::step] - window.x_low) * scale, (window.ordinate_high - y[::step]) * scale, strict=True)
     points = [f"{across:.1f},{down:.1f}" for across, down in places]

@@ -1,4 +1,4 @@
-"""One time for all orbit plots, which is dragged or played."""
+"""The time that all pictures of orbits show, which is dragged or played."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from app.browser.components.orbit_player import OrbitPlayer
 
 
 class Playback:
-    """A player over the duration of the chosen orbit, or over an interval of it.
+    """Plays the duration of the chosen orbit, or an interval of time.
 
     Parameters
     ----------
     on_time
-        Called with the time that the player shows; None at the start, and without an orbit.
+        Shows the time of the player; None at the start, and without an orbit.
     """
 
     def __init__(self, on_time: Callable[[float | None], None]) -> None:
@@ -23,7 +23,7 @@ class Playback:
         self.player = OrbitPlayer(self._report, sizing_mode="stretch_width", margin=(4, 10), css_classes=["player"])
 
     def layout(self) -> pn.viewable.Viewable:
-        """The player and its time."""
+        """Return the player."""
         return self.player
 
     def follow(self, interval: tuple[float, float] | None) -> None:
@@ -31,7 +31,7 @@ class Playback:
         begin, end = interval or (0.0, 0.0)
         if (begin, end) != (self.player.begin, self.player.end):
             self.player.param.update(begin=begin, end=end)
-            # At the beginning the cross marks the start; the moving point appears after that.
+            # At the beginning, a cross marks the start. The moving point appears later.
             self._on_time(None)
 
     def _report(self, step: int) -> None:

@@ -1,4 +1,4 @@
-"""The distance of two orbits: the chosen one and the one that was chosen before it."""
+"""The distance of the chosen orbit from the orbit that was chosen before."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from plots.pictures.palette import PAPER, Palette
 
 TITLE = "Distance of two orbits"
 LEAST = 1e-17
+"""Smallest distance on the logarithmic axis, dimensionless."""
 
 
 class SeparationPlot:
-    """Distance in phase space against time, logarithmic; the plot is on the page while there are two orbits."""
+    """Draws the distance in phase space against time, on a logarithmic axis, while there are two orbits."""
 
     def __init__(self) -> None:
         self._times, self._distances = Range1d(0.0, 10.0), Range1d(LEAST, 10.0)
@@ -26,14 +27,14 @@ class SeparationPlot:
         self._line = Line(x="t", y="distance", line_width=1.5, line_color=PAPER.orbits[1])
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the figure, and the line that names the orbits."""
+        """Make the figure, and the line of text that names the orbits."""
         plot = history_figure("separation", TITLE, y_axis_type="log", x_range=self._times, y_range=self._distances)
         plot.add_glyph(self._source, self._line)
         self._view.objects = [pn.pane.Bokeh(plot, margin=0), self._pair]
         return [self._view]
 
     def show(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
-        """Draw the distance of two orbits, given by their places in the list; None removes it."""
+        """Draw the distance of two orbits, given by their places in the list; None hides the figure."""
         self._view.visible = pair is not None and separation is not None
         if pair is None or separation is None:
             return

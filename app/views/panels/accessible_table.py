@@ -15,7 +15,7 @@ from engine.propagation.fates import UNRESOLVED
 
 
 class AccessibleTable:
-    """A table of what the page shows; it is written only while it is open."""
+    """Writes what the page shows into a table, while the table is open."""
 
     def __init__(self, state: ViewState, results: ShownResults) -> None:
         self._state, self._results = state, results

@@ -1,4 +1,4 @@
-"""The choice of analyses: layers over the maps, and the analysis beside them."""
+"""The choice of analyses: layers over the maps, comparison with another view, and the analysis beside the maps."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ ANALYSIS_LABELS = {
 
 
 class LayerSwitches:
-    """Switches that write to the view state and follow it.
+    """Switches of the layers, which write to the view state and follow it.
 
-    The switches are separate widgets: in one widget, a change by the user would undo a change that the server has just sent.
+    Each switch is a widget: in a common widget, a change by the user would undo a change that the server has just sent.
     """
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
         self.switches = {name: self._make(layer) for name, layer in LAYERS.items()}
-        # The choices are made when they are first needed.
+        # Choices of settings, which are made when they are first needed.
         self._choices: dict[str, SegmentedControl] = {}
 
     def parts(self) -> list[pn.viewable.Viewable]:
-        """The switches; below each one that is on are the choices of its layer."""
+        """Return the switches, and below each switch that is on, the choices of its layer."""
         return [part for layer in LAYERS.values() for part in (self.switches[layer.name], *self._choices_of(layer))]
 
     def _choices_of(self, layer: Layer) -> list[SegmentedControl]:
         return [self._choice(setting) for setting in layer.settings] if layer.name in self._state.layers else []
 
     def _make(self, layer: Layer) -> Switches:
-        """The switch of a layer."""
+        """Make the switch of a layer."""
         on = [layer.title]
         switch = Switches(label="Layer", options=on, margin=(0, 10, 4, 10))
         self._state.follow(lambda layers: switch.param.update(value=on if layer.name in layers else []), "layers")
@@ -53,7 +53,7 @@ class LayerSwitches:
         return switch
 
     def _choice(self, setting: Setting) -> SegmentedControl:
-        """The choice of a setting, which writes to the view state and follows it."""
+        """Return the choice of a setting."""
         if setting.name not in self._choices:
             first, *others = ((name.capitalize(), value) for name, value in setting.choices.items())
             labels = dict([(f"{setting.word} {first[0]}", first[1]), *others])
@@ -67,21 +67,21 @@ class LayerSwitches:
             self._state.switch_layer(name, on=on)
 
     def _write_setting(self, setting: Setting, value: Any) -> None:
-        # None: the widget follows the state.
+        # Without an option, the widget only follows the state.
         if value in setting.choices.values():
             with pn.io.hold():
                 self._state.param.update(settings={**self._state.settings, setting.name: value})
 
 
 class ComparisonSwitch:
-    """A switch that compares later views with the present one; it follows the view state.
+    """A switch that compares later views with the present view, and follows the view state.
 
     Parameters
     ----------
     state
         The view state.
     compare
-        Called with whether the comparison with the present view begins or ends.
+        Begins (True) or ends (False) the comparison with the present view.
     swap
         Exchanges the two views.
     """
@@ -95,7 +95,7 @@ class ComparisonSwitch:
         self.switch.param.watch(lambda event: self._take(bool(event.new), compare), "value")
 
     def parts(self) -> list[pn.viewable.Viewable]:
-        """The switch and, while it is on, the other view and the button."""
+        """Return the switch and, while it is on, the title of the other view and the button."""
         return [self.switch, *([self.view, self.swap] if self._state.compared is not None else [])]
 
     def _take(self, on: bool, compare: Callable[[bool], None]) -> None:
@@ -108,7 +108,7 @@ class ComparisonSwitch:
 
 
 class AnalysisTabs:
-    """A segmented control that writes to the view state and follows it."""
+    """The tabs of the analyses, which write to the view state and follow it."""
 
     def __init__(self, state: ViewState) -> None:
         options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}

@@ -1,6 +1,7 @@
 // @ts-check
-/** What only the browser has: its history and width, keys pressed anywhere on the page, theme, touch, the clipboard. */
+/** Events and services of the browser: history, width, keys pressed anywhere on the page, theme, touch and the clipboard. */
 
+// Elements that use letters, elements that use arrows, and elements that Enter presses.
 const TYPING = `textarea, select, [contenteditable]:not([contenteditable=false]), [role=textbox], [role=searchbox],
   [role=combobox], [role=listbox], [role=menu], [role=menubar], [role=spinbutton], [role=grid], [role=tree],
   [role=alertdialog], [role=dialog]:not([aria-modal=false]),
@@ -8,18 +9,20 @@ const TYPING = `textarea, select, [contenteditable]:not([contenteditable=false])
 const MOVING = `[type=range], [type=radio], [role=slider], [role=radio], [role=radiogroup], [role=tab], [role=tablist],
   [role=toolbar], [role=group]`
 const PRESSED = "button, a[href], summary, input, [role=button]"
+// Least time between two messages of a key that is held down.
 const REST_MS = 100
-/** A drawer that opens is on the page after a few messages: how often it is looked for, and how long to wait in between. */
-const [DRAWER_TRIES, WAIT_MS] = [20, 50]
+// An opened drawer reaches the page after a few messages: how often to look for it, and the time between two tries.
+const DRAWER_TRIES = 20
+const WAIT_MS = 50
 
-// The target of an event is the outermost shadow host; its path has all elements.
+// The target of an event is only the outermost shadow host. Its path contains all elements.
 /** @type {(event: Event, places: string) => boolean} */
 const comes_from = (event, places) => event.composedPath().some(node => node instanceof Element && node.matches(places))
 
 /** @param {any} node */
 const opens_text = node => node.popoverTargetElement?.matches(":popover-open")
 
-/** @param {KeyboardEvent} event @param {string[]} keys @returns {string | null} the key, if it is one of the page's */
+/** @param {KeyboardEvent} event @param {string[]} keys @returns {string | null} the key, if the page uses it here */
 function key_of(event, keys) {
   if (event.defaultPrevented || event.isComposing || event.ctrlKey || event.altKey || event.metaKey) return null
   const named = event.key.length > 1
@@ -27,13 +30,13 @@ function key_of(event, keys) {
   const key = event.key === "=" ? "+" : named ? event.key : event.key.toLowerCase()
   const closes = key === "Escape" && comes_from(event, ".drawer")
   if (!keys.includes(key) || (comes_from(event, TYPING) && !closes)) return null
-  // The browser closes an open help text.
+  // The browser itself closes an open help text.
   if (key === "Escape" && event.composedPath().some(opens_text)) return null
   if (key === "Enter" && comes_from(event, PRESSED)) return null
   return key.startsWith("Arrow") && comes_from(event, MOVING) ? null : key
 }
 
-// navigator.clipboard is missing on plain http except on localhost, and may be refused.
+// navigator.clipboard is missing over http, except on localhost, and the browser may refuse its use.
 /** @type {(text: string) => Promise<boolean>} */
 const copy = text =>
   Promise.resolve()
@@ -78,7 +81,7 @@ function focused_deep() {
   return focused instanceof HTMLElement ? focused : null
 }
 
-/** Bokeh draws a frame around a picture in focus, also after a click; as elsewhere, only keys need one. @param {Event} event */
+/** Remove the frame that Bokeh draws around a picture in focus, unless the keyboard moved the focus. @param {Event} event */
 function frame_focus(event) {
   const [focused] = event.composedPath()
   if (focused instanceof HTMLElement && focused.matches(".bk-events")) {
@@ -86,11 +89,11 @@ function frame_focus(event) {
   }
 }
 
-/** Focus the first control of the drawer, which may not be on the page yet. @param {number} tries */
+/** Focus the first control of the drawer, once the drawer is on the page. @param {number} tries */
 function focus_drawer(tries) {
   const drawer = find_deep(document, ".drawer")?.shadowRoot
   const control = drawer && find_deep(drawer, "button, input, select, textarea")
-  // A drawer can focus another control by itself.
+  // The drawer may have focused a control already.
   if (control) {
     if (!find_deep(document, ".drawer")?.matches(":focus-within")) control.focus({preventScroll: true})
   } else if (tries > 0) setTimeout(() => focus_drawer(tries - 1), WAIT_MS)
@@ -115,10 +118,10 @@ export function render({model, el}) {
   for (const name of ["focusin", "keydown"]) document.addEventListener(name, frame_focus)
   const tell_theme = () => model.send_msg({dark: document.documentElement.dataset.theme === "dark"})
   document.addEventListener("themechange", tell_theme)
-  // Entries of the history have numbers: a new number is a new entry, the same one replaces the address.
+  // Entries of the history are numbered: a higher number makes an entry, the same number replaces the address.
   const page = crypto.getRandomValues(new Uint32Array(1))[0]
   let entry = 0
-  // Steps through the history. An address that the server has sent before it knew of the last step is out of date.
+  // Number of steps through the history. An address that the server sent before it knew the last step is out of date.
   let steps = 0
   history.replaceState({page, entry}, "")
   model.on("address", () => {
@@ -133,7 +136,7 @@ export function render({model, el}) {
     model.send_msg({link: window.location.search, entry, steps})
   }
   window.addEventListener("popstate", tell_entry)
-  // The stylesheet has this variable in the layout of a phone only.
+  // The stylesheet sets this variable only in the layout of a phone.
   const tell_if_narrow = () => {
     const frame = document.querySelector(".frame")
     if (frame === null || getComputedStyle(frame).getPropertyValue("--map-side") === "") return
@@ -141,13 +144,13 @@ export function render({model, el}) {
     model.send_msg({narrow: true})
   }
   window.addEventListener("resize", tell_if_narrow)
-  // Buttons in the frames of the pictures.
+  // The buttons of the pictures.
   const enlarge = (/** @type {Event} */ event) => {
     const button = event.composedPath().find(node => node instanceof HTMLElement && node.matches("button[data-picture]"))
     if (button instanceof HTMLElement) model.send_msg({enlarge: button.dataset.picture})
   }
   document.addEventListener("click", enlarge)
-  // The browser would scroll the page when two fingers on a map move the same way.
+  // Two fingers that move the same way on a map would scroll the page.
   const hold_page = (/** @type {TouchEvent} */ event) => {
     if (event.touches.length > 1 && comes_from(event, ".map")) event.preventDefault()
   }

@@ -1,4 +1,4 @@
-"""The parts of the state that only the browser has: history, width, keys, theme, touch and the clipboard."""
+"""Events and services of the browser: history, width, keys, theme, touch and the clipboard."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from plots.layers import table
 _TITLES = {"well": "the well"} | {name: picture.title for name, picture in table.PICTURES.items()}
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
-"""The picture that a key enlarges or reduces."""
+"""The picture that each key enlarges, or shows at its usual size again."""
 
 WINDOW_KEYS: Mapping[str, str] = MappingProxyType(
     {
@@ -32,7 +32,7 @@ WINDOW_KEYS: Mapping[str, str] = MappingProxyType(
         "h": "whole plane",
     }
 )
-"""Actions of the keys that move the window, by the name of the key in `KeyboardEvent.key`."""
+"""The action of each key that moves the window, by the key's name in `KeyboardEvent.key`."""
 
 KEYS: Mapping[str, str] = MappingProxyType(
     {
@@ -46,43 +46,44 @@ KEYS: Mapping[str, str] = MappingProxyType(
         **{key: f"enlarge: {_TITLES[name]}" for key, name in PICTURE_KEYS.items()},
     }
 )
-"""The action of each key, by its name."""
+"""The action of each key of the page, by the name of the key."""
 
-_CAPS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
+# Labels of keys whose names are not their labels.
+_KEY_LABELS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
 
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class BrowserListener(JSComponent):
-    """The browser's part; it sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
+    """Listens in the browser, and sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
 
     keys = param.List(default=list(KEYS))
-    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps known; number, see `command`")
-    command = param.Dict(default={}, doc="name: back, forward or copy; text to copy; number that makes repeats differ")
+    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number, see `command`")
+    command = param.Dict(default={}, doc="name, as back or copy; text to copy; number that makes repeats differ")
 
     _esm = Path(__file__).with_suffix(".js")
 
 
 @dataclass(frozen=True)
 class BrowserActions:
-    """Callbacks, which run without the session's lock.
+    """Callbacks for the events, which run without the session's lock.
 
     Attributes
     ----------
     key
-        Called with each key of `KEYS`, except for keys that a field, slider or menu uses.
+        Handles a key of `KEYS`, unless a field, slider or menu uses the key.
     navigate
-        Called with the query string and the number of the entry to which the browser's Back or Forward leads, and the number of
+        Shows the entry to which the browser's Back or Forward leads, given by query string and number, and notes the number of
         such steps so far.
     dark
-        Called with whether the theme is dark, when it changes or is not light at the beginning.
+        Uses the dark theme or not, after each change of the theme and for a page that begins dark.
     touch
-        Called if the page is used by touch.
+        Adapts the page to touch input.
     narrow
-        Called if the page has the layout of a phone, at the beginning or after a change of its width.
+        Adapts the page to the layout of a phone, at the beginning or after a change of width.
     copied
-        Called with the success of `copy`.
+        Handles whether a text could be copied.
     enlarge
-        Called with the name of the picture whose button is pressed.
+        Handles the button of the picture of this name.
     """
 
     key: Callable[[str], None]
@@ -95,7 +96,7 @@ class BrowserActions:
 
 
 class BrowserEvents:
-    """Passes events of the browser to callbacks; it passes only some keys of `KEYS`."""
+    """Passes events of the browser to callbacks, and commands to the browser; of `KEYS`, it passes only `keys`."""
 
     def __init__(self, actions: BrowserActions, keys: Collection[str] = KEYS) -> None:
         self._actions, self._keys = actions, keys
@@ -105,19 +106,19 @@ class BrowserEvents:
         self._listener.on_msg(lambda event: self._receive(event.data))
 
     def layout(self) -> pn.viewable.Viewable:
-        """An invisible component that must be on the page."""
+        """Return an invisible component that must be on the page."""
         return self._listener
 
     def copy(self, text: str | None) -> None:
-        """Copy a text, or the page's address for None; browsers allow it only soon after a click or a key."""
+        """Copy a text, or with None the address of the page; browsers allow copying only soon after a click or a key."""
         self._command("copy", text=text)
 
     def write_link(self, link: str, entry: int) -> None:
-        """Show a link as the address of the page, as this entry of the browser's history."""
+        """Show a link as the address of the page, in this entry of the browser's history."""
         self._listener.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
 
     def follow_steps(self, steps: int) -> None:
-        """Report that the view follows the history up to this number of steps; addresses written before are out of date."""
+        """Note the number of steps in the history that the view has followed; addresses written for fewer steps are ignored."""
         self._steps = steps
 
     def go_back(self) -> None:
@@ -129,14 +130,14 @@ class BrowserEvents:
         self._command("forward")
 
     def focus_drawer(self, is_open: bool) -> None:
-        """Move the keyboard's focus into the drawer that opens, or back to where it was before."""
+        """Move the keyboard's focus into an opened drawer, or back to the place before the drawer opened."""
         self._command("focus" if is_open else "return")
 
     def _command(self, name: str, **details: Any) -> None:
         self._listener.command = {"name": name, **details, "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: unexpected ones are ignored.
+        # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"key": str(key)} if key in self._keys:
                 self._actions.key(key)
@@ -155,7 +156,7 @@ class BrowserEvents:
 
 
 def key_legend() -> str:
-    """HTML list of all keys."""
-    rows = (f"<dt><kbd>{_CAPS.get(key, key)}</kbd></dt><dd style='margin:0'>{action}</dd>" for key, action in KEYS.items())
+    """Return an HTML list of all keys."""
+    rows = (f"<dt><kbd>{_KEY_LABELS.get(key, key)}</kbd></dt><dd style='margin:0'>{action}</dd>" for key, action in KEYS.items())
     grid = "display:grid;grid-template-columns:max-content auto;gap:2px 12px;margin:0"
     return f'<dl style="{grid}">{"".join(rows)}</dl>'

@@ -1,4 +1,4 @@
-"""The controls of the map: system, plane and energy; t_max, resolution and colours; layers."""
+"""The controls of the map: system, plane, energy, t_max, resolution, colours and layers."""
 
 from __future__ import annotations
 
@@ -24,13 +24,23 @@ from engine.systems.catalogue.entry import EnergyRange
 from plots.pictures.palette import PALETTES
 
 LOCK = "Lock colour scale"
+"""Label of the switch for the scale of escape times."""
+
 AXES = "Axes …"
-# Number of characters that fit the button; longer titles of slices are shown only in the section of the axes.
+"""Label of the button for other slices."""
+
+# Number of characters that fit the button; the facts below the case contain a longer title of a slice.
 _LONGEST_TITLE = 12
-# The slices of the paper; others are chosen by their axes.
+# The slices with their own buttons; other slices are chosen by their axes.
 _PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
+# Notes below the slider, by the place of the axis h.
 _ON_AXIS = {0: "Energy is the horizontal axis here", 1: "Energy is the vertical axis here"}
-PLAY, STOP = "▶ Play", "■ Stop"
+PLAY = "▶ Play"
+"""Label of the button that starts the animation."""
+
+STOP = "■ Stop"
+"""Label of the button that stops the animation."""
+
 # Space beside the rail of a slider: half the width of its thumb, see theme.css.
 _THUMB = "9px"
 _TICK = "position:absolute;left:{share:.2%};width:1px;height:6px;background:var(--ui-edge-strong)"
@@ -41,7 +51,7 @@ _TICK_LABEL = (
 
 @dataclass(frozen=True)
 class ControlActions:
-    """Actions of the controls other than changing the state.
+    """Actions of the controls other than changes of the view state.
 
     Attributes
     ----------
@@ -52,11 +62,11 @@ class ControlActions:
     choose_slice
         Opens the choice of other slices.
     compare
-        Called with whether later views are compared with the present one.
+        Begins (True) or ends (False) the comparison with the present view.
     swap
         Exchanges the two views.
     lock_times
-        Called with whether the scale of escape times keeps its limits.
+        Locks (True) or unlocks (False) the scale of escape times.
     """
 
     play: Callable[[], None]
@@ -87,7 +97,7 @@ class Controls:
             label="Plane", options={plane.title: plane for plane in _PLANES}, margin=(8, 0, 8, 10),
             css_classes=["segmented", "narrow", "half", "choice"],
         )  # fmt: skip
-        # Without this, Panel chooses the first option in place of None when it makes a widget.
+        # Panel replaces a value of None by the first option when it makes a widget.
         self.plane.value = self._plane()
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half", "choice"], margin=(8, 10, 8, 4))
         self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10), css_classes=["ticks"])
@@ -114,18 +124,18 @@ class Controls:
         self._connect()
 
     def layout(self) -> list[pn.viewable.Viewable]:
-        """Parts of a column: system, plane, energy, quality and layers."""
+        """Return the parts of a column: system, plane, energy, quality and layers."""
         system = [self.case, self.other, self.facts, self.plane, self.axes]
         energy = [self.energy, self.ticks, self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
     def begin_touch(self) -> None:
-        """The page is used by touch: leave more room for the maps."""
+        """Adapt to touch input: close sections, which leaves more room for the maps."""
         for fold in self._folds:
             fold.open(False)
 
     def _build_quality(self) -> list[pn.viewable.Viewable]:
-        """Make the lists for resolution and t_max, which determine the cost, and for the colours."""
+        """Make the lists of t_max, resolution and colours, and the switch for the scale of escape times."""
         return [
             self._make_list("t_max", "t_max", allowed_t_max()),
             self._make_list("resolution", "Resolution", allowed_resolutions()),
@@ -139,7 +149,7 @@ class Controls:
         return bind(box, self.state, name)
 
     def _make_lock(self) -> pn.viewable.Viewable:
-        """A switch that keeps the limits of the escape times."""
+        """Make the switch that locks the scale of escape times."""
         state, on = self.state, [LOCK]
         lock = Switches(label="Escape times", options=on, margin=(0, 10))
         state.follow(lambda times: lock.param.update(value=on if times is not None else []), "lock_times")
@@ -163,13 +173,13 @@ class Controls:
         self.play.label = STOP if playing else PLAY
 
     def _take_case(self, case: str | None) -> None:
-        # None, and the case of the state: the widget follows the state.
+        # With None, or with the case of the state, the widget only follows the state.
         if case is not None and case != self.state.system.case:
             with pn.io.hold():
                 self.state.show_system(review_catalogue_entry(case))
 
     def _case(self) -> str | None:
-        """The case of the system in view; None for other potentials."""
+        """Return the case of the system in view; None for other potentials."""
         return self.state.system.case if self.state.system.case in CASES else None
 
     def _follow_plane(self) -> None:
@@ -180,23 +190,23 @@ class Controls:
         self._describe(escape_text(self.state.plane.title) if is_other and self.axes.label == AXES else "")
 
     def _plane(self) -> Slice | None:
-        """The slice in view if it can be chosen here; None for others."""
+        """Return the slice in view if it has a button; None for other slices."""
         plane: Slice = self.state.plane
         return next((each for each in _PLANES if each == plane), None)
 
     def _take_plane(self, plane: Plane | None) -> None:
-        # None: the widget follows the state.
+        # With None, the widget only follows the state.
         if plane is not None and plane != self.state.plane:
             with pn.io.hold():
                 self.state.show_slice(plane)
 
     def _take_energy(self, energy: float) -> None:
-        # All following changes make one message.
+        # All changes that follow are sent in one message.
         with pn.io.hold():
             self.state.energy = energy
 
     def _follow_system(self) -> None:
-        """Show slider, ticks, formula, exits and escape energy of the system."""
+        """Show the case, the energies and the facts of the system."""
         state, energies = self.state, self.state.energies
         self.case.value = self._case()
         self.other.color = "light" if self._case() else "primary"
@@ -207,7 +217,7 @@ class Controls:
         self._follow_energy()
 
     def _describe(self, plane: str) -> None:
-        """Write the formula, the outcomes, and the slice (HTML) if it has no button."""
+        """Write the formula, the outcomes, and the slice (HTML), which is empty if a button names it."""
         reviewed = self.state.reviewed
         formula, _, _ = reviewed.formula.partition(";")
         mass = reviewed.potential.mass
@@ -235,7 +245,7 @@ class Controls:
 
 
 def _outcomes(potential: Potential) -> str:
-    """Describe the ends of orbits, and the energies from which on they exist."""
+    """Describe the ends of orbits, and the energy above which exits are open."""
     frame = f"rotates at Ω = {format_number(potential.rotation, 6)}; " if potential.rotation else ""
     if not potential.ends:
         return f"{frame}{potential.channels} exits above h = {format_number(potential.escape_energy, 6)}"

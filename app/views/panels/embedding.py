@@ -1,4 +1,4 @@
-"""A picture in a frame of another page: the HTML of the frame, and the link to the whole page inside the frame."""
+"""A picture in a frame of another page: the HTML of the frame, and the link in it to the whole page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.views.components.texts import TextPane
 
 NOT_ALLOWED = "Embedding is switched off on this server."
 
-# Side of the frame in pixels; pictures are square.
+# Width and height of the frame, in pixels: pictures are square.
 _SIDE = 600
 
 
@@ -24,14 +24,14 @@ def page_address(request: Any) -> str:
 
 
 def embed_code(address: str, state: ViewState) -> str:
-    """Return HTML of a frame with the picture of a view that is shown large, or with its basins.
+    """Return HTML of a frame with one picture of a view: the picture shown large, or else the basins.
 
     Parameters
     ----------
     address
         Absolute address of the page, without parameters.
     state
-        The view.
+        The view state.
     """
     source, title = address + write_link(state, embedded=True), f"Escapes: {state.system.title}"
     return (
@@ -41,11 +41,11 @@ def embed_code(address: str, state: ViewState) -> str:
 
 
 class OpenLink:
-    """The link in an embedded page that opens its view in a new tab."""
+    """The link of an embedded page that opens its view in a new tab."""
 
     def __init__(self) -> None:
         self.pane = TextPane("", margin=0, css_classes=["open-explorer"])
 
     def show(self, link: str) -> None:
-        """Set the view that the link opens; `link` is the result of `app.state.permalink.write_link`."""
+        """Set the view that opens, given the result of `app.state.permalink.write_link`."""
         self.pane.object = f'<a href="{escape(link)}" target="_blank" rel="noopener">Open in the explorer</a>'

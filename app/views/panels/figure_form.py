@@ -1,4 +1,4 @@
-"""The section "Figure" of the downloads: the figures of the page's content, and their format and size."""
+"""The section "Figure" of the downloads: the choice of a figure, its format and its size."""
 
 from __future__ import annotations
 
@@ -30,22 +30,24 @@ from plots.printed.figure_files import (
 from plots.printed.figure_style import FigureFormat, FigureStyle
 
 Make = Callable[[FigureFormat, FigureStyle], bytes]
-"""Makes the file of a figure, which takes seconds."""
+"""Makes the content of a figure's file, which takes seconds."""
 
+# Titles of the figures that are not single maps.
 ALL_MAPS, WELL, ORBITS, STATISTICS, CURVES = "All maps", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"
 FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curves"), WELL, ORBITS, STATISTICS, CURVES)
-"""Titles of all figures."""
+"""Titles of all figures, in the order of the list."""
 
 _TITLES = "Titles"
+# Label and step of the boxes for the numbers of the style.
 _NUMBERS = {"width": ("Width, cm", 0.5), "dpi": ("Pixels/inch", 50.0), "font_size": ("Letters, pt", 0.5)}
 Send = Callable[[str, bytes | None], None]
-"""Sends the name and the content of a file to the browser; None if it could not be made."""
+"""Sends the name and the content of a file to the browser; the content is None if it could not be made."""
 
 _MAKING = "The figure is made …"
 
 
 class FigureForm:
-    """Choices and the buttons that make the figure.
+    """Widgets that choose a figure, and buttons that make it.
 
     Parameters
     ----------
@@ -54,9 +56,9 @@ class FigureForm:
     saver
         Sends files to the browser.
     name
-        Returns the whole file name; called with its end.
+        Returns the whole name of a file for the end of the name.
     on_copied
-        Called with the success of copying an image.
+        Handles whether an image could be copied.
     """
 
     def __init__(
@@ -80,7 +82,7 @@ class FigureForm:
         self._offer()
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """The section, in a column."""
+        """Make the parts of a column."""
         boxes = [
             NumberBox(
                 partial(self.type, name), self._style[name], label=label, step=step, min_width=60, margin=(0, 14, 0, 0),
@@ -92,7 +94,7 @@ class FigureForm:
         return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
 
     def _offer(self) -> None:
-        """Offer the figures of the page's content; the chosen title stays, because the next map may have this figure."""
+        """Offer the figures that the results allow, and the chosen figure, which the next map may allow."""
         offered = {ALL_MAPS, self.what.value, *figure_choices(self._results, self._state)}
         self.what.options = [title for title in FIGURES if title in offered]
 
@@ -102,7 +104,7 @@ class FigureForm:
         return FigureStyle(**self._style, titles=bool(self.titles.value))
 
     def figure(self) -> tuple[str, Make]:
-        """Return a part of the file name, empty for all maps, and the call that makes the chosen figure.
+        """Return a part of the file name, empty for all maps, and the function that makes the chosen figure.
 
         Raises
         ------
@@ -126,7 +128,7 @@ class FigureForm:
         self._begin(FigureFormat.PNG, lambda name, content: self.copy.send(content))
 
     def _begin(self, format: FigureFormat, send: Send) -> None:
-        """Make the figure from the results at the time of the click; send it or show an error."""
+        """Make the figure from the present results, and send it, or show an error."""
         try:
             name, make = self.figure()
             style = self.style
@@ -137,7 +139,7 @@ class FigureForm:
             pn.state.execute(partial(self.make, partial(make, format, style), partial(send, self._name(f"{name}.{format}"))))
 
     async def make(self, make: Callable[[], bytes], send: Callable[[bytes | None], None]) -> None:
-        """Make a file in a thread, so that the event loop continues; send it, or send None and show an error."""
+        """Make a file in a thread, which does not delay the event loop, and send it, or send None and show an error."""
         self._say(_MAKING)
         try:
             content = await asyncio.to_thread(make)
@@ -153,18 +155,18 @@ class FigureForm:
 
 
 def figure_choices(shown: ShownResults, state: ViewState) -> dict[str, Make]:
-    """Return the figures by title; they use the present results, even if the page changes afterwards."""
+    """Return the figures that the results allow, by title. They use the present results even if the page changes later."""
     choices: dict[str, Make] = {}
-    drawings = [one.drawing for one in shown.orbits if one.drawing is not None]
+    curves = [one.curves for one in shown.orbits if one.curves is not None]
     frame = shown.whole_map
     if frame is not None:
         choices |= _map_choices(frame, shown, state)
         spec = frame.spec
         energy = highest_energy(spec.energy)
-        choices[WELL] = partial(well_figure_bytes, spec.potential, energy, drawings, state.colours)
-    if drawings:
-        verdicts = [one.describe() for one in shown.orbits if one.drawing is not None]
-        choices[ORBITS] = partial(orbits_figure_bytes, state.potential, drawings, state.colours, verdicts)
+        choices[WELL] = partial(well_figure_bytes, spec.potential, energy, curves, state.colours)
+    if curves:
+        verdicts = [one.describe() for one in shown.orbits if one.curves is not None]
+        choices[ORBITS] = partial(orbits_figure_bytes, state.potential, curves, state.colours, verdicts)
     if frame is not None:
         choices[STATISTICS] = partial(statistics_figure_bytes, frame, state.box)
     if shown.curves is not None and shown.curves.values.size:

@@ -1,5 +1,5 @@
 // @ts-check
-/** Cards with pictures, in groups; it sends the key of the card that is chosen. */
+/** Cards with pictures, in groups, and their captions. The component sends the key of the chosen card. */
 
 /** @typedef {{key: string, group: string, title: string, caption: string, line: string, alt: string, thumbnail: string}} Card */
 
@@ -10,7 +10,7 @@ const make = (tag, attributes, ...children) => {
   return node
 }
 
-// A toolbar is one stop of the Tab key; arrows move from card to card.
+// A toolbar is a single stop of the Tab key. Arrow keys move from card to card.
 /** @type {Record<string, (place: number, count: number) => number>} */
 const STEPS = {ArrowRight: place => place + 1, ArrowLeft: place => place - 1, Home: () => 0, End: (_, count) => count - 1}
 
@@ -26,12 +26,12 @@ function walk(event, buttons) {
 }
 
 /**
- * A card with a line below its title, or with a caption that is read out as its description.
+ * A card with a line below its title, or with its caption as the description for screen readers.
  *
  * @param {Card} card @param {number} place @param {(card: Card | null) => void} show
  */
 function make_card(card, place, show) {
-  // Set loading before src, or the picture is fetched at once, even if the gallery is closed.
+  // With loading set after src, the browser would fetch the picture at once, even in a closed gallery.
   const picture = make("img", {loading: "lazy", alt: card.alt, width: 112, height: 112, src: card.thumbnail})
   const button = make("button", {type: "button", tabIndex: place ? -1 : 0}, make("span", {}, card.title), picture)
   button.dataset.key = card.key
@@ -51,7 +51,7 @@ export function render({model, el}) {
   /** @type {Card[]} */
   const cards = model.cards
   const caption = make("p", {})
-  // Screen readers get the captions as descriptions of the buttons.
+  // For screen readers, captions are descriptions of the buttons.
   caption.setAttribute("aria-hidden", "true")
   /** @type {Card | null} */
   let chosen = null

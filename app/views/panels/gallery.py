@@ -1,4 +1,4 @@
-"""The gallery: rows of cards, each of which opens a view, and a caption that describes it."""
+"""The gallery: cards that open views, and the caption of a card."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ from app.views.components.texts import typeset
 from plots.layers.table import TITLES
 
 INVITATION = "Each pixel of the basins is a start, and its colour the exit through which its orbit escapes. Views to begin with:"
+"""Title of the cards on a page without orbits."""
+
 HINT = "Each card opens a view with orbits to compare. Its caption appears here."
+"""Text in place of a caption."""
 
 # Panel serves app/static below the address of the page, which ends in "app".
 _THUMBNAILS = "app/static/gallery"
@@ -47,17 +50,17 @@ p {
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class GalleryCards(JSComponent):
-    """The cards in the browser; it sends the key of the chosen card."""
+    """Shows cards in the browser, and sends the key of the chosen card."""
 
     cards = param.List(default=[])
     groups = param.List(default=[])
-    hint = param.String(default="", doc="stands in place of a caption; empty for cards without captions below them")
+    hint = param.String(default="", doc="text in place of a caption; empty for cards without captions below them")
 
     _esm = Path(__file__).with_suffix(".js")
 
 
 class Gallery:
-    """Shows `PRESETS`; `on_preset` is called with the chosen one, without the session's lock."""
+    """Shows `PRESETS`, and passes the chosen preset to `on_preset`, without the session's lock."""
 
     def __init__(self, state: ViewState, on_preset: Callable[[Preset], None]) -> None:
         self._on_preset = on_preset
@@ -67,11 +70,11 @@ class Gallery:
         state.param.watch(lambda event: self._invite(), "starts")
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """The cards."""
+        """Make the cards of all presets."""
         return [self._make([_card(preset) for preset in PRESETS], groups=list(GROUPS), hint=HINT)]
 
     def invitation(self) -> pn.viewable.Viewable:
-        """The content of the page before there is an orbit: some of the cards, in one group."""
+        """Return some of the cards in one group, which a page without orbits shows."""
         if self._invitation is None:
             cards = [
                 {**_card(preset), "group": INVITATION, "line": typeset(preset.invitation)}
@@ -83,7 +86,7 @@ class Gallery:
         return self._invitation
 
     def _invite(self) -> None:
-        """Show the invitation while there are no starts."""
+        """Show or hide the invitation, which is shown while there are no starts."""
         if self._invitation is not None:
             self._invitation.visible = self._state.starts == ()
 
@@ -93,13 +96,13 @@ class Gallery:
         return shown
 
     def _receive(self, message: Any) -> None:
-        # Messages come from a browser: unexpected ones are ignored.
+        # A browser can send anything: unexpected messages are ignored.
         if isinstance(message, str) and message in self._presets:
             self._on_preset(self._presets[message])
 
 
 def _card(preset: Preset) -> dict[str, str]:
-    """The data of a preset's card."""
+    """Return the data of a preset's card."""
     return {
         "key": preset.key,
         "group": preset.group,

@@ -1,4 +1,4 @@
-"""The drawer "Help": the keys, the equations of the system in view, and the terms."""
+"""The drawer "Help": keys, the equations of the system in view, and terms."""
 
 from __future__ import annotations
 

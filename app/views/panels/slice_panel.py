@@ -1,4 +1,4 @@
-"""The drawer in which the slice is chosen: its axes, what the energy determines, and the values of the other coordinates."""
+"""The drawer that chooses the slice: its axes, what the energy determines, and the values of the other coordinates."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ from engine.systems.parameters import symbol_of
 _HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
 _ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}
 _FIRST_ANGLE = {Coordinate.THETA: 0.0, Coordinate.BETA: 0.5 * math.pi}
+# Step of the boxes.
 _STEP = 0.05
-# What the energy determines: a momentum and its sign, or the speed with the angle that gives its direction.
+# What the energy determines: a momentum and its sign, or the speed and the angle of its direction.
 _Mode = tuple[Coordinate, int, Coordinate | None]
 _MODES: dict[str, _Mode] = {
     "py > 0": (Coordinate.PY, 1, None),
@@ -40,12 +41,12 @@ class SlicePanel:
     Parameters
     ----------
     state
-        The view.
+        The view state.
     """
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
-        self._following = False
+        self._is_following = False
         self.axes = [_make_list("Horizontal axis"), _make_list("Vertical axis")]
         self.mode = _make_list("The energy decides")
         self.ranges = pn.Column(sizing_mode="stretch_width", margin=0)
@@ -57,20 +58,20 @@ class SlicePanel:
         state.follow(self.show, "plane", "system")
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Parts of a column."""
+        """Return the parts of a column."""
         hint = TextPane(f"<p class='quiet'>{_HINT}</p>", sizing_mode="stretch_width", margin=0)
         return [hint, *self.axes, self.ranges, self.mode, self.held, self.message]
 
     def show(self, plane: Slice, system: System) -> None:
         """Show a slice of a system."""
         names = {_symbol(key): key for key in (*AXIS_NAMES, *system.parameter_names)}
-        self._following = True
+        self._is_following = True
         try:
             for axis, shown in zip(self.axes, plane.axes, strict=True):
                 axis.param.update(options=names, value=shown.key)
             self.mode.param.update(options=[text for text, mode in _MODES.items() if self._is_legal(mode)], value=_mode_of(plane))
         finally:
-            self._following = False
+            self._is_following = False
         self.ranges.objects = self._range_boxes(plane)
         self.held.objects = self._held_boxes(plane)
         self.message.object = f"<p>{escape(plane.title)}</p>"
@@ -84,7 +85,7 @@ class SlicePanel:
         return [flex_row(low, high, gap="8px")]
 
     def _held_boxes(self, plane: Slice) -> list[pn.viewable.Viewable]:
-        """A box for each coordinate that is neither an axis nor determined by the energy."""
+        """Make a box for each coordinate that is neither an axis nor determined by the energy."""
         values = dict(plane.fixed)
         others = [c for c in (Coordinate.PX, Coordinate.PY) if c is not plane.decided and plane.decided is not Coordinate.SPEED]
         angles = [angle for angle in _ANGLES if angle in values]
@@ -104,7 +105,7 @@ class SlicePanel:
 
     def _take_axis(self, place: int, event: Any) -> None:
         plane, system = self._state.plane, self._state.system
-        if self._following or event.new is None or event.new == plane.axes[place].key:
+        if self._is_following or event.new is None or event.new == plane.axes[place].key:
             return
         if event.new in system.parameter_names:
             axis: Any = ParameterAxis(event.new, *default_range(system, event.new), system)
@@ -112,12 +113,12 @@ class SlicePanel:
             axis = Coordinate(event.new)
         axes = (axis, plane.ordinate) if place == 0 else (plane.abscissa, axis)
         if event.new == plane.axes[1 - place].key:
-            # The axes change places if the chosen axis is the other one.
+            # If the other axis is chosen, the axes change places.
             axes = plane.ordinate, plane.abscissa
         self._submit(lambda: _with_axes(plane, axes))
 
     def _take(self, mode: _Mode) -> None:
-        if not self._following:
+        if not self._is_following:
             self._submit(lambda: self._changed(mode=mode))
 
     def _take_held(self, coordinate: Coordinate, value: float) -> None:
@@ -152,25 +153,25 @@ class SlicePanel:
         return Slice(plane.abscissa, plane.ordinate, solved, sign, tuple(kept.items()))
 
     def _submit(self, make: Callable[[], Slice]) -> None:
-        """Report a slice, or show why it cannot be made."""
+        """Set the slice of the state, or show why the slice is not possible."""
         try:
             chosen = checked_slice(make())
         except ValueError as error:
             self.message.object = f"<p role='alert'>{escape(str(error))}</p>"
             self._follow_axes()
         else:
-            # Changes that are held need no lock of the session.
+            # `hold` provides the session's lock, as in `app.views.components.widgets.button`.
             with pn.io.hold():
                 self._state.show_slice(chosen)
 
     def _follow_axes(self) -> None:
-        """Show the axes of the state again after a choice was refused."""
-        self._following = True
+        """Show the axes of the state in place of a refused choice."""
+        self._is_following = True
         try:
             for axis, shown in zip(self.axes, self._state.plane.axes, strict=True):
                 axis.value = shown.key
         finally:
-            self._following = False
+            self._is_following = False
 
 
 def _make_list(label: str) -> pn.widgets.Select:
@@ -190,7 +191,7 @@ def _mode_of(plane: Slice) -> str:
 
 
 def _with_axes(plane: Slice, axes: tuple[Any, Any]) -> Slice:
-    """Return a slice with other axes; the determined momentum and the held values are kept if the new axes permit them."""
+    """Return a slice with other axes, with the same determined momentum and held values if the new axes permit them."""
     kept = tuple((c, value) for c, value in plane.fixed if c not in axes)
     for solved, sign, fixed in ((plane.solved, plane.sign, kept), (None, 1, kept), (None, 1, ())):
         try:

@@ -1,11 +1,11 @@
 // @ts-check
-/** Level lines of a function on a rectangle, by marching squares. */
+/** Level lines of a function on a rectangle, found by marching squares. */
 
-/** Samples along a side; between samples the function is interpolated linearly. */
+/** Number of samples along a side. Between samples, the function is interpolated linearly. */
 export const SAMPLES = 101
 
 /**
- * Values of a function on a grid over a window, from which the lines of any level are found.
+ * Values of a function on a grid over a window, in which lines of any level can be found.
  *
  * @typedef {object} Grid
  * @property {import("./starts.js").Window} window
@@ -13,14 +13,14 @@ export const SAMPLES = 101
  */
 
 /**
- * Find the pieces of the line on which the function has a level.
+ * Find the lines on which the function has a level.
  *
  * @param {Grid} grid
  * @param {number} level
  * @returns {{xs: number[], ys: number[]}[]}
  */
 export function levelLines({window, values}, level) {
-  /** Neighbours on the line of each crossed edge: edges from a sample to the right have even numbers, upward ones odd numbers. */
+  /** Neighbours on the line of each crossed edge. Edges to the right of a sample have even numbers, upward edges odd ones. */
   const joined = /** @type {Map<number, number[]>} */ (new Map())
   const join = (/** @type {number} */ one, /** @type {number} */ other) => {
     for (const [from, to] of [
@@ -54,7 +54,7 @@ function joinCell(values, level, corner, join) {
   const inside = [corner, right, opposite, above].map(isInside)
   const sides = [2 * corner, 2 * (corner + 1) + 1, 2 * (corner + SAMPLES), 2 * corner + 1]
   const crossed = sides.filter((_, k) => inside[k] !== inside[(k + 1) % 4])
-  // At a saddle two lines cross the cell.
+  // Two lines cross a cell at a saddle.
   for (let k = 0; k < crossed.length; k += 2) join(crossed[k], crossed[k + 1])
 }
 
@@ -79,7 +79,7 @@ function edgePoint(window, values, level, edge) {
 }
 
 /**
- * Follow the lines: first those with ends, then the closed ones.
+ * Follow the lines, first lines with ends, then closed lines.
  *
  * @param {Map<number, number[]>} joined  empty afterwards
  * @returns {number[][]}

@@ -1,16 +1,16 @@
 // @ts-check
-/** The lines over the pictures at the energy of a preview: the limiting curve, and the exits including circles. */
+/** The lines over the pictures of a preview: the limiting curve, and the exits, including circles. */
 
 import {Exits} from "./exits.js"
 import {levelLines, SAMPLES} from "./contours.js"
 import {describeSlice, energyAxis, placeWindow} from "./starts.js"
 
-/** Points along an exit over a saddle, and along a circle. */
+/** Numbers of points along an exit over a saddle, and along a circle. */
 const [EXIT_POINTS, CIRCLE_POINTS] = [41, 121]
-/** Place of the number of an exit, as a share of the exit's distance. */
+/** Distance of the number of an exit from the origin, as a share of the distance of the middle of the exit. */
 const LABEL_SHARE = 0.86
 
-/** Traces limiting curves; all curves of one window use the same values of V. */
+/** Traces limiting curves. All curves of a window use the same values of V. */
 export class LimitingCurves {
   /** @type {import("./contours.js").Grid | null} */
   #grid = null
@@ -32,7 +32,8 @@ export class LimitingCurves {
 }
 
 /**
- * Return the lowest energies at which starts exist on a lattice of a window, row by row.
+ * Return the lowest energy at which a start exists, at points of a lattice over a window, row by row. On a slice with an axis h, it
+ * is relative to the h of the point, so the limiting curve is at 0.
  *
  * @param {import("./integrator.js").Integrator} integrator
  * @param {import("./system.js").Slice} slice
@@ -47,7 +48,7 @@ const requiredEnergies = (integrator, slice, window) =>
   })
 
 /**
- * Return the lines of the open exits in units of the page, with the places of their numbers; NaN for circles.
+ * Return the lines of the open exits, with the places of their numbers (NaN for circles), in units of the page.
  *
  * @param {import("./integrator.js").Integrator} integrator
  * @param {number} energy  in units of the page

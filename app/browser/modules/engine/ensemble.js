@@ -1,21 +1,21 @@
 // @ts-check
 /**
- * Many orbits at the same time, and the exits at which they will end. Each orbit keeps the series of its present step, so that
- * its place at any time within the step costs two polynomials; see `engine/integrator/kernels/ensemble.py`.
+ * Many orbits at once, and the exits at which they will end. Each orbit keeps the series of its present step, so its place at a
+ * time within the step costs two polynomials; see `engine/integrator/kernels/ensemble.py`.
  */
 
 import {Exits} from "./exits.js"
 import {Integrator} from "./integrator.js"
 import {findAllEnds} from "./orbits.js"
 
-/** Orbits are followed for this long beyond an exit that is not a disc, in units of the well. */
+/** Time for which orbits are followed beyond an exit that is not a disc, in units of the well. */
 const FOLLOWED_BEYOND = 1.5
 /** Number of orbits whose outcomes are found at a time. */
 const PORTION = 256
 
 export class Ensemble {
   /**
-   * @param {Integrator} integrator  the ensemble keeps its memory
+   * @param {Integrator} integrator  keeps the arrays of the ensemble in its memory
    * @param {number} energy  in units of the well
    * @param {ArrayLike<number>} states  x, y, px, py of each start, in units of the well
    */
@@ -38,7 +38,7 @@ export class Ensemble {
     this.#places = integrator.array("float64", [2, count])
     this.#channels = integrator.array("int8", [count])
     this.count = count
-    /** In units of the well. */
+    /** The present time, in units of the well. */
     this.time = 0
     this.restart()
   }
@@ -50,16 +50,17 @@ export class Ensemble {
   #places
   #channels
 
-  /** Places at the present time; NaN for orbits that are far outside. */
+  /** x of each orbit at the present time; NaN for an orbit far outside. */
   get x() {
     return this.#places.at(0).values
   }
 
+  /** y of each orbit at the present time. */
   get y() {
     return this.#places.at(1).values
   }
 
-  /** Number of the exit at which each orbit has ended so far, 0 for orbits inside. */
+  /** Number of the exit at which each orbit has ended so far, 0 for an orbit inside. */
   get channel() {
     return this.#channels.values
   }
@@ -69,12 +70,12 @@ export class Ensemble {
     return this.#arrays.escapeTime.values
   }
 
-  /** x of the last upward crossing of y = 0; NaN before the first one. */
+  /** x of the last upward crossing of y = 0; NaN before the first crossing. */
   get sectionX() {
     return this.#arrays.section.at(0).values
   }
 
-  /** px of the last upward crossing. */
+  /** px of the last upward crossing of y = 0. */
   get sectionPx() {
     return this.#arrays.section.at(1).values
   }
@@ -86,7 +87,7 @@ export class Ensemble {
   }
 
   /**
-   * Follow all orbits to a time, in units of the well; for a time before the present one they begin at the starts again.
+   * Follow all orbits to a time, in units of the well, from their starts if the time is before the present time.
    *
    * @param {number} time
    */
@@ -98,16 +99,16 @@ export class Ensemble {
     const arrays = Object.values(this.#arrays)
     this.#integrator.call("advance_ensemble", step, jets, table, tolerance, time, FOLLOWED_BEYOND, ...exits, ...arrays)
     this.time = time
-    // Orbits that have not begun are at their starts.
+    // At time 0, no orbit has a step yet.
     if (time > 0) this.#integrator.call("place_ensemble", time, ...arrays, this.#places, this.#channels)
   }
 
-  /** The spread of the orbits that are still inside, relative to the spread of their starts. */
+  /** Return the spread of the orbits that are still inside, relative to the spread of their starts. */
   growth() {
     return this.#integrator.call("measure_spread", this.#starts, this.#places, this.#channels)
   }
 
-  /** The states of the orbits that are still inside after the first step, with reversed momenta. */
+  /** Return the states of the orbits that are still inside after the first step, with reversed momenta. */
   reversed() {
     return this.#integrator.temporarily(() => {
       const states = this.#integrator.array("float64", [this.count, 4])
@@ -118,7 +119,7 @@ export class Ensemble {
   }
 }
 
-/** The exits at which the orbits of an ensemble will end; they are found in portions between the frames of the display. */
+/** Finds the exits at which the orbits of an ensemble will end, in portions between the frames of the display. */
 export class Outcomes {
   /**
    * @param {import("./system.js").System} system
@@ -132,7 +133,7 @@ export class Outcomes {
     this.#exits = new Exits(this.#integrator, [energy])
     this.#states = states
     this.#horizon = horizon
-    /** Number of the exit of each orbit; 0 where it is not known yet, and for orbits that stay until the horizon. */
+    /** Number of the exit of each orbit; 0 if it is not known yet, or if the orbit stays until the horizon. */
     this.channel = new Uint8Array(states.length / 4)
   }
 

@@ -1,5 +1,5 @@
 // @ts-check
-/** Exits at some energies in the form of the kernels (see `engine/integrator/kernels/events.py`), and their points. */
+/** Exits at given energies in the form of the kernels (see `engine/integrator/kernels/events.py`), and points of exits. */
 
 /**
  * An exit at one energy.
@@ -12,7 +12,7 @@
 
 export class Exits {
   /**
-   * The exits of a system at some energies, in units of the well, in the memory of the integrator.
+   * Tabulate the exits of a system at given energies, in units of the well, in the memory of the integrator.
    *
    * @param {import("./integrator.js").Integrator} integrator
    * @param {ArrayLike<number>} energies
@@ -23,9 +23,9 @@ export class Exits {
     this.#columns = layout.exits
     this.count = exits.length
     const shape = [energies.length, exits.length]
-    /** Values of the exits at each energy, (energies, exits, columns). */
+    /** Values of the exits at each energy, of shape (energies, exits, columns). */
     this.curves = integrator.array("float64", [...shape, layout.exits.count])
-    /** Values for all energies, (exits, 3). */
+    /** Values of the exits at all energies, of shape (exits, 3). */
     this.gates = integrator.array("float64", [exits.length, 3])
     exits.forEach((exit, k) => ("row" in exit ? this.#placeCircle(exit, k) : this.#interpolate(exit, k, energies)))
   }
@@ -58,7 +58,7 @@ export class Exits {
   }
 
   /**
-   * Return the exits at one of the energies.
+   * Return the exits at an energy, given by its row.
    *
    * @param {number} [row]
    * @returns {Exit[]}
@@ -76,7 +76,7 @@ export class Exits {
   }
 
   /**
-   * Return x and y of points of an exit at the first energy, for s from −1 to 1; s goes once around a circle.
+   * Return x and y of points of an exit at the first energy. Positions go from −1 to 1 along an exit, or once around a circle.
    *
    * @param {{number: number}} exit
    * @param {number[]} positions

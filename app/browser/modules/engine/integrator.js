@@ -1,20 +1,24 @@
 // @ts-check
-/** The compiled kernels for one system, and the memory of their arrays; see `engine/integrator/portable_kernels.py`. */
+/** The compiled kernels for a system, and the memory of arrays; see `engine/integrator/portable_kernels.py`. */
 
 /**
- * WebAssembly modules: the kernels of all systems, and the functions of all systems of one structure.
+ * WebAssembly modules: the kernels, which are the same for all systems, and the functions of systems of one structure.
  *
  * @typedef {{kernels: WebAssembly.Module, system: WebAssembly.Module}} Modules
  */
 
+/** Unit of memory of WebAssembly, in bytes. */
 const PAGE = 65536
-/** Space for local variables, and space that is always free for arrays that a kernel makes, in bytes. */
-const [STACK, SLACK] = [PAGE, 4 * PAGE]
+/** Space for local variables of kernels, in bytes. */
+const STACK = PAGE
+/** Space that is kept free for arrays that a kernel makes, in bytes. */
+const SLACK = 4 * PAGE
+/** Alignment of the addresses of arrays, in bytes. */
 const ALIGNMENT = 16
 
 /** @typedef {{float64: Float64Array, int64: Int32Array, int8: Int8Array}} Views */
 
-/** Size of a number in bytes, and the array that shows it; the lower half of a 64-bit integer is at an even index. */
+/** Size of a number in bytes, and the type of its view. The lower half of a 64-bit integer is at an even index of the view. */
 const KINDS = {
   float64: {bytes: 8, view: Float64Array},
   int64: {bytes: 8, view: Int32Array},
@@ -38,7 +42,7 @@ export class Numbers {
     this.#kind = kind
     this.address = address
     this.shape = shape
-    /** The argument that a kernel takes for the array. */
+    /** The arguments that a kernel takes for the array. */
     this.passed = [address, ...shape]
   }
 
@@ -47,7 +51,7 @@ export class Numbers {
   /** @type {Views[K] | null} */
   #view = null
 
-  /** The numbers. Do not keep this array, because the memory moves when it grows. */
+  /** The view of the numbers. Do not keep it, because the memory moves when it grows. */
   get values() {
     if (this.#view?.buffer !== this.#memory.buffer) this.#view = this.#look()
     return this.#view
@@ -60,7 +64,7 @@ export class Numbers {
   }
 
   /**
-   * Return the first of the arrays along the first axis.
+   * Return the first entries along the first axis.
    *
    * @param {number} count
    */
@@ -70,7 +74,7 @@ export class Numbers {
   }
 
   /**
-   * Return one of the arrays along the first axis.
+   * Return the entry at an index along the first axis.
    *
    * @param {number} index
    */
@@ -116,7 +120,7 @@ export class Integrator {
     this.interior = system.polynomial
       ? ["find_outside_polynomial", ...this.#polynomial(system.polynomial)]
       : ["find_outside", this.address.potential_slopes, this.table, system.innerRadius]
-    /** The tables of the exits over saddles. */
+    /** The tables of the exits over saddles; null for circles. */
     this.exitTables = system.exits.map(exit => ("row" in exit ? null : this.#exitTable(exit)))
   }
 
@@ -134,7 +138,7 @@ export class Integrator {
   }
 
   /**
-   * Return a polynomial in the form that the interior test takes.
+   * Return a polynomial in the form that the test of the interior takes.
    *
    * @param {import("./system.js").PolynomialTable} polynomial
    */

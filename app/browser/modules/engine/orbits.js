@@ -1,7 +1,7 @@
 // @ts-check
-/** Orbits at t = 0, and their outcomes. */
+/** Orbits from t = 0, and their outcomes. */
 
-/** Largest number of steps of lanes. */
+/** Largest number of steps of all orbits together. */
 const MOST_STEPS = 2 ** 31 - 1
 
 /**
@@ -9,16 +9,16 @@ const MOST_STEPS = 2 ** 31 - 1
  * @typedef {import("./integrator.js").Numbers<"float64">} Floats
  * @typedef {ReturnType<typeof makeOrbits>} Orbits
  *
- * The outcomes of starts: fates, times at which they leave (NaN for others), and crossings of the section until then.
+ * The outcomes of starts: fates, escape times (NaN for orbits that stay), and crossings of the section until then.
  *
  * @typedef {{fate: Int8Array, time: Float64Array, crossings: Uint16Array}} Ends
  */
 
 /**
- * The arrays of orbits that the kernel changes, in the order of its parameters.
+ * Make the arrays of orbits that the kernel changes, in the order of its parameters.
  *
  * @param {Integrator} integrator
- * @param {Floats} states  (n, 4) x, y, px, py
+ * @param {Floats} states  x, y, px, py of shape (n, 4)
  */
 export function makeOrbits(integrator, states) {
   const [count] = states.shape
@@ -41,7 +41,7 @@ export function makeOrbits(integrator, states) {
  * @param {Orbits} orbits
  * @param {import("./exits.js").Exits} exits
  * @param {import("./integrator.js").Numbers<"int64">} rows  row of each orbit's energy in the exits
- * @param {{horizon: number, tolerance: number, steps?: Floats}} options  steps (m, 5): steps of a single orbit are recorded here
+ * @param {{horizon: number, tolerance: number, steps?: Floats}} options  `steps` (m, 5) records the steps of a single orbit
  */
 export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, steps}) {
   const {step, jets} = integrator.address
@@ -55,13 +55,13 @@ export function propagate(integrator, orbits, exits, rows, {horizon, tolerance, 
 }
 
 /**
- * Find the outcomes of starts that are inside; orbits that are still inside at the horizon are undecided.
+ * Find the outcomes of starts inside all exits. Orbits that are still inside at the horizon are undecided.
  *
  * @param {Integrator} integrator
  * @param {import("./starts.js").Inside} inside
  * @param {import("./exits.js").Exits} exits
  * @param {{horizon: number, tolerance: number}} options
- * @param {import("./integrator.js").Numbers<"int8">} fate  of all starts; it is already set for starts that are left out
+ * @param {import("./integrator.js").Numbers<"int8">} fate  of all starts, already set for starts that are left out
  * @returns {Ends}
  */
 export function findEnds(integrator, {kept, states, rows}, exits, options, fate) {
@@ -81,11 +81,11 @@ export function findEnds(integrator, {kept, states, rows}, exits, options, fate)
 }
 
 /**
- * Find the outcomes of states that are all inside.
+ * Find the outcomes of states, all of which are inside.
  *
  * @param {Integrator} integrator
- * @param {ArrayLike<number>} states  x, y, px, py of each
- * @param {import("./exits.js").Exits} exits  at their energy
+ * @param {ArrayLike<number>} states  x, y, px, py of each start
+ * @param {import("./exits.js").Exits} exits  at the energy of the states
  * @param {{horizon: number, tolerance: number}} options
  */
 export function findAllEnds(integrator, states, exits, options) {

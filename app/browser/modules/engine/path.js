@@ -1,5 +1,5 @@
 // @ts-check
-/** One orbit with its path, for the card beside the cursor. */
+/** The path of a single orbit, for the card. */
 
 import {Exits} from "./exits.js"
 import {makeOrbits, propagate} from "./orbits.js"
@@ -18,14 +18,14 @@ import {findStarts, keepInside} from "./starts.js"
  * @property {number} energy
  */
 
-/** Number of points of the path in a step. */
+/** Number of points of the path in each step. */
 const POINTS = 6
 /** Number of steps that are taken at a time. */
 const PORTION = 512
 
 /**
- * Follow the orbit of a point of a slice until it escapes or for a duration, in units of the well; null if the start is not
- * inside.
+ * Return the path of the orbit of a point of a slice, until it escapes or for a duration in units of the well; null for a start
+ * outside.
  *
  * @param {Integrator} integrator
  * @param {import("./system.js").Slice} slice
@@ -37,10 +37,10 @@ const PORTION = 512
 export function findPath(integrator, slice, energy, point, duration) {
   return integrator.temporarily(() => {
     const starts = findStarts(integrator, slice, energy, integrator.array("float64", [2, 1], point))
-    const [own] = starts.energies.values
-    const exits = new Exits(integrator, [own])
+    const [startEnergy] = starts.energies.values
+    const exits = new Exits(integrator, [startEnergy])
     const {states} = keepInside(integrator, starts, exits, integrator.integers([0]), integrator.array("int8", [1]))
-    return states.shape[0] ? follow(integrator, states, exits, own, duration) : null
+    return states.shape[0] ? follow(integrator, states, exits, startEnergy, duration) : null
   })
 }
 

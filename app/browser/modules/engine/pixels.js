@@ -1,5 +1,5 @@
 // @ts-check
-/** Fates of the starts of a view, some rows at a time. */
+/** Fates of the starts of a view, computed in parts of some rows. */
 
 import {Exits} from "./exits.js"
 import {findEnds} from "./orbits.js"
@@ -25,20 +25,21 @@ import {energyAxis, findStarts, keepInside, placeWindow} from "./starts.js"
  *
  * @typedef {object} Pixels
  * @property {Int8Array} fate
- * @property {Float32Array} time  of the escape, in units of the page; NaN for others
+ * @property {Float32Array} time  of the escape, in units of the page; NaN without an escape
  * @property {Uint16Array} crossings
  */
 
 /**
- * Integration error of an orbit, in pixels: a preview can take longer steps than an orbit that is followed to t = 1e5.
- * The last coefficients of a step are about as large as its error in units of the well.
+ * Integration error of an orbit in a step, in pixels. A preview can take longer steps than an orbit that is followed to t = 1e5.
+ * The last coefficients of a step are about as large as the error, in units of the well.
  */
 const ERROR_IN_PIXELS = 1e-6
+/** Largest norm of the last coefficients of a step, in units of the well. */
 const LARGEST_TOLERANCE = 1e-9
 
 /**
- * Norm of the last coefficients of a step, small enough for the pixels of a view. An orbit that passes close to a body amplifies
- * errors, more so for a smaller body.
+ * Return the norm of the last coefficients of a step that suffices for the pixels of a view. An orbit that passes close to a body
+ * amplifies errors, and a smaller body amplifies them more.
  *
  * @param {import("./system.js").System} system
  * @param {View} view

@@ -1,5 +1,5 @@
 // @ts-check
-/** Random starts of an ensemble; equal seeds give equal starts. */
+/** Random starts of an ensemble. Equal seeds give equal starts. */
 
 import {Ensemble} from "./ensemble.js"
 import {Exits} from "./exits.js"
@@ -8,7 +8,7 @@ import {findStarts, keepInside, placeWindow, windowAt} from "./starts.js"
 import {reversedInTime} from "./system.js"
 
 /**
- * Where the starts are placed: "well", uniformly on the energy surface; "view" and "box", uniformly on the slice in a window;
+ * The starts to draw: "well", uniformly on the energy surface; "view" and "box", uniformly on the slice in a window;
  * "disc", uniformly on the slice around a point; "exits", on the exits, moving inward; "tubes", at the edge of the tubes that
  * lead out.
  *
@@ -21,7 +21,7 @@ import {reversedInTime} from "./system.js"
  * @property {number} radius  of the disc, as a share of half the window
  */
 
-/** Largest number of draws for each start; in a window without an interior there are no starts. */
+/** Largest number of draws for each start, because a window without an interior has no starts. */
 const MOST_DRAWS = 200
 
 /**
@@ -56,7 +56,7 @@ function drawAtExits(integrator, {count, seed}, energy, ofTubes) {
 }
 
 /**
- * Return the states from which orbits come to these states: the ends of orbits that are followed into the well backward in time.
+ * Return states from which orbits come to the given states, found by following orbits into the well backward in time.
  *
  * @param {Integrator} integrator
  * @param {number} energy
@@ -98,7 +98,7 @@ function drawOnSlice(integrator, request, scene, energy) {
 }
 
 /**
- * Return the rectangle of a request; the disc is the ellipse in it.
+ * Return the rectangle of a request; a disc is the ellipse in its rectangle.
  *
  * @param {Integrator} integrator
  * @param {Request} request

@@ -15,11 +15,11 @@
  * @property {number} ordinateLow
  * @property {number} ordinateHigh
  *
- * Starts of points: (4, n) x, y, px, py, NaN where forbidden, and (n,) energies.
+ * Starts of n points: x, y, px, py of shape (4, n), NaN if forbidden, and energies of shape (n,).
  *
  * @typedef {{states: Floats, energies: Floats}} Starts
  *
- * Starts beyond no exit: (m,) their indices among the starts, (m, 4) states, and (m,) rows of their energies in the exits.
+ * The m starts beyond no exit: indices among all starts, states of shape (m, 4), and rows of their energies in the exits.
  *
  * @typedef {{kept: Integers, states: Floats, rows: Integers}} Inside
  */
@@ -32,14 +32,14 @@
 export const showsPositions = ({axes}) => axes[0] === "x" && axes[1] === "y"
 
 /**
- * The axis along which the energy varies: 0 for the horizontal axis, 1 for the vertical one, -1 for neither.
+ * Return the axis along which the energy varies: 0 for the horizontal axis, 1 for the vertical axis, −1 for none.
  *
  * @param {Pick<Slice, "axes">} slice
  */
 export const energyAxis = ({axes}) => axes.indexOf("h")
 
 /**
- * A window in units of the well, in the form that kernels take.
+ * Return a window in units of the well, in the form that kernels take.
  *
  * @param {Integrator} integrator
  * @param {Window} window
@@ -50,7 +50,7 @@ export function placeWindow(integrator, {xLow, xHigh, ordinateLow, ordinateHigh}
 }
 
 /**
- * The numbers of a slice in the form that kernels take.
+ * Return the numbers of a slice in the form that kernels take.
  *
  * @param {Integrator} integrator
  * @param {Pick<Slice, "axes" | "motion" | "decided">} slice
@@ -66,12 +66,12 @@ export function describeSlice(integrator, {axes, motion, decided}, energy) {
 }
 
 /**
- * Find the starts of points.
+ * Return the starts of points of a slice.
  *
  * @param {Integrator} integrator
  * @param {Pick<Slice, "axes" | "motion" | "decided" | "sign">} slice
  * @param {number} energy  of all starts, unless the energy is an axis
- * @param {Floats} points  (axes, n)
+ * @param {Floats} points  of shape (axes, n)
  * @returns {Starts}
  */
 export function findStarts(integrator, slice, energy, points) {
@@ -82,13 +82,13 @@ export function findStarts(integrator, slice, energy, points) {
 }
 
 /**
- * Leave out the starts that are forbidden or beyond an exit.
+ * Return the starts that are neither forbidden nor beyond an exit.
  *
  * @param {Integrator} integrator
  * @param {Starts} starts
  * @param {import("./exits.js").Exits} exits
- * @param {Integers} rows  (n,) of the energies in the exits
- * @param {import("./integrator.js").Numbers<"int8">} fate  (n,) set for starts that are left out
+ * @param {Integers} rows  row of each energy in the exits
+ * @param {import("./integrator.js").Numbers<"int8">} fate  set for the starts that are left out
  * @returns {Inside}
  */
 export function keepInside(integrator, {states, energies}, exits, rows, fate) {

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The orbit under the cursor, drawn over the picture of the well. On a narrow screen it covers half of the only map. A finger
- * shows orbits when it is pressed and moved.
+ * The orbit under the cursor, drawn on a card over the picture of the well, or on a narrow screen over a part of the only
+ * map. A finger shows orbits when it rests on a map and then moves.
  */
 
 import {exitLines, LimitingCurves} from "../engine/curves.js"
@@ -13,13 +13,15 @@ import {cover, frames, strokeLine, wellFrame} from "../painting/pictures.js"
 
 /** Longest time for which an orbit is followed, in units of the well. */
 const LONGEST = 200
-/** A finger that rests for this long, in ms, and moves by less than this, in pixels, shows orbits instead of moving the picture. */
-const [PRESS_MS, PRESS_PIXELS] = [350, 8]
-/** Within this distance of a click the card stays hidden. */
+/** Time for which a finger must rest to show orbits instead of moving the picture, in ms. */
+const PRESS_MS = 350
+/** Largest movement of a resting finger, in pixels. */
+const PRESS_PIXELS = 8
+/** Distance from a click within which the card stays hidden, in pixels. */
 const CLICK_PIXELS = 12
-/** Side of the card if only one map is shown, as a share of the map. */
-const ALONE = 0.55
-/** Height of the text, in pixels. */
+/** Side of the card over the only map, as a share of the side of the map. */
+const SHARE_OF_MAP = 0.55
+/** Space around the text, and height of its line, in pixels. */
 const [PADDING, TEXT_HEIGHT] = [6, 22]
 const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-page,#fff);
   border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
@@ -32,7 +34,7 @@ export function describe({channel, time, crossings}, unit, labels) {
 }
 
 /**
- * The path of an orbit in units of the page.
+ * Return the path of an orbit in units of the page.
  *
  * @param {Pick<import("../engine/path.js").Path, "x" | "y">} path
  * @param {{length: number}} units  of the well
@@ -46,7 +48,7 @@ export class Card {
   /**
    * @param {HTMLElement} el
    * @param {() => import("../workers/frames.js").Scene | null} scene  what the pictures show
-   * @param {() => any} maps  the columns of the pictures
+   * @param {() => any} maps  the columns of the maps
    * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
    */
   constructor(el, scene, maps, view) {
@@ -63,7 +65,7 @@ export class Card {
     document.addEventListener("pointerup", () => this.#lift(), true)
     document.addEventListener("pointercancel", () => this.#lift(), true)
     document.addEventListener("pointerleave", () => this.#hide())
-    // The browser would scroll the page, or open a menu.
+    // The browser would scroll the page, or open a menu, while a finger shows orbits.
     for (const name of ["touchmove", "contextmenu"]) {
       document.addEventListener(name, event => this.#pressed && event.preventDefault(), {capture: true, passive: false})
     }
@@ -96,7 +98,7 @@ export class Card {
     this.#lift()
     const picture = this.#viewAt(event)
     if (event.pointerType !== "touch") {
-      // A click chooses an orbit, which is then drawn in the place of the card.
+      // A click chooses the orbit, which is then drawn in place of the card.
       this.#clicked = {x: event.clientX, y: event.clientY}
       this.#hide()
       return
@@ -120,20 +122,20 @@ export class Card {
   #move(event) {
     if (event.pointerType === "touch") {
       const finger = this.#finger
-      // Otherwise the picture would move.
+      // Bokeh would move the picture.
       if (this.#pressed) event.stopPropagation()
       else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
       if (!this.#pressed) return
     }
     if (this.#clicked && Math.hypot(event.clientX - this.#clicked.x, event.clientY - this.#clicked.y) < CLICK_PIXELS) return
     this.#clicked = null
-    // No card while the energy or the window is dragged with a mouse.
+    // There is no card while the mouse drags the energy or the window.
     const dragged = event.buttons && event.pointerType !== "touch"
     this.#show(dragged ? undefined : this.#viewAt(event), event)
   }
 
   /**
-   * The picture at a point of the screen.
+   * Return the map at a point of the screen.
    *
    * @param {PointerEvent} event
    */
@@ -165,7 +167,7 @@ export class Card {
   }
 
   /**
-   * The centre of the pixel under the pointer, or the point under the pointer where there is no pixel.
+   * Return the centre of the pixel under the pointer; outside the pixels, of the pixel that would be there.
    *
    * @param {import("../painting/pictures.js").Frame} picture
    * @param {PointerEvent} event
@@ -189,7 +191,7 @@ export class Card {
 
   /**
    * @param {import("../painting/pictures.js").Frame} over  the picture under the pointer
-   * @param {number} pointer  its place from the left of the screen
+   * @param {number} pointer  distance of the pointer from the left of the screen
    * @param {import("../engine/path.js").Path} path
    */
   #draw(over, pointer, path) {
@@ -226,7 +228,7 @@ export class Card {
     context.fillStyle = paper
     context.fillRect(0, box.height - height, width, height)
     context.fillStyle = ink
-    // Beside a small picture the text is narrower.
+    // On a small card the text is compressed.
     context.fillText(text, PADDING, box.height - PADDING, box.width - 2 * PADDING)
     this.#canvas.setAttribute("aria-label", text)
   }
@@ -237,15 +239,15 @@ const contains = (box, {clientX, clientY}) =>
   clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom
 
 /**
- * Where the card is drawn: over the well, or in the other half of the only map.
+ * Return the place of the card: over the well, or over the only map on the side away from the pointer.
  *
  * @param {import("../painting/pictures.js").Frame} over  the picture under the pointer
- * @param {number} pointer  its place from the left of the screen
+ * @param {number} pointer  distance of the pointer from the left of the screen
  */
 function placeFor(over, pointer) {
   const well = wellFrame()
   if (well) return well.box
   const {left, top, width} = over.box
-  const side = ALONE * width
+  const side = SHARE_OF_MAP * width
   return new DOMRect(pointer < left + width / 2 ? left + width - side : left, top, side, side)
 }

@@ -1,15 +1,15 @@
 // @ts-check
-/** Plays the energy: raises it to the end of its range in each frame of the display. */
+/** Animates the energy: raises it in each frame of the display, up to the end of its range. */
 
-/** Duration of playing the whole range. */
+/** Duration of the animation of the whole range. */
 const SWEEP_MS = 20_000
-/** Least number of steps of the range: those of a decimal, so that the numbers beside the picture are short. */
+/** Least number of steps of the range. Each is a power of ten, which keeps the numbers on the page short. */
 const STEPS = 1000
 
 export class Player {
   /**
    * @param {(energy: number) => void} show
-   * @param {(energy: number) => void} end  called with the last energy
+   * @param {(energy: number) => void} end  takes the last energy
    */
   constructor(show, end) {
     this.#show = show
@@ -26,7 +26,7 @@ export class Player {
   }
 
   /**
-   * Start at an energy, or at the beginning of the range if the energy is at its end; no effect while the energy is playing.
+   * Start at an energy, or at the beginning of the range if the energy is at its end. During an animation this has no effect.
    *
    * @param {number} energy
    * @param {number} low

@@ -1,11 +1,11 @@
 // @ts-check
 /**
- * What the page shows now, for modules that are loaded later; `main.js` sets it.
+ * What the page shows now, which `main.js` sets for modules that are loaded later.
  *
  * @typedef {object} Shown
  * @property {import("../engine/system.js").System} system
  * @property {import("../engine/integrator.js").Modules} modules
- * @property {() => import("../workers/frames.js").Scene | null} scene  slice, energy and window in view; null if the browser cannot compute it
+ * @property {() => import("../workers/frames.js").Scene | null} scene  slice, energy and window in view; null if not computable here
  * @property {() => string[]} colours  of the outcomes, exits first
  * @property {() => string[]} labels  of the outcomes
  * @property {HTMLElement} host  for canvases over the pictures
@@ -20,7 +20,7 @@ const listeners = new Set()
 export const present = () => shown
 
 /**
- * Set what the page shows: another system, or another view of it.
+ * Set what the page shows.
  *
  * @param {Shown | null} next
  */

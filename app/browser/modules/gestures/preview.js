@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The pictures of the page while the energy or the window moves. The browser's pixels stay until the server's map shows the same
+ * The pictures of the page while energy or window moves. The pixels of the browser stay until the server's map shows the same
  * view with at least as many pixels.
  */
 
@@ -14,14 +14,14 @@ import {Outlines} from "../painting/outlines.js"
 import {LEAST_SIDE} from "../workers/frames.js"
 
 /**
- * The view in the server's description.
+ * The view in the description of the server.
  *
  * @typedef {object} ServerView
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
  * @property {import("../engine/system.js").Slice | null} slice  null for a slice that only the server can compute
  * @property {number} energy
- * @property {boolean} home  whether the window is the default one
+ * @property {boolean} home  whether the window is the default window
  * @property {string[]} colours  of the outcomes, exits first
  * @property {string[]} labels  of the outcomes
  * @property {import("../painting/columns.js").Coding} coding
@@ -33,8 +33,8 @@ import {LEAST_SIDE} from "../workers/frames.js"
  */
 
 /**
- * While the energy changes, edges that differ by less than this share of the side do not move, because painting axes takes longer
- * than painting pixels. The default window has a wider margin around its interior.
+ * Distance by which the edges of the window must differ to move while the energy changes, as a share of the side: painting axes
+ * takes longer than painting pixels. The default window has a wider margin around the interior.
  */
 const NEAR_EDGE = 0.02
 
@@ -60,7 +60,7 @@ export class Preview {
     const ranges = find("basins")
     this.#frames = frames
     this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
-    const moved = () => this.#moved()
+    const moved = () => this.#followRange()
     this.#x = new Local(ranges.x_range, ["start", "end"], moved)
     this.#y = new Local(ranges.y_range, ["start", "end"], moved)
     this.#ranges = () => [ranges.x_range, ranges.y_range]
@@ -89,7 +89,7 @@ export class Preview {
   #view = null
   /** Energy of the slider or of the player, until the server has received it. @type {number | null} */
   #energy = null
-  /** Default window at that energy; null if the window of the ranges is shown. @type {import("../engine/starts.js").Window | null} */
+  /** Default window at this energy; null if the ranges keep their window. @type {import("../engine/starts.js").Window | null} */
   #window = null
   #held = false
   #waiting = false
@@ -97,7 +97,7 @@ export class Preview {
   #shown = null
 
   /**
-   * Use a system: that of the view, or that of the next view.
+   * Set the system of the view, or of the next view.
    *
    * @param {import("../engine/system.js").System} system
    * @param {import("../engine/integrator.js").Modules} modules
@@ -135,12 +135,12 @@ export class Preview {
     this.#follow()
   }
 
-  /** Called when the server has received the energy. */
+  /** End the preview of an energy, which the server receives now. */
   release() {
     this.#held = false
   }
 
-  /** The scene to show; null if it cannot be computed here. @returns {import("../workers/frames.js").Scene | null} */
+  /** The scene to show; null if the browser cannot compute it. @returns {import("../workers/frames.js").Scene | null} */
   get scene() {
     const [view, system, window] = [this.#view, this.#system, this.#present]
     if (!view?.slice || !system || view.system !== system.key) return null
@@ -150,20 +150,20 @@ export class Preview {
     return coversEnergy(system, highest / system.units.energy) ? {slice: view.slice, energy, window, most: view.resolution} : null
   }
 
-  /** The window that is shown or about to be shown. @returns {import("../engine/starts.js").Window} */
+  /** The window on the page, or about to be shown. @returns {import("../engine/starts.js").Window} */
   get #present() {
     const [x, y] = this.#ranges()
     return this.#window ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
   }
 
-  /** Columns of the view with which this one is compared pixel by pixel, as on the server; null without a comparison. */
+  /** Columns of the other view, if the server compares two views pixel by pixel; otherwise null. */
   get #compared() {
     const isCompared = this.#maps.server.data.difference?.[0].length > 1
     return isCompared ? (this.#find("compared_map")?.data ?? null) : null
   }
 
-  /** A range has changed; its other end and the pixels from the server may follow immediately. */
-  #moved() {
+  /** Follow the change of a range, once its other end and pixels from the server, which may come at once, have followed. */
+  #followRange() {
     if (this.#waiting) return
     this.#waiting = true
     queueMicrotask(() => {
@@ -172,14 +172,14 @@ export class Preview {
     })
   }
 
-  /** Show the requested view: the server's map if it has this view, otherwise a preview. */
+  /** Show the scene: the map of the server if it shows the scene, otherwise a preview. */
   #follow() {
     const scene = this.scene
     if (!scene) {
       this.#maps.accept()
       return
     }
-    const same = this.#shown && JSON.stringify(scene) === JSON.stringify(pick(this.#shown))
+    const same = this.#shown && JSON.stringify(scene) === JSON.stringify(sceneOf(this.#shown))
     const rows = same && this.#shown ? this.#shown.rows : LEAST_SIDE
     if (showsScene(this.#maps.server.data, scene, rows)) {
       this.#restore()
@@ -194,7 +194,7 @@ export class Preview {
    *
    * @param {import("../engine/pixels.js").View} view
    * @param {import("../engine/pixels.js").Pixels} pixels
-   * @param {boolean} moving  whether the next preview is to follow in the next frame
+   * @param {boolean} moving  whether the view is moving, so that another preview may follow in the next frame
    */
   show(view, pixels, moving) {
     const [integrator, server] = [this.#integrator, this.#view]
@@ -206,12 +206,12 @@ export class Preview {
     const coloured = exitLines(integrator, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
     const exits = showsPositions(view.slice) ? coloured : []
     const well = this.#traceWell(integrator, view)
-    // Each change of a range repaints all pictures, so ranges change together with the pixels, or seldom.
+    // Each change of a range repaints all pictures, so ranges change only together with the pixels.
     if (this.#window) {
       this.#x.show({start: view.window.xLow, end: view.window.xHigh})
       this.#y.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
     }
-    // Of a map that has been stopped, the server's words stay.
+    // The text of a stopped map stays.
     if (!this.#status.server.css_classes?.includes("stopped")) {
       this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
     }
@@ -232,7 +232,7 @@ export class Preview {
   }
 
   /**
-   * The window of the well and its zero-velocity curve; null where the energy is an axis and the well does not change.
+   * Return the window of the well and its zero-velocity curve; null on a slice with an axis h, where the well does not change.
    *
    * @param {Integrator} integrator
    * @param {import("../engine/pixels.js").View} view
@@ -256,9 +256,9 @@ export class Preview {
 const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("status"))?.model
 
 /**
- * The scene of a view.
+ * Return the scene of a view.
  *
  * @param {import("../engine/pixels.js").View} view
  * @returns {import("../workers/frames.js").Scene}
  */
-const pick = ({slice, energy, window, most}) => ({slice, energy, window, most})
+const sceneOf = ({slice, energy, window, most}) => ({slice, energy, window, most})

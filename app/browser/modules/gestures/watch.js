@@ -1,5 +1,5 @@
 // @ts-check
-/** The player of an ensemble: controls, particles over the well and the section, counters, and the survival. */
+/** The player of an ensemble: controls, particles over the well and the section, counters, and the chart of survival. */
 
 import {Ensemble, Outcomes} from "../engine/ensemble.js"
 import {Integrator} from "../engine/integrator.js"
@@ -10,26 +10,30 @@ import {cover, frames, onMoved, wellFrame} from "../painting/pictures.js"
 import {drawSurvival} from "../painting/survival_chart.js"
 import {onPresent, present} from "./present.js"
 
-/** Longest time, in units of the well. */
+/** Longest time of the player, in units of the well. */
 const LONGEST = 100
-/** Time of the first frame after the start on a logarithmic scale. */
-const FIRST = 0.5
+/** Time of the first frame after the start at the logarithmic pace, in units of the well. */
+const FIRST_TIME = 0.5
+/** Number of steps of the slider of time. */
 const STEPS = 1000
 /** Playing time by which the button "Step" advances the ensemble. */
 const STEP_SECONDS = 0.05
-/** Side of a particle, in pixels, and the speed at which trails fade: the share of the light that remains after a frame. */
-const [SIDE, TRAIL] = [2.5, 0.88]
+/** Side of a particle, in pixels. */
+const SIDE = 2.5
+/** Share of the opacity of a trail that remains after a frame. */
+const TRAIL = 0.88
+/** Number of frames from one update of the counters to the next. */
 const FRAMES_PER_NUMBER = 6
-/** Opacity of the cover over the map under the passages of the section. */
+/** Opacity of the cover between the map and the passages of the section. */
 const COVERED = 0.85
 /** Time in each frame for finding the outcomes of orbits, in ms. */
 const OUTCOMES_MS = 6
-/** Largest time by which a frame advances the orbits; frames of a hidden page take longer. */
+/** Largest time by which a frame advances the orbits, because frames of a hidden page take longer. */
 const LONGEST_FRAME_MS = 100
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none"
 
 /**
- * The pace of the time: in units of time per second, or in factors of two per second.
+ * Paces: each returns the next time, in units of the well, for a time and the seconds since the last frame.
  *
  * @type {Record<string, (time: number, seconds: number) => number>}
  */
@@ -37,7 +41,7 @@ const PACES = {
   slow: (time, seconds) => time + seconds,
   normal: (time, seconds) => time + 4 * seconds,
   fast: (time, seconds) => time + 16 * seconds,
-  logarithmic: (time, seconds) => Math.max(time, FIRST) * 2 ** (0.5 * seconds),
+  logarithmic: (time, seconds) => Math.max(time, FIRST_TIME) * 2 ** (0.5 * seconds),
   backwards: (time, seconds) => Math.max(time - 4 * seconds, 0),
 }
 
@@ -124,12 +128,12 @@ class Watch {
   /** @type {Outcomes | null} */
   #outcomes = null
   #nextSearch = 0
-  /** What the ensemble was made of. */
-  #made = ""
+  /** Everything on which the ensemble depends, as text. */
+  #contents = ""
   #frame = 0
   #painted = 0
-  #unlisten = onPresent(() => this.#follow())
-  #stay = onMoved(() => this.#draw())
+  #ignorePage = onPresent(() => this.#follow())
+  #ignoreMoves = onMoved(() => this.#draw())
 
   #listen() {
     const model = this.#model
@@ -153,7 +157,7 @@ class Watch {
   }
 
   /**
-   * Send a choice to the server, which returns it as a change of the model.
+   * Send a choice to the server, which returns the choice as a change of the model.
    *
    * @param {object} choice
    */
@@ -162,7 +166,7 @@ class Watch {
     this.#model.send_msg({where, count, seed, radius, ...choice})
   }
 
-  /** Follow the page and the choices. Other starts begin at time 0; a playing ensemble continues to play. */
+  /** Follow the page and the choices. New starts begin at time 0, and play if the previous starts were playing. */
   #follow() {
     const {where, count, seed, radius, point, box} = this.#model
     Object.assign(this.#where, {value: where})
@@ -174,16 +178,16 @@ class Watch {
     /** @type {Record<string, unknown>} */
     const places = {view: scene, disc: [scene, radius, point], box: [scene, box]}
     const place = places[where] ?? scene?.energy
-    const made = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
-    if (made === this.#made) return this.#draw()
-    this.#made = made
+    const contents = JSON.stringify([where, count, seed, place, scene?.slice, shown?.system.key])
+    if (contents === this.#contents) return this.#draw()
+    this.#contents = contents
     this.#ensemble = this.#outcomes = null
     if (shown && scene && energyAxis(scene.slice) < 0) this.#make(shown, scene)
     this.#findOutcomes()
     this.#show(0)
   }
 
-  /** Find, in the next frames, the exits through which the orbits leave. */
+  /** Find the exits through which the orbits leave, in the next frames. */
   #findOutcomes() {
     cancelAnimationFrame(this.#nextSearch)
     const tick = () => {
@@ -214,7 +218,7 @@ class Watch {
   #setPlaying(on) {
     cancelAnimationFrame(this.#frame)
     this.#frame = 0
-    // Update the counters, which are not written in every frame.
+    // At a pause, update the counters, which are not written in every frame.
     if (!on || !this.#ensemble) return this.#draw()
     if (this.#hasEnded) this.#begin()
     let last = performance.now()
@@ -230,12 +234,12 @@ class Watch {
     this.#label()
   }
 
-  /** Whether the time is at the end of the pace. */
+  /** Whether the time has reached its end at this pace. */
   get #hasEnded() {
     return this.#pace.value === "backwards" ? this.#time <= 0 : this.#time >= LONGEST
   }
 
-  /** Go to the time at which the pace begins. */
+  /** Go to the time at which this pace begins. */
   #begin() {
     this.#show(this.#pace.value === "backwards" ? LONGEST : 0)
   }
@@ -268,7 +272,7 @@ class Watch {
     this.#text.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
     this.#paintWell(ensemble, shown)
     this.#paintSection(ensemble, shown)
-    // While the time runs, numbers that change in every frame could not be read.
+    // Numbers that change in every frame could not be read.
     if (this.#frame !== 0 && this.#painted++ % FRAMES_PER_NUMBER) return
     this.#writeCounters(ensemble, shown)
     this.#writeGrowth(ensemble, time)
@@ -310,16 +314,16 @@ class Watch {
   }
 
   /**
-   * Draw each orbit on (x, px), at its last passage.
+   * Draw each orbit on the map of (x, px), at its last passage of y = 0.
    *
    * @param {Ensemble} ensemble
    * @param {import("./present.js").Shown} shown
    */
   #paintSection(ensemble, {scene, colours}) {
     const [frame, view] = [frames()[0], scene()]
-    // The second coordinate of the origin is y.
+    // The section is y = 0: the second coordinate of the origin is y.
     const isSection = view?.slice.axes.join() === "x,px" && view.slice.motion[0][1] === 0
-    // Before the first passage the map is not covered.
+    // The map is not covered before the first passage.
     if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
       return void (this.#section.style.display = "none")
     const style = getComputedStyle(this.#note)
@@ -329,7 +333,7 @@ class Watch {
   }
 
   /**
-   * Paint the orbits as particles in the colours of the exits through which they will leave; others have the colour of the text.
+   * Paint the orbits as particles in the colours of their exits; orbits that stay have the colour of the text.
    *
    * @param {HTMLCanvasElement} canvas
    * @param {DOMRect} box
@@ -381,8 +385,8 @@ class Watch {
   }
 
   /**
-   * Describe the growth of a disc, as a factor and as a rate. While the disc is small and the motion chaotic, the rate is close
-   * to the Lyapunov exponent.
+   * Describe the growth of a disc as a factor and as a rate. While the disc is small and the motion chaotic, the rate is close to
+   * the Lyapunov exponent.
    *
    * @param {Ensemble} ensemble
    * @param {number} time
@@ -401,8 +405,8 @@ class Watch {
   #end() {
     cancelAnimationFrame(this.#frame)
     cancelAnimationFrame(this.#nextSearch)
-    this.#unlisten()
-    this.#stay()
+    this.#ignorePage()
+    this.#ignoreMoves()
     for (const canvas of [this.#well, this.#section]) canvas.remove()
   }
 }

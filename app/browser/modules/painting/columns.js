@@ -1,16 +1,16 @@
 // @ts-check
 /**
- * The pixel codes of outcomes and classes. The server sends this object, see `app/browser/views.py`.
+ * The pixel codes of outcomes and classes, which the server sends (`app/browser/views.py`).
  *
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are not escapes
  * @property {number} first  code of the first class
- * @property {number[]} ends  place of the outcomes from fate 1 on among all ends
- * @property {string[]} words  of all ends
+ * @property {number[]} ends  place of each outcome, from fate 1, among all ends
+ * @property {string[]} words  descriptions of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class
- * @property {number} undecided  code of pixels that are not decided
- * @property {number[][]} differences  for each code of a pixel, the codes of its differences from pixels of all codes
- * @property {string[]} layers  columns of the layers, which only the server computes
+ * @property {number} undecided  code of undecided pixels
+ * @property {number[][]} differences  code of the difference of two pixels, by the codes of both
+ * @property {string[]} layers  columns of layers, which only the server computes
  *
  * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
  */
@@ -18,13 +18,13 @@
 import {energyAxis} from "../engine/starts.js"
 
 /**
- * Return the columns of the pictures' data source for the pixels of a view, in the form of the server's columns of a map.
+ * Return the columns of the maps for the pixels of a view, in the form of the server.
  *
  * @param {Coding} coding
  * @param {import("../engine/pixels.js").View} view
  * @param {import("../engine/pixels.js").Pixels} pixels
- * @param {Columns} like  columns from the server, which determine the types of the images
- * @param {Columns | null} compared  columns of the view with which this one is compared pixel by pixel; null if there is none
+ * @param {Columns} like  columns from the server, with the types of the images
+ * @param {Columns | null} compared  columns of the other view, if two views are compared pixel by pixel
  * @returns {Columns}
  */
 export function pixelColumns(coding, view, pixels, like, compared) {
@@ -60,11 +60,11 @@ export function pixelColumns(coding, view, pixels, like, compared) {
 }
 
 /**
- * Return codes of the differences from the pixels at the same places in another view.
+ * Return the codes of the differences from the pixels at the same places in another view.
  *
  * @param {Coding} coding
  * @param {import("../engine/pixels.js").View} view
- * @param {Uint8Array} fate  codes of its pixels
+ * @param {Uint8Array} fate  codes of the pixels of the view
  * @param {Columns} compared
  */
 function differencesFrom({undecided, differences}, {window, columns, rows}, fate, compared) {
@@ -81,10 +81,11 @@ function differencesFrom({undecided, differences}, {window, columns, rows}, fate
   })
 }
 
-/** Edges of windows that differ by less than this share of a side are equal. */
+/** Largest distance of equal edges of windows, as a share of a side. */
 const SAME_EDGE = 1e-6
-/** Coarse frames of the server extend beyond the window by this share. */
+/** Largest size of a coarse frame from the server, which extends beyond its window, as a share of the size of the window. */
 const WIDEST = 1.1
+/** Largest difference of equal energies, as a share of the energy. */
 const SAME_ENERGY = 1e-12
 
 /**
@@ -96,7 +97,7 @@ const SAME_ENERGY = 1e-12
 export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
 
 /**
- * Whether columns from the server show a scene, with at least as many pixels as a preview of it.
+ * Whether columns from the server show a scene, complete or with at least as many rows as a preview.
  *
  * @param {Columns} columns
  * @param {import("../workers/frames.js").Scene} scene

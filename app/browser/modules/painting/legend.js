@@ -1,13 +1,13 @@
 // @ts-check
-/** Highlights the pixels of the legend entry under the pointer: the other colours fade. */
+/** Highlights the pixels of the legend entry under the pointer, as all other colours fade. */
 
-/** Opacity of the other colours, as two hexadecimal digits. */
+/** Opacity of the faded colours, as two hexadecimal digits. */
 const FADED = "2e"
 
-/** Fade colours that are not this one. @type {(palette: string[], colour: string) => string[]} */
+/** Fade all colours of a palette but one. @type {(palette: string[], colour: string) => string[]} */
 export const fade = (palette, colour) => palette.map(other => (other === colour ? other : other.slice(0, 7) + FADED))
 
-/** Follow the pointer as long as the page exists. */
+/** Highlight pixels from now on, as long as the page exists. */
 export function lightPixels() {
   /** @type {{mapper: any, palette: string[], faded: string[]} | null} */
   let lit = null
@@ -29,7 +29,7 @@ const closest = (event, places) =>
   /** @type {HTMLElement | undefined} */ (event.composedPath().find(node => node instanceof HTMLElement && node.matches(places)))
 
 /**
- * The mapper of the codes of a picture.
+ * The colour mapper of a picture.
  *
  * @param {string | undefined} picture
  */

@@ -8,7 +8,7 @@
  * @property {(signal: any, slot: () => void) => void} connect
  */
 
-/** Values of a model that may not be on the page yet; until then nothing is shown. */
+/** Like `Local`, for a model that may not be on the page yet; until then, nothing is shown. */
 export class LocalWhenPresent {
   /**
    * @param {() => any} find
@@ -25,7 +25,7 @@ export class LocalWhenPresent {
   /** @type {Local | null} */
   #local = null
 
-  /** Values of the server; none until the model is on the page. */
+  /** The values of the server; empty until the model is on the page. */
   get server() {
     this.#local ??= this.#make()
     return this.#local?.server ?? {}
@@ -42,7 +42,7 @@ export class LocalWhenPresent {
   }
 }
 
-/** Values of a model that only this browser shows, in place of the server's values, which are kept. */
+/** Shows values of a model in this browser only, and keeps the values of the server. */
 export class Local {
   /**
    * @param {Model & Record<string, any>} model
@@ -79,12 +79,12 @@ export class Local {
     this.accept()
   }
 
-  /** Keep the values that the page showed before a change by the server. */
+  /** After a change by the server, show the values before the change again. */
   keep() {
     this.show(this.#displayed)
   }
 
-  /** Take over the values of the server, which are already on the page after a change by the server. */
+  /** After a change by the server, keep its values, which are already on the page. */
   accept() {
     this.#displayed = this.server
     this.#shown = false

@@ -1,5 +1,5 @@
 // @ts-check
-/** The curves over a picture of Bokeh while the energy or the window moves: limiting curve, exits and their numbers. */
+/** The curves over a picture of Bokeh while energy or window moves: limiting curve, exits, and numbers of exits. */
 
 import {LocalWhenPresent} from "./local.js"
 
@@ -37,7 +37,7 @@ export class Outlines {
   /** @param {Exit[]} exits */
   #showExits(exits) {
     this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
-    // The number of texts stays the same: Bokeh fails when texts with individual colours become fewer.
+    // The number of texts must not change: Bokeh fails if texts with own colours become fewer.
     const labels = this.#labels.server.data ?? {text: [], colour: []}
     const fill = (/** @type {any[]} */ values, /** @type {any} */ other) =>
       Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))

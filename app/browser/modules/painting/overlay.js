@@ -1,12 +1,12 @@
 // @ts-check
 /**
- * The pictures while the energy moves, on canvases over Bokeh's pictures: painting a frame with axes takes Bokeh longer than
- * computing the pixels. Columns, palettes and styles of lines come from Bokeh's models.
+ * The pictures while the energy moves, on canvases over the pictures of Bokeh: Bokeh takes longer to paint a frame with axes than
+ * the pixels take to compute. Columns, palettes and styles of lines come from the models of Bokeh.
  */
 
 import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
 
-/** Below cards and drawers. */
+/** Style of the canvases, which are below cards and drawers. */
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;background:var(--ui-page)"
 
 /**
@@ -17,7 +17,7 @@ const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;backgro
  * @property {import("../engine/starts.js").Window} window
  * @property {import("./columns.js").Columns} columns
  * @property {Lines} lines  of the maps
- * @property {{window: import("../engine/starts.js").Window, lines: Lines} | null} well  null if the well does not change
+ * @property {{window: import("../engine/starts.js").Window, lines: Lines} | null} well  null for a well that does not change
  *
  * Lines by the names of Bokeh's data sources.
  *
@@ -55,7 +55,7 @@ export class Overlay {
     if (frame && context) strokeLines(context, frame.view.model, well.window, frame.box, well.lines)
   }
 
-  /** Hide the canvases when Bokeh has painted, in the next frame. */
+  /** Hide the canvases after Bokeh has painted the next frame. */
   hide() {
     if (!this.#shown) return
     this.#shown = false
@@ -68,7 +68,7 @@ export class Overlay {
   }
 
   /**
-   * Return the empty canvas over a picture.
+   * Clear the canvas over a picture, and return its context.
    *
    * @param {string} name
    * @param {DOMRect} box
@@ -134,7 +134,7 @@ function strokeLines(context, plot, window, box, lines) {
 /** A property of a glyph that is the same for all its lines. @type {(property: any) => any} */
 const valueOf = property => property?.value ?? property
 
-/** Colours of palettes as 32-bit numbers. @type {WeakMap<any[], Uint32Array>} */
+/** Colours of palettes as 32-bit numbers for canvases. @type {WeakMap<any[], Uint32Array>} */
 const tables = new WeakMap()
 
 /** @param {any[]} palette  of "#rrggbb" or "#rrggbbaa", or of numbers 0xrrggbbaa */
@@ -150,7 +150,7 @@ function tableOf(palette) {
 }
 
 /**
- * Return the colours of an image, upside down, in the way of Bokeh's linear and logarithmic mappers.
+ * Write the colours of an image, upside down, as the linear and logarithmic mappers of Bokeh choose them.
  *
  * @param {any} image  numbers, with NaN for no colour
  * @param {{type: string, palette: any[], low: number, high: number}} mapper

@@ -1,21 +1,21 @@
 // @ts-check
-/** The pictures on the screen: the well, and the maps. */
+/** The places of the pictures on the screen, and canvases over them. */
 
 /**
- * A picture: its view of Bokeh, and the box of its frame on the screen.
+ * A picture: the view of Bokeh, and the box of the frame on the screen.
  *
  * @typedef {{view: any, box: DOMRect}} Frame
  */
 
-/** The maps. @returns {Frame[]} */
+/** The frames of the maps. @returns {Frame[]} */
 export function frames() {
-  // The server numbers the maps of the view, see `map_figure` in `app/views/components/plots.py`.
+  // The server numbers the maps by tags, see `_paint` in `app/views/maps/map_plots.py`.
   const views = [...Bokeh.index.all_views()].filter(view => view.model.tags?.[0] === "map")
   views.sort((one, other) => one.model.tags[1] - other.model.tags[1])
   return views.map(withBox).filter(({box}) => box.width > 0)
 }
 
-/** The picture of the well; undefined if the screen is narrow and shows a map. @returns {Frame | undefined} */
+/** The frame of the well; undefined on a narrow screen that shows a map. @returns {Frame | undefined} */
 export function wellFrame() {
   const view = [...Bokeh.index.all_views()].find(view => view.model.name === "well")
   const frame = view && withBox(view)
@@ -26,17 +26,18 @@ export function wellFrame() {
 function withBox(view) {
   const canvas = view.canvas_view.el.getBoundingClientRect()
   const {left, top, width, height} = view.frame.bbox
-  // Pictures that narrow screens hide have no canvas.
+  // A picture that a narrow screen hides has no canvas.
   return {view, box: new DOMRect(canvas.left + left, canvas.top + top, canvas.width && width, canvas.height && height)}
 }
 
 /**
- * Call a function when a picture under a canvas has moved, or when the theme has changed.
+ * Call a function whenever a picture has moved, or the theme has changed.
  *
- * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows some frames later.
+ * No event reports all causes: windows, layers and panels change the layout, and Bokeh follows some frames later, so
+ * this looks in each frame.
  *
  * @param {() => void} call
- * @returns {() => void} ends the calls
+ * @returns {() => void} a function that ends the calls
  */
 export function onMoved(call) {
   let [waiting, last] = [0, ""]
@@ -52,7 +53,7 @@ export function onMoved(call) {
 }
 
 /**
- * Make a canvas cover a box on the screen.
+ * Make a canvas cover a box on the screen, and return its context, in pixels of the box.
  *
  * @param {HTMLCanvasElement} canvas
  * @param {DOMRect} box

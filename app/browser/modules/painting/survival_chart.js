@@ -1,18 +1,20 @@
 // @ts-check
-/** The share of an ensemble that is still inside against time, on a logarithmic axis, with the law of mixed motion. */
+/** The chart of the share of an ensemble that is still inside, on a logarithmic axis, with the law of mixed motion. */
 
 import {number} from "../numbers.js"
 
 /** Smallest share on the axis. */
 const LEAST = 1e-3
+/** Borders, in pixels. */
 const [LEFT, BOTTOM, TOP] = [34, 18, 6]
+/** Number of intervals of a line. */
 const POINTS = 240
 
 /**
  * @param {HTMLCanvasElement} canvas
  * @param {{escapeTime: Float64Array, count: number, time: number}} ensemble
- * @param {{longest: number, unit: number, rate: number, ink: string}} options  longest time and unit of time in units of the well and
- *   of the page; decay rate of mixed motion per unit of time of the page, 0 if it is not known; colour of the text
+ * @param {{longest: number, unit: number, rate: number, ink: string}} options  `longest` time in units of
+ *   the well; such a `unit` of time in units of the page; decay `rate` of mixed motion in units of the page, 0 if it is not known
  */
 export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, rate, ink}) {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight]

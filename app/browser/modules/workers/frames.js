@@ -1,29 +1,30 @@
 // @ts-check
 /**
- * Pictures at the rate of the display. While the view moves, a picture has as many pixels as fit a frame; at rest it has more
- * pixels and a longer time. Only the newest view is kept, but a picture that is being computed while the view moves is finished
- * first, so that fast moves also show pictures.
+ * Pictures at the rate of the display. While the view moves, a picture has as many pixels as a frame allows. At rest, it has more
+ * pixels and a longer time. Only the newest view is computed, but a picture begun while the view moves is finished
+ * first: otherwise, fast moves would show no pictures.
  *
  * @typedef {import("../engine/pixels.js").View} View
  * @typedef {import("../engine/pixels.js").Pixels} Pixels
  * @typedef {Omit<View, "columns" | "rows" | "horizon">} Scene  slice, energy and window to draw
  */
 
-/** While the view moves: smallest number of pixels along a side, and longest time in units of the well. */
+/** Smallest number of pixels along a side, while the view moves. */
 export const LEAST_SIDE = 76
+/** Longest time while the view moves, in units of the well. */
 const MOVING_HORIZON = 30
 /** Pictures at rest: pixels along a side, and longest time in units of the well. */
 const RESTING = [
   {side: 112, horizon: 100},
   {side: 224, horizon: 100},
 ]
-/** Time for the pixels of a frame, in ms; the rest of the frame is for painting. */
+/** Time for computing the pixels of a frame, in ms. The rest of the frame is for painting. */
 const FRAME_MS = 10
-/** Limits of the change of the side from one frame to the next. */
-const [SLOWER, FASTER] = [0.8, 1.25]
-/** A view that has not changed for this long, in ms, is at rest. */
+/** Least and largest factor of the side from one frame to the next. */
+const [LEAST_CHANGE, LARGEST_CHANGE] = [0.8, 1.25]
+/** Time without change after which a view is at rest, in ms. */
 const REST_MS = 60
-/** Number of pixels of a part while the view is at rest: a new view waits for at most one part. */
+/** Number of pixels of a part of a picture at rest. A new view waits until each worker has finished its part. */
 const PART_PIXELS = 500
 
 export class Frames {
@@ -63,7 +64,7 @@ export class Frames {
   }
 
   /**
-   * Compute this view, at once or after the picture of an earlier one.
+   * Compute a view, at once or after the picture of an earlier view.
    *
    * @param {Scene} scene
    */
@@ -90,7 +91,7 @@ export class Frames {
     const begun = performance.now()
     this.#compute({...scene, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
       const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - begun, 1))
-      const next = Math.round(side * Math.min(Math.max(change, SLOWER), FASTER))
+      const next = Math.round(side * Math.min(Math.max(change, LEAST_CHANGE), LARGEST_CHANGE))
       this.#side = Math.min(Math.max(next, LEAST_SIDE), this.#mostPixels)
       this.#computing = "nothing"
       if (this.#scene) this.#begin()
@@ -99,7 +100,7 @@ export class Frames {
   }
 
   /**
-   * Compute the pictures of a view at rest, one after the other.
+   * Compute a picture of a view at rest, then the next, finer one.
    *
    * @param {Scene} scene
    * @param {number} level
@@ -129,17 +130,17 @@ export class Frames {
     if (!this.#system) return
     const picture = new Picture(this.#system, view)
     const list = picture.deal(parts)
-    let left = list.length
+    let missing = list.length
     this.#pool.compute(view, list, (part, pixels) => {
       picture.add(part, pixels)
-      if (--left > 0) return
+      if (--missing > 0) return
       this.#show(view, picture.finish(), this.#computing === "moving")
       done()
     })
   }
 }
 
-/** Return the pixels of a view; of two mirror images only one is computed. */
+/** Collects the pixels of a view. In a symmetric view, only one of two mirror images is computed. */
 export class Picture {
   /**
    * @param {import("../engine/system.js").System} system
@@ -196,7 +197,7 @@ export class Picture {
   }
 
   /**
-   * Return the pixels, with mirror images.
+   * Return all pixels, after adding the mirror images.
    *
    * @returns {Pixels}
    */
@@ -220,7 +221,7 @@ export class Picture {
 }
 
 /**
- * Return which axes of a view change their direction under x → −x; null if the view is not symmetric.
+ * Return whether each axis of a view changes its direction under x → −x; null for a view without this symmetry.
  *
  * @param {import("../engine/system.js").System} system
  * @param {Pick<import("../engine/system.js").Slice, "mirrored">} slice

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * Workers that compute parts of one picture at a time. Each worker has one part; the other parts wait here and are dropped when
+ * Workers that compute a picture in parts. Each worker has one part at a time. The other parts wait here, and are dropped when
  * another picture is requested.
  *
  * @typedef {import("../engine/pixels.js").View} View
@@ -15,7 +15,7 @@
 
 const MOST_WORKERS = 8
 
-/** One core is left to the page. */
+/** Return the number of workers, which leaves one core to the page. */
 export const workerCount = () => Math.min(Math.max(navigator.hardwareConcurrency - 1, 1), MOST_WORKERS)
 
 export class Pool {
@@ -33,7 +33,7 @@ export class Pool {
   #picture = null
 
   /**
-   * Give a system to all workers; the first call starts them.
+   * Give a system to all workers, which the first call starts.
    *
    * @param {import("../engine/system.js").System} system
    * @param {import("../engine/integrator.js").Modules} modules
@@ -48,7 +48,7 @@ export class Pool {
   }
 
   /**
-   * Compute the parts of a picture, in place of the present one.
+   * Compute the parts of a picture, in place of the present picture.
    *
    * @param {View} view
    * @param {Part[]} parts

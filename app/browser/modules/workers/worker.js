@@ -1,5 +1,5 @@
 // @ts-check
-/** A worker, which computes the pixels of parts of views, one after the other. */
+/** The program of a worker, which computes the pixels of parts of views. */
 
 import {Integrator} from "../engine/integrator.js"
 import {computePixels} from "../engine/pixels.js"
