@@ -285,6 +285,7 @@ def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:
     # Layers have renderers of their own.
     renderers = "Bokeh.documents[0].get_model_by_name('basins').renderers"
     palette = f"() => {renderers}.find(each => each.data_source.name == 'maps').glyph.color_mapper.palette"
+    explorer.start_engine()
     before = explorer.page.evaluate(palette)
     item = explorer.page.locator(".foot[data-picture=basins] .patch").first
     item.hover()
