@@ -96,7 +96,7 @@ class MapCache:
         )
 
     def _sweep(self, case: str, plane: Slice) -> Sweep:
-        """A sweep that uses the stored maps."""
+        """Return a sweep that uses the stored maps."""
         energies, side, t_max = curve_energies(case, self.quality.curve_points), self.quality.resolution, self.quality.t_max
         spec = SweepSpec(CASES[case], plane, energies, (side, side), t_max=t_max, measures=("shares", "accuracy"))
         return compute_sweep(

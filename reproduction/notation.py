@@ -10,7 +10,7 @@ _SYMBOLS = {"x": "x", "y": "y", "px": r"\dot{x}", "py": r"\dot{y}", "h": "h"}
 
 
 def axis_label(name: str) -> str:
-    """Label of an axis, by its name."""
+    """Return the label of an axis, by its name."""
     return f"${_SYMBOLS[name]}$"
 
 

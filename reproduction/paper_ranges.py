@@ -19,12 +19,12 @@ _DECIMALS = 6
 
 
 def nine_energies(case: str) -> tuple[float, ...]:
-    """Energies of the paper's maps."""
+    """Return the energies of the paper's maps."""
     return PAPER_ENERGIES[case].marked
 
 
 def three_energies(case: str) -> tuple[float, ...]:
-    """The first, the middle and the last of the nine energies: long, medium and short escape times."""
+    """Return the first, the middle and the last of the nine energies: long, medium and short escape times."""
     return nine_energies(case)[::4]
 
 
@@ -35,5 +35,5 @@ def curve_energies(case: str, count: int) -> tuple[float, ...]:
 
 
 def plane_energies(case: str) -> tuple[float, float]:
-    """Lowest and highest h of the (x, h) plane."""
+    """Return the lowest and highest h of the (x, h) plane."""
     return CASES[case].escape_energy, PAPER_ENERGIES[case].high

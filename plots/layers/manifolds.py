@@ -14,7 +14,7 @@ from engine.trajectories.stable_manifolds import MOST_IMAGES, ManifoldArc
 from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
 from plots.pictures.palette import Entry, Mark, Palette
 
-# Number of images that the page computes: later images are less than a pixel apart.
+# Number of images that the page computes. Later images are less than a pixel apart.
 _IMAGES = 3
 
 # Strokes of the first, the second and all later images: later images lie closer together.
@@ -28,14 +28,14 @@ IMAGE = Setting(
     choices={**{str(image): image for image in range(1, _IMAGES + 1)}, "all": 0},
     default=0,
 )
-"""The image that is drawn; 0 for all."""
+"""The number of the drawn image; 0 for all images."""
 
 
 def manifold_strokes(manifolds: StableManifolds) -> list[Stroke]:
-    """The manifolds from back to front.
+    """Return the manifolds from back to front.
 
-    Earlier images are in front of later ones, and only the first has a halo. Of one image, shorter curves are in front: a closed
-    curve that bounds a basin stays visible although the spirals of other channels wind around it within a pixel.
+    Earlier images are in front of later images, and only the first has a halo. Within an image, shorter curves are in front, so
+    that a closed curve around a basin stays visible although spirals of other channels wind around the curve within a pixel.
     """
     groups: dict[tuple[int, int], list[ManifoldArc]] = {}
     for arc in manifolds.arcs:
@@ -45,7 +45,7 @@ def manifold_strokes(manifolds: StableManifolds) -> list[Stroke]:
 
 
 def select_image(manifolds: StableManifolds, image: int) -> StableManifolds:
-    """The arcs of one image, or of all images for 0."""
+    """Return the arcs of one image, or of all images for 0."""
     if image == 0:
         return manifolds
     return replace(manifolds, arcs=tuple(arc for arc in manifolds.arcs if arc.image == image))

@@ -1,4 +1,4 @@
-"""Movies of many orbits that leave the well, beside the share of orbits that are still inside."""
+"""Make movies of many orbits that leave the well, with a chart of the share inside."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
-    """Draw the axes of the share inside and the law of mixed motion; return the line that `_show` extends."""
+    """Draw the chart of the share inside, with the law of mixed motion; return the line that `_show` extends."""
     last, least = float(orbits.t[0, -1]), _LEAST_SHARE / len(orbits.fate)
     times = np.linspace(0.0, last, 200)
     rate = compute_flux(potential, float(orbits.energy[0])).decay_rate
@@ -142,7 +142,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
 
 
 def _show(stage: _Stage, orbits: SampledOrbits, place: int) -> None:
-    """Show the orbits at the time with this index."""
+    """Show the orbits at the time with the index `place`."""
     window, t = stage.window, float(orbits.t[0, place])
     across = (orbits.x[:, place] - window.x_low) / (window.x_high - window.x_low)
     up = (orbits.y[:, place] - window.ordinate_low) / (window.ordinate_high - window.ordinate_low)

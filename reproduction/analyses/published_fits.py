@@ -20,7 +20,7 @@ class HyperbolicTangent:
     b: float
 
     def __call__(self, h: Any) -> Any:
-        """Share at energies h, an array of any shape."""
+        """Return the share at energies h, an array of any shape."""
         return 0.5 * (1.0 + np.tanh(self.a * np.asarray(h, dtype=float) - self.b))
 
     @property
@@ -41,7 +41,7 @@ class Polynomial:
     coefficients: tuple[float, ...]
 
     def __call__(self, h: Any) -> Any:
-        """Share at energies h, an array of any shape."""
+        """Return the share at energies h, an array of any shape."""
         return np.polynomial.polynomial.polyval(np.asarray(h, dtype=float), self.coefficients)
 
     @property
@@ -99,5 +99,5 @@ _SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def _format_term(value: float) -> str:
-    """A number after its sign as an operator, such as "+ 2.5"."""
+    """Return a number after its sign as an operator, such as "+ 2.5"."""
     return f"{'−' if value < 0.0 else '+'} {format_number(abs(value))}"

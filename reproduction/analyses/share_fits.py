@@ -41,7 +41,7 @@ class Deviation:
     rms: float
 
     def describe(self) -> str:
-        """The deviation as part of a sentence."""
+        """Return the deviation as part of a sentence."""
         if np.isnan(self.largest):
             return "at no defined distance from the data"
         side = "above" if self.largest >= 0.0 else "below"

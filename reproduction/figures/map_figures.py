@@ -104,7 +104,7 @@ def draw_map_panel(
 
 
 def _common_window(frames: Sequence[EscapeMap]) -> Window:
-    """Smallest window that contains those of several maps."""
+    """Return the smallest window that contains those of several maps."""
     edges = np.array(
         [[w.x_low, w.x_high, w.ordinate_low, w.ordinate_high] for w in (frame.spec.find_window() for frame in frames)]
     )

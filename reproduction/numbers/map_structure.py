@@ -14,7 +14,7 @@ _NEIGHBOURHOOD = (3, 3)
 
 
 def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
-    """Percentage of the starts that escape through the same exit as their eight neighbours.
+    """Return the percentage of the starts that escape through the same exit as their eight neighbours.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def share_next_to_all_basins(frame: EscapeMap) -> float:
 
 
 def orders_of_escape_times(frame: EscapeMap) -> float:
-    """log10 of the ratio of median escape times: of neighbours of bounded starts to neighbours of starts outside.
+    """Return log10 of the ratio of median escape times: of neighbours of bounded starts to neighbours of starts outside.
 
     The value is NaN if there are no such neighbours.
 
@@ -59,7 +59,7 @@ def orders_of_escape_times(frame: EscapeMap) -> float:
 
 
 def _median_time_next_to(frame: EscapeMap, fate: Fate) -> float:
-    """Median escape time of the neighbours of the starts with a fate."""
+    """Return the median escape time of the neighbours of the starts with a fate."""
     from scipy import ndimage
 
     near = ndimage.binary_dilation(frame.fate == fate, np.ones(_NEIGHBOURHOOD))

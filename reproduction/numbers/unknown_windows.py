@@ -50,7 +50,7 @@ class FittedWindow:
         return self.window.ordinate_high
 
     def share(self, codes: tuple[int, ...]) -> float:
-        """Percentage of the starts with one of these fates, with starts outside counted."""
+        """Return the percentage of the starts with one of these fates, with starts outside counted."""
         fractions = self.counted.fractions(count_outside=True)
         return 100.0 * sum(fractions[code] for code in codes)
 
@@ -115,7 +115,7 @@ class _Outside:
 
 
 def _edges(least: float) -> list[float]:
-    """Multiples of `STEP`, from the smallest that contains the interior."""
+    """Return the multiples of `STEP`, from the smallest that contains the interior."""
     steps = np.arange(np.ceil(least / STEP), round(LARGEST_HALF_SIDE / STEP) + 1)
     edges: list[float] = (STEP * steps).round(6).tolist()
     return edges

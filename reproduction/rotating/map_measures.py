@@ -36,19 +36,19 @@ class EndTimes:
 
 
 def outcome_share(frame: EscapeMap, *codes: int) -> float:
-    """Percentage of the interior starts with one of these fates."""
+    """Return the percentage of the interior starts with one of these fates."""
     fractions = frame.fractions()
     return 100.0 * sum(fractions[code] for code in codes)
 
 
 def bounded_share_beside(frame: EscapeMap, sign: int) -> float:
-    """Percentage of the interior starts with x of this sign, 1 or −1, whose orbits are bounded."""
+    """Return the percentage of the interior starts with x of this sign, 1 or −1, whose orbits are bounded."""
     beside = frame.interior & (sign * frame.x > 0.0)
     return 100.0 * float(np.mean(frame.fate[beside] == Fate.BOUNDED))
 
 
 def end_times(frame: EscapeMap) -> EndTimes:
-    """Median times to the end inside basins and at their boundaries."""
+    """Return the median times to the end inside basins and at their boundaries."""
     from scipy import ndimage
 
     fate, counts, most = frame.fate, frame.interior, len(frame.spec.outcomes)
@@ -60,7 +60,7 @@ def end_times(frame: EscapeMap) -> EndTimes:
 
 
 def share_next_to_islands(frame: EscapeMap, *, late: bool) -> float:
-    """Percentage of the starts that end, or of the last of them, within `ISLAND_PIXELS` of a bounded start."""
+    """Return the percentage of the starts that end, or of the last of them, within `ISLAND_PIXELS` of a bounded start."""
     from scipy import ndimage
 
     near = ndimage.distance_transform_edt(frame.fate != Fate.BOUNDED) <= ISLAND_PIXELS
@@ -71,5 +71,5 @@ def share_next_to_islands(frame: EscapeMap, *, late: bool) -> float:
 
 
 def boundary_exponent(frame: EscapeMap) -> float:
-    """Uncertainty exponent of the boundaries, 1 for smooth ones; NaN if too few starts are uncertain."""
+    """Return the uncertainty exponent of the boundaries, 1 for smooth ones; NaN if too few starts are uncertain."""
     return compute_uncertainty_exponent(frame.spec, work=_WORK).exponent

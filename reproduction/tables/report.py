@@ -144,7 +144,7 @@ def _page_row(row: Comparison) -> tuple[str, ...]:
 
 
 def _describe_windows(row: Comparison) -> str:
-    """Range of half sides, and of right edges if they differ."""
+    """Return the range of half sides, and of right edges if they differ."""
     windows = [fitted.window for fitted in row.windows]
     square = f"±{_range([window.ordinate_high for window in windows], '{:.2f}')}"
     if all(window.x_high == window.ordinate_high for window in windows):
