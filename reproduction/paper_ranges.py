@@ -1,4 +1,4 @@
-"""Energies of the curves and figures of the paper."""
+"""The energies of the curves and figures of the paper."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CHANNEL_ENERGIES = {"I": 0.15, "II": 0.2, "III": 0.3}
 STICKY_CASE, STICKY_ENERGY = "III", 0.26
 """Case and energy of the paper's regular, chaotic and super-sticky orbits, on (x, px)."""
 
-# The energies are rounded, because maps are looked up by energy: equal energies must be equal bit for bit.
+# Decimals of energies. Maps are looked up by energy, so equal energies must be equal to the bit.
 _DECIMALS = 6
 
 
@@ -29,7 +29,7 @@ def three_energies(case: str) -> tuple[float, ...]:
 
 
 def curve_energies(case: str, count: int) -> tuple[float, ...]:
-    """`count` evenly spaced energies, from the paper's lowest map to the end of its curves."""
+    """Return `count` evenly spaced energies, from the paper's lowest map to the end of its curves."""
     energies = np.linspace(nine_energies(case)[0], PAPER_FITS[case].highest_energy, count)
     return tuple(energies.round(_DECIMALS).tolist())
 
