@@ -36,7 +36,7 @@ class HyperbolicTangent:
 
 @dataclass(frozen=True)
 class Polynomial:
-    """The share c0 + c1 h + c2 h² + …, valid within the range of the data. Coefficients (lowest power first) are dimensionless."""
+    """The share c0 + c1 h + c2 h² + …, valid in the range of the data. Coefficients (lowest power first) are dimensionless."""
 
     coefficients: tuple[float, ...]
 

@@ -52,7 +52,7 @@ def test_pixels_follow_the_slider_without_the_server(explorer: ExplorerPage) -> 
     explorer.wait_for_view("h=0.46&")
 
 
-def test_at_rest_the_preview_is_that_of_the_map_and_at_release_the_map_comes(explorer: ExplorerPage) -> None:
+def test_the_preview_at_rest_is_that_of_the_map_which_follows_the_release(explorer: ExplorerPage) -> None:
     explorer.drag_energy_to(0.9, let_go=False)
     explorer.wait_for_preview(0.46, least=112)
     window = explorer.window_of_pixels()

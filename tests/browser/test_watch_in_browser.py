@@ -49,7 +49,7 @@ def test_the_player_is_loaded_when_it_is_asked_for_and_the_well_drains(open_expl
     expect(play).to_be_visible()
 
 
-def test_as_many_orbits_have_left_as_of_other_starts_in_the_well(open_explorer: OpenExplorer) -> None:
+def test_as_many_orbits_have_left_as_from_other_random_starts(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,5000,1,-2")
     expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
     move_time_to(explorer, 0.2)

@@ -90,14 +90,14 @@ def equal_maps(scaled: EscapeMap, usual: EscapeMap, scaling: Scaling) -> None:
 
 @exactly_scaled
 @pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_H, Plane.TANGENTIAL])
-def test_maps_windows_and_evidence(plane: Plane, scaling: Scaling) -> None:
+def test_maps_windows_and_evidence_are_the_same_in_other_units(plane: Plane, scaling: Scaling) -> None:
     usual = escape_map(plane)
     equal_maps(escape_map(plane, scaling), usual, scaling)
     assert np.unique(usual.fate[usual.interior]).size > 1
 
 
 @exactly_scaled
-def test_follow_up_analyses(scaling: Scaling) -> None:
+def test_follow_up_analyses_are_the_same_in_other_units(scaling: Scaling) -> None:
     usual, scaled = escape_map(Plane.X_PX), escape_map(Plane.X_PX, scaling)
     trust = compute_trust(usual)
     np.testing.assert_array_equal(compute_trust(scaled).trust, trust.trust)
@@ -153,7 +153,7 @@ def sea_start() -> np.ndarray:
 
 
 @exactly_scaled
-def test_single_orbits(scaling: Scaling) -> None:
+def test_single_orbits_are_the_same_in_other_units(scaling: Scaling) -> None:
     potential, start, t_max = system()[0], sea_start(), 300.0 * UNIT_OF_TIME
     orbit = integrate_orbit(potential, start, t_max)
     scaled = integrate_orbit(scaling.potential(potential), scaling.states(start), scaling.time * t_max)
@@ -172,7 +172,7 @@ def verdicts(orbit: Orbit) -> tuple[Any, ...]:
 
 
 @exactly_scaled
-def test_measures_of_single_orbits(scaling: Scaling) -> None:
+def test_measures_of_single_orbits_are_the_same_in_other_units(scaling: Scaling) -> None:
     usual, start, t_max = system()[0], sea_start(), 100.0 * UNIT_OF_TIME
     for_both = []
     for s in (Scaling(1.0, 1.0), scaling):
@@ -192,7 +192,7 @@ def test_measures_of_single_orbits(scaling: Scaling) -> None:
 
 
 @pytest.mark.parametrize("scaling", [*INEXACT, *FAR], ids=name_of)
-def test_reviews_and_zero_velocity_curves(scaling: Scaling) -> None:
+def test_reviews_and_zero_velocity_curves_are_the_same_in_other_units(scaling: Scaling) -> None:
     (usual, energy), (potential, _) = system(), system(scaling)
     review, scaled = review_potential(usual), review_potential(potential)
     assert scaled.refusal is None is review.refusal
@@ -206,7 +206,7 @@ def test_reviews_and_zero_velocity_curves(scaling: Scaling) -> None:
 
 
 @pytest.mark.parametrize("scaling", FAR, ids=name_of)
-def test_maps_and_verdicts_in_units_that_round(scaling: Scaling) -> None:
+def test_maps_and_verdicts_are_the_same_in_units_that_round(scaling: Scaling) -> None:
     potential, energy, t_max = CASES["III"], 0.3, 2e3
     scaled = scaling.potential(potential)
     usual = compute_map(MapSpec(potential, Plane.X_PX, energy, (24, 24), t_max=t_max))

@@ -140,20 +140,20 @@ def test_legal_messages_are_reported_and_all_others_ignored(name: str) -> None:
     assert reported == [expected for _, expected in example.legal]
 
 
-def test_what_the_server_shows_has_the_count_of_what_was_given_before() -> None:
+def test_values_of_the_server_carry_the_count_of_values_given_before() -> None:
     slider = make_slider(lambda *_: None)
     send(slider, given(1.13, 3))
     slider.show(0.25)
     assert slider.shown == {"value": 0.25, "count": 3}
 
 
-def test_a_value_that_is_refused_is_counted_too_so_that_the_browser_shows_the_last_one_again() -> None:
+def test_a_refused_value_is_counted_so_that_the_browser_shows_the_previous_value_again() -> None:
     slider = make_slider(lambda *_: None)
     send(slider, given(1.13), given(11.0, 2))
     assert slider.shown == {"value": 1.13, "count": 2}
 
 
-def test_commands_that_repeat_differ() -> None:
+def test_repeated_commands_differ() -> None:
     engine, commands = BrowserEngine(lambda energy: None), []
     for _ in range(2):
         engine.play(0.2, 0.1, 0.5)

@@ -200,7 +200,7 @@ def test_starts_of_a_box_fill_it_evenly(drawn: dict[str, np.ndarray]) -> None:
 
 
 @needs_node
-def test_orbits_that_enter_stay_as_long_as_those_of_the_library(drawn: dict[str, np.ndarray]) -> None:
+def test_entering_orbits_stay_as_long_as_entering_orbits_of_the_library(drawn: dict[str, np.ndarray]) -> None:
     potential, t_max = System("III").potential, 100.0
     # Orbits that are still inside at t_max have no escape time; t_max stands for it.
     found, wanted = (
@@ -215,7 +215,7 @@ def test_orbits_that_enter_stay_as_long_as_those_of_the_library(drawn: dict[str,
 
 
 @needs_node
-def test_of_the_orbits_at_the_tubes_one_half_leaves_where_the_other_turns_back(drawn: dict[str, np.ndarray]) -> None:
+def test_half_of_the_orbits_at_the_tubes_leaves_where_the_other_half_turns_back(drawn: dict[str, np.ndarray]) -> None:
     potential, states = System("III").potential, drawn["tubes"]
     outcomes = classify_orbits(potential, 0.45, states, 100.0)
     leave = np.abs(outcomes.escape_time - BEFORE_EXIT) < 1.0

@@ -24,7 +24,7 @@ def look_at(potential: Potential, energy: float, folder: Path) -> Any:
 
 
 @needs_node
-def test_circles_are_drawn_closed_as_far_from_their_centres_as_they_are_without_a_number(tmp_path: Path) -> None:
+def test_circles_are_closed_curves_at_their_radius_without_a_number(tmp_path: Path) -> None:
     potential = parse_formula("2(x² + y²)").with_outcomes([DISC], RADIUS)
     lines = look_at(potential, 0.3, tmp_path)["lines"]
     assert [line["channel"] for line in lines] == [1, 2]

@@ -20,7 +20,7 @@ def test_a_drag_with_thirty_messages_per_second_never_waits() -> None:
         assert share.wait_seconds() == 0.0
 
 
-def test_a_page_that_takes_all_it_gets_has_its_share_after_the_burst() -> None:
+def test_a_greedy_page_gets_its_share_after_the_burst() -> None:
     clock, taken = Clock(), 0.0
     share, begin = FairShare(clock.monotonic), clock.now
     while clock.now < begin + 100.0:

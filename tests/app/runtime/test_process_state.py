@@ -29,7 +29,7 @@ class SparedJobs(Jobs):
         self.spared.append(spared)
 
 
-def test_work_is_put_off_while_the_pages_may_take_more_than_the_processors_have() -> None:
+def test_work_is_postponed_while_pages_may_take_more_processor_time_than_there_is() -> None:
     clock, loop = Clock(), iter((0.0, 0.9, 0.9))
     state = ProcessState(Settings())
     state.jobs = jobs = SparedJobs()

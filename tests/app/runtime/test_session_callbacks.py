@@ -61,7 +61,7 @@ def test_calls_of_threads_run_on_the_loop_with_the_document_whose_changes_are_he
     run_on_new_loop(scenario)
 
 
-def test_a_page_that_is_made_on_a_thread_has_its_calls_on_the_loop_of_the_server() -> None:
+def test_calls_of_a_page_made_on_a_thread_run_on_the_loop_of_the_server() -> None:
     async def scenario() -> None:
         (session, _owner), calls = await new_session(), Calls()
         callbacks = await asyncio.to_thread(SessionCallbacks, session.document, asyncio.get_running_loop())
@@ -71,7 +71,7 @@ def test_a_page_that_is_made_on_a_thread_has_its_calls_on_the_loop_of_the_server
     run_on_new_loop(scenario)
 
 
-def test_of_calls_that_wait_for_the_lock_only_the_latest_runs() -> None:
+def test_only_the_latest_of_the_calls_that_wait_for_the_lock_runs() -> None:
     async def scenario() -> None:
         (session, _owner), calls = await new_session(), Calls()
         call = SessionCallbacks(session.document).latest(calls.add)

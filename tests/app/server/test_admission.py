@@ -87,7 +87,7 @@ def test_the_only_visitor_of_a_busy_server_may_reload_the_page(state: ProcessSta
 
 
 @pytest.mark.usefixtures("state")
-def test_an_old_token_is_good_for_its_open_session_only() -> None:
+def test_an_old_token_opens_only_its_open_session() -> None:
     token = new_token(age=300.0)
     check_session(token, SimpleNamespace(sessions=[SimpleNamespace(id=get_session_id(token))]), "192.0.2.1", APPLICATION)
     with pytest.raises(ProtocolError, match="ended"):

@@ -72,7 +72,7 @@ def ask_at_once(state: ProcessState, pages: AdmittedPages) -> list[int]:
     return run_on_new_loop(scenario)
 
 
-def test_others_are_served_between_two_pages(start: Callable[..., ProcessState]) -> None:
+def test_other_requests_are_served_between_two_pages(start: Callable[..., ProcessState]) -> None:
     pages = AdmittedPages()
     assert ask_at_once(start(pages_per_address=COUNT), pages) == [200] * COUNT
     assert pages.events == ["page", "another"] * COUNT

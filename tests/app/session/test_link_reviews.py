@@ -76,7 +76,7 @@ def test_a_circular_potential_in_a_link_is_refused_in_another_process(called: li
     assert not called
 
 
-def test_a_link_is_shown_whole_when_its_potential_has_passed(called: list[str]) -> None:
+def test_a_link_is_shown_whole_after_the_review_of_its_potential(called: list[str]) -> None:
     asked = {"plane": "x_y", "h": "0.4", "window": "-1,1,-0.5,0.5", "orbits": "0.1,0.2", "resolution": "112", "t_max": "100"}
 
     async def check(explorer: Explorer) -> None:

@@ -1,3 +1,5 @@
+"""The explorer in a notebook cell opens the page at a map."""
+
 from __future__ import annotations
 
 import re

@@ -81,7 +81,7 @@ def test_keys_and_titles_are_unique() -> None:
     assert len({preset.key for preset in PRESETS}) == len({preset.title for preset in PRESETS}) == len(PRESETS)
 
 
-def test_all_groups_cases_planes_and_pictures_occur() -> None:
+def test_presets_cover_all_groups_cases_planes_and_pictures() -> None:
     places = [preset for preset in PRESETS if preset.group == "Places"]
     assert len(places) >= 12
     assert {preset.group for preset in PRESETS} == set(GROUPS)
@@ -197,7 +197,7 @@ def near(share: float, count: int) -> Any:
     return pytest.approx(share, abs=0.005 + 5.5 * math.sqrt(share * (1.0 - share) / count))
 
 
-def test_as_many_orbits_are_left_as_the_caption_of_the_draining_well_says() -> None:
+def test_the_caption_of_the_draining_well_has_the_share_of_remaining_orbits() -> None:
     count = 40_000
     times = classify_orbits(CASES["III"], 0.45, sample_starts(CASES["III"], 0.45, count, seed=1), t_max=50.0).escape_time
     left = [float(np.mean(~(times <= t))) for t in (5.0, 50.0)]
@@ -205,7 +205,7 @@ def test_as_many_orbits_are_left_as_the_caption_of_the_draining_well_says() -> N
     assert math.exp(-50.0 * compute_flux(CASES["III"], 0.45).decay_rate) == pytest.approx(1 / 4000, rel=0.1)
 
 
-def test_orbits_that_are_torn_leave_when_the_caption_says() -> None:
+def test_the_orbits_of_the_torn_disc_leave_when_the_caption_says() -> None:
     view = view_of("torn")
     window, ((x, px),) = spec_of(view).find_window(), view.starts
     random, count = np.random.default_rng(4), 20_000

@@ -1,3 +1,5 @@
+"""Birkhoff averages agree to many digits on tori, and to few digits on chaotic and escaping orbits."""
+
 from __future__ import annotations
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Curves through section points enclose the right area, and escaping orbits lie inside them."""
+
 from __future__ import annotations
 
 from collections.abc import Callable

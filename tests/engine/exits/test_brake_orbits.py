@@ -1,3 +1,5 @@
+"""Lyapunov orbits of wells at rest lie on their exit curves, and are the same from both ends."""
+
 from __future__ import annotations
 
 import numpy as np

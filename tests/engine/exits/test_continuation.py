@@ -29,7 +29,7 @@ def test_steps_are_halved_where_the_solution_is_not_found() -> None:
     assert values == pytest.approx([0.0, 0.0625, 0.125, 0.1875, 0.25, 0.375, 0.625, 1.0])
 
 
-def test_a_solution_that_ceases_to_exist_on_the_way_gives_none() -> None:
+def test_a_solution_that_ceases_to_exist_on_the_way_is_not_found() -> None:
     assert reached_with(lambda value: 0.7 - value) is None
 
 

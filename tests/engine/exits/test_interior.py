@@ -1,3 +1,5 @@
+"""The interior is the region connected with the origin without crossing an exit."""
+
 from __future__ import annotations
 
 import numpy as np

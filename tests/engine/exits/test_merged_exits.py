@@ -58,7 +58,7 @@ def random_states(potential: Potential, energy: float, count: int) -> np.ndarray
     return np.column_stack([place, speed * np.cos(angle), speed * np.sin(angle)])
 
 
-def test_channels_on_both_sides_of_a_maximum_are_one_exit_above_it() -> None:
+def test_channels_on_both_sides_of_a_maximum_are_one_exit_above_its_energy() -> None:
     assert [orbit.name for orbit in find_lyapunov_orbits(SYMMETRIC, 0.99 * MAXIMUM)] == ["1", "2", "3", "4"]
     assert [orbit.name for orbit in find_lyapunov_orbits(SYMMETRIC, ABOVE * MAXIMUM)] == ["1+2", "3+4"]
     labels = [outcome.label for outcome in SYMMETRIC.outcomes_at(ABOVE * MAXIMUM)]
@@ -149,7 +149,7 @@ def test_maps_and_single_orbits_agree_and_mirror_images_leave_through_the_mirror
     np.testing.assert_array_equal(classify_orbits(SYMMETRIC, energy, states, 100.0).fate, frame.fate[rows, columns])
 
 
-def test_a_plane_of_energies_names_exits_from_the_energy_on_at_which_they_merge() -> None:
+def test_a_plane_of_energies_names_merged_exits_above_their_energy() -> None:
     spec = MapSpec(SYMMETRIC, Plane.X_H, (0.9 * MAXIMUM, ABOVE * MAXIMUM), (6, 2), t_max=20.0)
     assert spec.outcomes[0].label == f"exit 1, 1+2 above h = {MAXIMUM:.6g}"
     fates = compute_map(spec).fate

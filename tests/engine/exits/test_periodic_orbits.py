@@ -48,7 +48,7 @@ def crossings_of(mu: float | None, period: float, path: np.ndarray) -> np.ndarra
 
 
 @each_well
-def test_brake_orbits_are_found_by_continuation_too(potential: Potential, energy: float) -> None:
+def test_brake_orbits_are_also_found_by_continuation(potential: Potential, energy: float) -> None:
     scaled = energy / potential.units.energy
     for expected in find_lyapunov_orbits(potential.in_well_units, scaled):
         orbit = find_orbit_in_rotating_frame(potential.in_well_units, scaled, expected.channel)
@@ -82,7 +82,7 @@ def test_orbits_of_earth_and_moon_are_those_of_the_catalogue(
     assert 0.5 * (largest + 1.0 / largest) == pytest.approx(stability, rel=1e-7)
 
 
-def test_orbit_of_oterma_is_that_of_a_computer_assisted_proof() -> None:
+def test_the_orbit_of_oterma_agrees_with_a_computer_assisted_proof() -> None:
     """Wilczak & Zgliczyński 2003, Commun. Math. Phys. 234, 37 (arXiv math/0201278): μ = 0.0009537, C = 3.03.
 
     Their C includes μ(1 − μ). They enclose the points in which the Lyapunov orbits cross y = 0. The CAPD library, which they

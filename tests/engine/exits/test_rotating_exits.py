@@ -121,7 +121,7 @@ def test_orbits_that_have_crossed_the_line_do_not_return_to_the_well(energy: flo
         pytest.param("Logarithmic bar", -0.308, marks=pytest.mark.slow),
     ],
 )
-def test_exits_end_where_the_document_says(name: str, highest: float) -> None:
+def test_exits_end_at_the_energies_in_the_document(name: str, highest: float) -> None:
     step = 1e-3 * abs(highest)
     assert find_lyapunov_orbits(POTENTIALS[name], highest - step)
     with pytest.raises(ValueError, match="does not end on the walls"):

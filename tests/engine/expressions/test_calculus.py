@@ -90,7 +90,7 @@ def test_values_have_the_parity_exactly(seed: int, axis: int) -> None:
         ("√(1 + (x − 1)²) + √(1 + (x + 1)²)", NEITHER, EVEN),
     ],
 )
-def test_parities(text: str, in_x: int, in_y: int) -> None:
+def test_known_expressions_have_their_parities(text: str, in_x: int, in_y: int) -> None:
     definition = parse_formula(text).form.definition
     assert isinstance(definition, Expression)
     assert (parity(definition, 0), parity(definition, 1)) == (in_x, in_y)

@@ -1,3 +1,5 @@
+"""Parallel calls cover all parts, report progress, and end with an error when calls are cancelled or lost."""
+
 from __future__ import annotations
 
 import threading
@@ -61,7 +63,7 @@ class Terminal(StringIO):
         return True
 
 
-def test_a_bar_is_shown_in_a_terminal_where_nobody_follows_the_progress() -> None:
+def test_a_bar_is_shown_in_a_terminal_unless_progress_has_a_listener() -> None:
     with redirect_stderr(Terminal()), ThreadPoolExecutor(1) as thread:
         assert callable(long_call())
         assert long_call(on_frame=print) is None

@@ -79,7 +79,7 @@ def test_the_former_request_of_curves_is_one_of_a_sweep() -> None:
     assert spec == SweepSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
 
 
-def test_an_unknown_name_is_no_former_one() -> None:
+def test_an_unknown_name_is_not_taken_for_a_former_name() -> None:
     with pytest.raises(AttributeError, match="no attribute 'Certificates'"):
         engine.Certificates  # type: ignore[attr-defined]  # noqa: B018
 

@@ -1,3 +1,5 @@
+"""Roots are those of SciPy, and invalid brackets are refused."""
+
 from __future__ import annotations
 
 import math

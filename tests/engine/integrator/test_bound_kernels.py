@@ -1,3 +1,5 @@
+"""Potentials of one structure share generated code."""
+
 from __future__ import annotations
 
 import threading
@@ -34,7 +36,7 @@ def test_a_potential_of_the_same_powers_may_need_other_functions() -> None:
     assert not bound_kernels.is_generated(strong, setting)
 
 
-def test_known_functions_are_there_while_others_are_generated(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_known_functions_are_available_while_others_are_generated(monkeypatch: pytest.MonkeyPatch) -> None:
     bound_kernels.load_kernels(TERMS, 0)
     begun, end = threading.Event(), threading.Event()
 

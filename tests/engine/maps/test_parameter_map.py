@@ -1,3 +1,5 @@
+"""Each line of a map along a parameter is the map of one potential."""
+
 from __future__ import annotations
 
 import threading

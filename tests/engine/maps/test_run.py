@@ -93,7 +93,7 @@ def test_a_map_interrupted_at_any_call_is_resumed_to_the_same_result(name: str) 
         assert_same_map(compute_map(spec, resume=interrupted), at_once(spec))
 
 
-def test_a_test_for_evidence_that_is_interrupted_leaves_none() -> None:
+def test_an_interrupted_test_for_evidence_leaves_no_evidence() -> None:
     spec, counter = SPECS["III"], CallCounter()
     after_each_test = [early(compute_map(replace(spec, t_max=t_max))) for t_max in (1e3, 1e4)] + [early(at_once(spec))]
     compute_map(spec, executor=counter)

@@ -1,3 +1,5 @@
+"""Requests of maps have pixel centres, windows and resolutions without starts on lines of symmetry."""
+
 from __future__ import annotations
 
 from dataclasses import astuple, fields, replace

@@ -59,7 +59,7 @@ def test_frames_begin_after_the_first_stage_and_end_with_one_complete_frame() ->
     assert [frame.complete for frame in frames] == [False] * 5 + [True]
 
 
-def test_between_frames_is_a_pause() -> None:
+def test_there_is_a_pause_between_frames() -> None:
     frames: list[Count] = []
     run_stages(Counting(), Execution(), frames.append, lambda _elapsed: 60.0)
     assert [frame.done for frame in frames] == [2]

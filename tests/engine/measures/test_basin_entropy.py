@@ -1,3 +1,5 @@
+"""Basin entropy agrees with a simple loop, known distributions and published values."""
+
 from __future__ import annotations
 
 import math

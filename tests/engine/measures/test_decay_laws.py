@@ -1,3 +1,5 @@
+"""Fits of decay laws recover the law, rate and interval of random samples."""
+
 from __future__ import annotations
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Statistics count every interior start once, also of unfinished maps and single windows."""
+
 from __future__ import annotations
 
 import threading

@@ -1,3 +1,5 @@
+"""Fits of uncertain pairs recover exact power laws and the dimension of the Cantor set."""
+
 from __future__ import annotations
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+"""Measures count the right starts of a map, and Wilson's intervals are those of SciPy."""
+
 from __future__ import annotations
 
 from collections.abc import Callable

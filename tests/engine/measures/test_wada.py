@@ -1,3 +1,5 @@
+"""The merging test agrees with a comparison of all pixels, and tells Wada basins from others."""
+
 from __future__ import annotations
 
 import math

@@ -1,3 +1,5 @@
+"""Exits followed along a parameter are those of each potential, and keep their numbers."""
+
 from __future__ import annotations
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Starts, limits, mirror images and windows of arbitrary slices follow from their definitions."""
+
 from __future__ import annotations
 
 import numpy as np

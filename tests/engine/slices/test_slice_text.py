@@ -1,3 +1,5 @@
+"""Slices are read as they were written."""
+
 from __future__ import annotations
 
 import pytest

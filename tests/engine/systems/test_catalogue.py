@@ -1,3 +1,5 @@
+"""Entries of the catalogue have the exits, energies and integrals of the literature."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -13,7 +15,7 @@ each_entry = pytest.mark.parametrize("name", POTENTIALS)
 
 
 @each_entry
-def test_entry_is_complete(name: str) -> None:
+def test_each_entry_is_complete(name: str) -> None:
     entry = CATALOGUE[name]
     assert entry.name == POTENTIALS[name].name == name
     assert entry.title

@@ -46,7 +46,7 @@ def test_the_lowest_exit_of_de_leon_and_berne_is_the_saddle_of_their_formula() -
     np.testing.assert_allclose(lowest + potential.origin, 0.0, atol=1e-14)
 
 
-def test_v_is_the_same_at_the_same_place() -> None:
+def test_moved_axes_leave_v_at_each_place_unchanged() -> None:
     formula = MUELLER_BROWN
     typed, moved = parse_formula(formula), parse_formula(f"{formula}; well (0, 0)")
     x, y = np.random.default_rng(3).uniform(-0.7, 0.7, (2, 50))

@@ -52,7 +52,7 @@ def test_digits_of_a_torus_rise_to_those_of_evidence() -> None:
 
 
 @pytest.mark.parametrize(("t_max", "count"), [(1999.0, 0), (2000.0, 1), (8000.0, 2)])
-def test_two_windows_must_fit_into_t_max(t_max: float, count: int) -> None:
+def test_two_windows_of_digits_must_fit_into_t_max(t_max: float, count: int) -> None:
     assert compute_birkhoff_digits(CASES["II"], SEA, t_max).windows.tolist() == list(WINDOWS[:count])
 
 

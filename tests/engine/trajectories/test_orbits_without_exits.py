@@ -80,7 +80,7 @@ def test_an_exit_all_around_a_well_is_not_needed() -> None:
         ("III", (0.1, 0.0, 0.3, 0.0), 3000.0, "the orbit runs along an axis"),
     ],
 )
-def test_why_there_are_no_digits_is_true(name: str, state: tuple[float, ...], t_max: float, reason: str) -> None:
+def test_the_reason_for_missing_digits_is_true(name: str, state: tuple[float, ...], t_max: float, reason: str) -> None:
     potential = POTENTIALS[name]
     orbit, digits = integrate_orbit(potential, state, t_max), compute_birkhoff_digits(potential, state, t_max)
     assert orbit.fate == Fate.BOUNDED

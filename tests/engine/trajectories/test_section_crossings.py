@@ -1,3 +1,5 @@
+"""Section points of an orbit are as many as its crossings, and agree with an event finder."""
+
 from __future__ import annotations
 
 from dataclasses import replace

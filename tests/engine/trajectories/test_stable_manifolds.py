@@ -1,3 +1,5 @@
+"""Arcs of stable manifolds separate escaping orbits from orbits that turn back."""
+
 from __future__ import annotations
 
 import math

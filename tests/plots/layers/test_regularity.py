@@ -48,7 +48,7 @@ def test_the_legend_has_orbits_that_are_not_judged_while_there_may_be_some() -> 
     assert [unjudged in each for each in labels] == [True, True, False]
 
 
-def test_tori_are_regular() -> None:
+def test_orbits_on_tori_are_regular_before_they_are_judged() -> None:
     whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.28, (41, 41), t_max=1e4))
     colours = painted(whole)
     tori = whole.evidence == Evidence.QUASI_PERIODIC

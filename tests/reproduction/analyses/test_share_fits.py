@@ -1,3 +1,5 @@
+"""Fits of shares recover curves, and their intervals cover the true parameters."""
+
 from __future__ import annotations
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""The search continues exactly the chaotic bounded orbits of a map."""
+
 from __future__ import annotations
 
 import threading

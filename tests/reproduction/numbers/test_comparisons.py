@@ -95,7 +95,7 @@ def test_direct_escapes_have_no_crossing() -> None:
     assert measure(DIRECT).computed == pytest.approx((100.0 * direct,))
 
 
-def test_the_search_gives_the_last_escape_and_the_nearest_to_the_stated_one() -> None:
+def test_the_search_gives_the_last_escape_and_the_escape_nearest_to_the_stated_time() -> None:
     last = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_ESCAPE, Relation.ABOUT, 3.5e6)
     nearest = replace(last, quantity=Quantity.NEAREST_ESCAPE, value=851e3, channels=(2,))
     chaotic = replace(last, quantity=Quantity.CHAOTIC, value=10.0)

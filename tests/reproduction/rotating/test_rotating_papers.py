@@ -37,7 +37,7 @@ def with_fates(computed: EscapeMap, columns: list[int]) -> EscapeMap:
     return replace(computed, fate=np.tile(np.array(columns, np.int8), (SIDE, 1)), escape_time=times)
 
 
-def test_shares_of_outcomes_add(computed: EscapeMap) -> None:
+def test_shares_of_several_outcomes_add_up(computed: EscapeMap) -> None:
     frame = with_fates(computed, [1] * 6 + [2] * 3 + [BOUNDED] * 3)
     assert outcome_share(frame, 1) == 50.0
     assert outcome_share(frame, 2, BOUNDED) == 50.0

@@ -50,7 +50,7 @@ def drawers(builds: Builds) -> Drawers:
     return Drawers({name: (label, f"Title {name}", builds.maker(name)) for name, label in labels.items()})
 
 
-def test_a_drawer_without_a_button_is_replaced_by_one_that_has(drawers: Drawers) -> None:
+def test_a_drawer_without_a_button_is_replaced_by_a_drawer_with_a_button(drawers: Drawers) -> None:
     drawers.buttons.value = ["a"]
     drawers.show("plain")
     assert (drawers.shown, drawers.buttons.value) == ("plain", [])

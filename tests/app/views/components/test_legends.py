@@ -31,7 +31,7 @@ def entries(html: str) -> list[tuple[str, str]]:
     return [(label.replace("&gt;", ">"), colour) for colour, label in PATCH.findall(html)]
 
 
-def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whole_ones_as_titles() -> None:
+def test_legends_name_only_outcomes_of_the_map_and_short_labels_have_the_whole_labels_as_titles() -> None:
     labels = [label for label, _ in entries(legend("basins", fates=frozenset({int(Fate.BOUNDED)})))]
     assert labels == ["1", "2", "3", "bounded"]
     html = legend("basins")
@@ -39,7 +39,7 @@ def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whol
     assert "title='exit 2'" in html
 
 
-def test_crossings_have_their_classes_and_what_is_drawn_over_them() -> None:
+def test_the_legend_of_crossings_has_their_classes_and_the_layers_over_them() -> None:
     expected = [(entry.label, entry.colour) for entry in PAPER.crossing_entries]
     assert entries(legend("crossings")) == expected
     html = legend("crossings", results={"trust": None})

@@ -44,9 +44,9 @@ def test_lines_do_not_break_inside_a_number(text: str, whole: str) -> None:
     assert typeset(text) == whole.replace("~", "\N{NO-BREAK SPACE}").replace("_", "\N{NARROW NO-BREAK SPACE}")
 
 
-def test_percentages() -> None:
+def test_percentages_have_a_unit_and_a_fixed_number_of_digits() -> None:
     assert (percent(0.0333), percent(0.5, 0), percent(1.0, 2)) == ("3.3 %", "50 %", "100.00 %")
 
 
-def test_a_range_of_percentages() -> None:
+def test_a_range_of_percentages_has_one_sign() -> None:
     assert percent_range(0.0321, 0.034) == "3.21 to 3.40 %"

@@ -48,7 +48,7 @@ def test_the_mode_chooses_the_active_tool(maps: MapsView, drag: Drag, kind: type
     assert len(tools(maps, BoxSelectTool)) == (drag is Drag.COUNT)
 
 
-def test_on_touch_screens_the_tool_of_the_wheel_leaves_two_fingers_alone(maps: MapsView) -> None:
+def test_on_touch_screens_the_wheel_tool_ignores_two_fingers(maps: MapsView) -> None:
     assert tools(maps, WheelZoomTool)
     maps.begin_touch()
     assert not tools(maps, WheelZoomTool)

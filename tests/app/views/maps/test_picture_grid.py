@@ -66,7 +66,7 @@ def test_of_many_pictures_one_is_twice_as_large_and_the_others_have_no_axes() ->
 
 
 @pytest.mark.parametrize(("on_demand", "largest"), [((), "basins"), (("characters",), "characters"), (("origins",), "origins")])
-def test_the_largest_picture_is_that_of_the_layer_that_is_on(on_demand: tuple[str, ...], largest: str) -> None:
+def test_the_picture_of_an_active_layer_is_the_largest(on_demand: tuple[str, ...], largest: str) -> None:
     assert named(grid(*on_demand), "picked") == [largest]
 
 

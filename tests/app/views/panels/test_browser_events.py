@@ -23,7 +23,7 @@ def test_keys_that_a_page_does_not_use_are_left_to_the_browser() -> None:
     assert events.layout().keys == ["h"]
 
 
-def test_each_address_is_a_change_that_says_which_steps_through_the_history_it_knows() -> None:
+def test_each_change_of_the_address_names_the_last_known_steps_through_the_history() -> None:
     events, _ = events_of()
     written: list[Any] = []
     events.layout().param.watch(lambda event: written.append(event.new), "address")

@@ -36,7 +36,7 @@ def test_the_frame_shows_the_view_and_its_large_picture_or_else_the_basins(focus
     assert (values["focus"], values["starts"], values["layers"]) == (picture, ((0.1, 0.2),), {"judge"})
 
 
-def test_texts_are_no_markup() -> None:
+def test_texts_are_escaped() -> None:
     link = OpenLink()
     link.show('?V="><script>')
     assert "<script>" not in link.pane.object

@@ -75,7 +75,7 @@ def form(results: ShownResults, saved: KeptFiles) -> FigureForm:
     return FigureForm(state, results, saved, lambda ending: f"escapes{ending}", lambda copied: None)
 
 
-def test_what_is_shown_can_be_drawn(shown: ShownResults) -> None:
+def test_figures_are_offered_for_the_shown_results(shown: ShownResults) -> None:
     state = ViewState(system=System("I"), energy=0.19)
     assert list(figure_choices(ShownResults(), state)) == []
     maps = [ALL_MAPS, "Basins of escape", "Escape time", "Crossings of y = 0"]

@@ -78,7 +78,7 @@ def test_a_parameter_slice_follows_another_system_that_has_the_parameter(drawer:
     assert drawer.state.plane == Slice(C.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))
 
 
-def test_letters_of_a_formula_are_axes_which_another_system_does_not_have(drawer: Drawer) -> None:
+def test_letters_of_a_formula_are_axes_of_this_system_only(drawer: Drawer) -> None:
     reviewed = review_system(System(TYPED, "0.5(x^2+y^2) - a x y^2"))
     drawer.state.show_system(reviewed)
     drawer.panel.axes[1].value = "a"

@@ -1,3 +1,5 @@
+"""Bounded pixels are judged as single orbits are."""
+
 from __future__ import annotations
 
 import threading

@@ -1,3 +1,5 @@
+"""Doubtful pixels are those whose outcome changes in direct reruns, and heyoka agrees on the others."""
+
 from __future__ import annotations
 
 import threading
@@ -93,7 +95,7 @@ def test_bounded_orbits_of_a_slow_chaotic_sea_are_doubtful() -> None:
 
 
 @pytest.mark.slow
-def test_shifts_do_not_free_trusted_bounded_orbits() -> None:
+def test_shifted_trusted_bounded_orbits_stay_bounded() -> None:
     spec = MapSpec(CASES["III"], Plane.X_Y, 0.3, (57, 57))
     whole = compute_map(spec)
     trusted = np.isin(compute_trust(whole).trust, (Trust.LIKE_NEIGHBOURS, Trust.CONFIRMED))

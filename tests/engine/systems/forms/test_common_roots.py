@@ -80,7 +80,7 @@ def test_complex_roots_are_left_out() -> None:
         ((X - 1) ** 2 * (X - 3), Y - X, [(1, 1, 2), (3, 3, 1)]),
     ],
 )
-def test_multiplicities(p: sympy.Expr, q: sympy.Expr, expected: list[tuple[int, int, int]]) -> None:
+def test_common_roots_have_their_multiplicities(p: sympy.Expr, q: sympy.Expr, expected: list[tuple[int, int, int]]) -> None:
     np.testing.assert_array_equal(roots_of(p, q), expected)
 
 

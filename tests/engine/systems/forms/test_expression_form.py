@@ -72,7 +72,7 @@ def test_parameters_change_the_quadratic_terms_and_the_rest() -> None:
 @pytest.mark.parametrize(
     ("text", "n"), [("½r² − 0.2(x⁴ + y⁴)exp(−r²)", 4), ("log(1 + r²)", 0), (TEXT, 1), ("cos(x) + cos(2y)", 2)]
 )
-def test_rotations(text: str, n: int) -> None:
+def test_formulas_have_their_number_of_rotations(text: str, n: int) -> None:
     assert parse_formula(text).form.count_rotations() == n
 
 

@@ -24,7 +24,7 @@ def points_of(potential: Potential) -> np.ndarray:
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("scale", [2.0**-10])
-def test_those_of_a_polynomial_are_found_in_any_unit(name: str, scale: float) -> None:
+def test_critical_points_of_a_polynomial_are_found_in_any_unit(name: str, scale: float) -> None:
     scaled = Potential("", CASES[name].form.scaled(1.0 / scale, 1.0))
     expected = scaled.critical_points
     np.testing.assert_allclose(points_of(scaled), expected[np.lexsort(expected.round(9).T)], rtol=1e-10, atol=1e-14 * scale)
@@ -61,7 +61,7 @@ def test_a_region_in_which_v_is_not_defined_is_refused() -> None:
         ("1e4(x² + y²) + 1e4(x⁴ + y⁴)", "No saddle leads out"),
     ],
 )
-def test_reasons_for_refusal(text: str, reason: str) -> None:
+def test_refusals_have_reasons(text: str, reason: str) -> None:
     assert reason in str(review_potential(parse_formula(text)).refusal)
 
 
@@ -105,5 +105,5 @@ def test_points_in_narrow_places_are_found(text: str, points: int, minima: int) 
         "½(x² + y²) − x²y² + 1e-4exp(−2.5e7(x² + y² − 0.0025)²)",
     ],
 )
-def test_what_is_not_proved_is_refused(text: str) -> None:
+def test_unproved_critical_points_are_refused(text: str) -> None:
     assert "is not decided within the limit on the work" in str(review_potential(parse_formula(text)).refusal)

@@ -1,3 +1,5 @@
+"""Reviews accept unusual wells, and refuse others with a reason."""
+
 from __future__ import annotations
 
 import time
@@ -51,7 +53,7 @@ def test_degenerate_point_outside_the_well_is_refused() -> None:
 
 
 @pytest.mark.parametrize("n", [5, 8])
-def test_family_symmetries(n: int) -> None:
+def test_the_family_has_its_symmetries(n: int) -> None:
     review = review_potential(channel_family(n))
     assert (review.mirror_in_x, review.mirror_in_y, review.rotations) == (n % 2 == 0, True, n)
 
