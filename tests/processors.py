@@ -1,4 +1,4 @@
-"""Environments in which libraries compute as on another processor."""
+"""Environment variables with which libraries compute as on another processor."""
 
 from __future__ import annotations
 

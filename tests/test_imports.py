@@ -1,4 +1,4 @@
-"""What modules import and read when they are imported: in child processes that have imported the engine and the command line."""
+"""Importing a module imports no large libraries and reads no settings, in child processes that have imported the engine."""
 
 from __future__ import annotations
 

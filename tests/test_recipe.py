@@ -18,7 +18,7 @@ NAMES = {"matplotlib-base": "matplotlib"}
 
 
 def required(part: str) -> set[str]:
-    """The requirements of a part of the recipe, as pyproject.toml writes them."""
+    """Return the requirements of a part of the recipe, as pyproject.toml writes them."""
     pairs = (re.split(r"\s+", line, maxsplit=1) for line in RECIPE["requirements"][part])
     return {NAMES.get(name, name) + "".join(version) for name, *version in pairs}
 

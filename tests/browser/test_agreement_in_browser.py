@@ -1,4 +1,4 @@
-"""Address, widgets and view state agree when the server changes widgets in quick succession."""
+"""Address, widgets and view state agree after quick changes of widgets by the server."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ def opened(open_for_all: OpenExplorer) -> ExplorerPage:
 
 
 def shown_figures(explorer: ExplorerPage) -> set[str]:
-    """Names of the figures that are visible."""
+    """Return names of the figures that are visible."""
     return set(
         explorer.page.evaluate(
             """() => [...Bokeh.index.all_views()].filter(view => view.model.type == "Figure" && view.el.offsetWidth > 0)

@@ -1,4 +1,4 @@
-"""One picture in a frame of another page."""
+"""A frame in another page shows one picture."""
 
 from __future__ import annotations
 

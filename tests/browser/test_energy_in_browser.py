@@ -1,4 +1,4 @@
-"""The energy, dragged and played: the browser's pixels on the way, the server's map where it ends."""
+"""While the energy is dragged or played, the browser's pixels are shown; where it ends, the server's map."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def exact_energy(explorer: ExplorerPage) -> Locator:
 
 
 def moving_picture(explorer: ExplorerPage) -> Locator:
-    """The canvas over one of the pictures while the energy moves."""
+    """Return the canvas over one of the pictures while the energy moves."""
     return explorer.page.locator("canvas[data-energy]").first
 
 

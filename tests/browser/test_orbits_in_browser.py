@@ -1,4 +1,4 @@
-"""Orbits, several at once: marked, compared, played."""
+"""Several orbits are marked, compared and played."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_a_time_moves_along_path_sali_and_r2_together(explorer: ExplorerPage) ->
 
 
 def places(explorer: ExplorerPage) -> dict[str, Any]:
-    """Places and sizes of the parts of the inspector, which must all be on the page."""
+    """Return places and sizes of the parts of the inspector, which must all be on the page."""
     found = {part: explorer.page.locator(f".{part}").first.bounding_box() for part in PARTS}
     assert None not in found.values()
     return dict(found)

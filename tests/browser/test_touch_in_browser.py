@@ -1,4 +1,4 @@
-"""The page under the fingers: one scrolls it, two move and zoom a map."""
+"""One finger scrolls the page; two fingers move and zoom a map."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ def move_fingers(explorer: ExplorerPage, *paths: Path) -> None:
 
 
 def middle_of(explorer: ExplorerPage) -> np.ndarray:
-    """The middle of the picture on the screen."""
+    """Return the middle of the picture on the screen."""
     (x, _), (ordinate, _) = window(explorer)
     return np.array(explorer.point("basins", x, ordinate))
 
 
 def window(explorer: ExplorerPage) -> np.ndarray:
-    """Middle and side of the window on each axis, shape (2, 2)."""
+    """Return the middle and side of the window on each axis, shape (2, 2)."""
     x_low, x_high, low, high = explorer.ranges("basins")
     return np.array([[0.5 * (x_low + x_high), x_high - x_low], [0.5 * (low + high), high - low]])
 

@@ -1,4 +1,4 @@
-"""Many orbits leave the well in the browser: played, stepped, moved in time, and the same again from the link."""
+"""Many orbits leave the well in the browser. They are played, moved in time, and brought back by the link."""
 
 from __future__ import annotations
 

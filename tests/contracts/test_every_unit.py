@@ -1,4 +1,4 @@
-"""Every public result is the same one in other units: under x → L x, V → E V and m → M m, times scale as L √(M/E).
+"""Every public result is the same in other units: under x → L x, V → E V and m → M m, times scale as L √(M/E).
 
 With L a power of 2, and E and M powers of 4, all conversions are exact, and so must be the results.
 """
@@ -68,7 +68,7 @@ exactly_scaled = pytest.mark.parametrize(
 
 
 def system(scaling: Scaling | None = None) -> tuple[Potential, float]:
-    """The potential and an energy above its escape energy."""
+    """Return the potential and an energy above its escape energy."""
     return (SKEW, ENERGY) if scaling is None else (scaling.potential(SKEW), scaling.energy * ENERGY)
 
 
@@ -111,7 +111,7 @@ def rescaled(orbit: LyapunovOrbit, scaling: Scaling) -> tuple[Any, ...]:
 
 
 @exactly_scaled
-def test_lyapunov_orbits(scaling: Scaling) -> None:
+def test_lyapunov_orbits_are_the_same_in_other_units(scaling: Scaling) -> None:
     usual, scaled = find_lyapunov_orbits(*system()), find_lyapunov_orbits(*system(scaling))
     assert len(scaled) == len(usual) > 0
     for orbit, other in zip(scaled, usual, strict=True):
@@ -120,7 +120,7 @@ def test_lyapunov_orbits(scaling: Scaling) -> None:
 
 
 @exactly_scaled
-def test_stable_manifolds(scaling: Scaling) -> None:
+def test_stable_manifolds_are_the_same_in_other_units(scaling: Scaling) -> None:
     usual, scaled = find_stable_manifolds(*system(), images=2), find_stable_manifolds(*system(scaling), images=2)
     assert len(scaled.arcs) == len(usual.arcs) > 0
     assert scaled.truncated == usual.truncated
@@ -131,7 +131,7 @@ def test_stable_manifolds(scaling: Scaling) -> None:
 
 
 @exactly_scaled
-def test_uncertainty_exponents(scaling: Scaling) -> None:
+def test_uncertainty_exponents_are_the_same_in_other_units(scaling: Scaling) -> None:
     potential, energy = CASES["II"], 0.25
     usual, scaled = (
         compute_uncertainty_exponent(MapSpec(s.potential(potential), Plane.X_PX, s.energy * energy, t_max=1e3 * s.time), work=1e6)
@@ -145,7 +145,7 @@ def test_uncertainty_exponents(scaling: Scaling) -> None:
 
 
 def sea_start() -> np.ndarray:
-    """(4,) the start of an orbit that escapes late."""
+    """Return the start of an orbit that escapes late, of shape (4,)."""
     usual = escape_map(Plane.X_PX)
     latest = np.unravel_index(np.nanargmax(usual.escape_time), usual.fate.shape)
     state: np.ndarray = usual.spec.start_states(usual.x[latest[1] :][:1], usual.ordinate[latest[0] :][:1])[0]

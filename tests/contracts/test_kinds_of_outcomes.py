@@ -1,4 +1,4 @@
-"""Every kind of outcome is typed, kept in files, told in words and coloured; so is the one that docs/extending.md adds."""
+"""Every kind of outcome, including that of docs/extending.md, is typed, stored, described and coloured."""
 
 from __future__ import annotations
 

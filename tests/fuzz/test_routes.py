@@ -21,7 +21,7 @@ LARGEST_GROWTH = 0.15
 
 
 async def send(port: int, request: bytes) -> bytes:
-    """The first line of the answer; empty if the server closes the connection."""
+    """Return the first line of the answer; empty if the server closes the connection."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     try:
         writer.write(request)

@@ -17,7 +17,7 @@ Long = np.longdouble
 
 
 def zoomed(seed: int, width: float) -> EscapeMap:
-    """A map of a window at a basin boundary, which is found by zooming into pixels with unlike neighbours."""
+    """Return a map of a window at a basin boundary, which is found by zooming into pixels with unlike neighbours."""
     rng, now = np.random.default_rng(seed), 0.5
     window = default_window(POTENTIAL, Plane.X_PX, ENERGY)
     while True:
@@ -33,7 +33,7 @@ def zoomed(seed: int, width: float) -> EscapeMap:
 
 
 def long_fates(whole: EscapeMap) -> np.ndarray:
-    """The channels through which the orbits of the pixels leave in 80-bit arithmetic; 0 if they stay."""
+    """Return the channels through which the orbits of the pixels leave in 80-bit arithmetic; 0 if they stay."""
     x, y, px, py = hy.make_vars("x", "y", "px", "py")
     equations = [(x, px), (y, py), (px, -x + x * x - y * y), (py, -y - 2.0 * x * y)]
     far = hy.t_event(x * x + y * y - FAR**2, direction=hy.event_direction.positive, fp_type=Long)

@@ -1,4 +1,4 @@
-"""Orbits of formulas with masses beside SciPy's DOP853, which integrates H = (px² + py²)/2m + V itself."""
+"""Orbits of formulas with masses agree with SciPy's DOP853, which integrates H = (px² + py²)/2m + V directly."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def random_mass(seed: int) -> float:
 
 
 def heavy_system(seed: int) -> tuple[Potential, float]:
-    """A well with a mass, in two of three cases in a rotating frame, and an energy above its escape energy."""
+    """Return a well with a mass, in two of three cases in a rotating frame, and an energy above its escape energy."""
     mass = random_mass(seed)
     well = parse_formula(f"{write_formula(random_well(seed))}; masses (m, m)", parameters={"m": mass})
     rotating = well.in_rotating_frame((0.0, 0.15, -0.1)[seed % 3] / mass**0.5)
@@ -44,7 +44,7 @@ def heavy_system(seed: int) -> tuple[Potential, float]:
 
 
 def path_of(potential: Potential, state: np.ndarray, times: np.ndarray, mass: float) -> np.ndarray:
-    """(4, n) the states at times, from Hamilton's equations with the Coriolis force."""
+    """Return the states at times, from Hamilton's equations with the Coriolis force, of shape (4, n)."""
 
     def motion(_t: float, state: np.ndarray) -> list[float]:
         x, y, px, py = state

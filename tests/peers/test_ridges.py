@@ -1,4 +1,4 @@
-"""Ridges of Lagrangian descriptors lie on the stable and unstable manifolds of the Lyapunov orbits."""
+"""Ridges of Lagrangian descriptors lie on the stable and unstable manifolds of Lyapunov orbits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ STEEPEST = 0.9
 
 
 def find_ridges(values: np.ndarray) -> np.ndarray:
-    """(n, 2) columns and rows of the pixels whose gradient is among the steepest, and the steepest along its direction."""
+    """Return columns and rows, (n, 2), of pixels whose gradient is among the steepest, and steepest along its direction."""
     slope, along = np.gradient(values)
     steepness = np.hypot(along, slope)
     known = np.isfinite(steepness) & (steepness > 0.0)
@@ -29,7 +29,7 @@ def find_ridges(values: np.ndarray) -> np.ndarray:
 
 
 def manifold_points(images: int, sign: float) -> np.ndarray:
-    """(n, 2) columns and rows of points of the stable manifolds, or of the unstable ones, which have the opposite px."""
+    """Return columns and rows, (n, 2), of points of the stable manifolds, or, with the opposite px, of the unstable ones."""
     window, (columns, rows) = SPEC.find_window(), SPEC.resolution
     points = []
     for arc in find_stable_manifolds(SPEC.potential, SPEC.energy, images=images).arcs:

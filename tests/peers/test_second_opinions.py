@@ -21,7 +21,7 @@ SETS = [("I", 0.13), ("II", 0.5), ("III", 0.35)]
 
 
 def interior_starts(name: str, energy: float, plane: Plane) -> np.ndarray:
-    """Random interior starts, selected with the independent description of the exits in `exit_lines`."""
+    """Return random interior starts, selected with the independent description of the exits in `exit_lines`."""
     potential, rng = CASES[name], np.random.default_rng(int(1000 * energy))
     window = default_window(potential, plane, energy)
     x = rng.uniform(window.x_low, window.x_high, 400)

@@ -1,4 +1,4 @@
-"""Messages from the components in the browser to the server: legal ones are reported, and all others are ignored."""
+"""Legal messages from components in the browser are reported, and all others are ignored."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NEVER = [None, 7, "x", [], {}, {"other": 1}]
 
 @dataclass(frozen=True)
 class Example:
-    """A component, messages with what is reported of them, and messages that are ignored."""
+    """A component, legal messages with their reports, and messages that are ignored."""
 
     make: Callable[[Report], JSComponent]
     legal: list[tuple[Any, tuple[Any, ...]]]
@@ -56,7 +56,7 @@ def make_player(report: Report) -> JSComponent:
 
 
 def given(value: Any, count: Any = 1, *, done: bool = True) -> dict[str, Any]:
-    """The message of a value that the visitor gives."""
+    """Return the message of a value that the visitor gives."""
     return {"value": value, "count": count, "done": done}
 
 

@@ -1,4 +1,4 @@
-"""Many orbits in the browser: places of heyoka, exits of the server, starts that are spread evenly."""
+"""Orbits in the browser are where heyoka has them, leave through the server's exits, and start evenly spread."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ PLACE_ERROR = 1e-8
 
 @dataclass(frozen=True)
 class Followed:
-    """An ensemble as the browser follows it, with what it was made of."""
+    """An ensemble that the browser has followed, with its request."""
 
     potential: Potential
     energy: float
@@ -65,7 +65,7 @@ def followed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
 
 
 def positions_of_heyoka(potential: Potential, state: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """(n, 2) x and y at rising times."""
+    """Return x and y by heyoka at rising times, of shape (n, 2)."""
     integrator = hy.taylor_adaptive(equations(potential), state.tolist(), tol=1e-16)
     _, grid = integrator.propagate_grid(np.concatenate([[0.0], times]))[-2:]
     positions: np.ndarray = grid[1:, :2]

@@ -1,4 +1,4 @@
-"""Exits on the page: their lines, and starts that enter through them."""
+"""Exits on the page have lines, and orbits enter through them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DISC, RADIUS = Centre(0.3, 0.1, 0.05), 3.0
 
 
 def look_at(potential: Potential, energy: float, folder: Path) -> Any:
-    """What `run_exits.js` finds at an energy."""
+    """Return what `run_exits.js` finds at an energy."""
     portable = make_portable_system(potential, 2.0 * energy)
     data: dict[str, Any] = {"system": portable.to_dict(), "module": portable.module, "positions": [0.0]}
     return run_node("run_exits.js", data | {"energies": [energy / potential.units.energy]}, folder)[0]

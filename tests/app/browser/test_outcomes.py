@@ -1,4 +1,4 @@
-"""In rotating frames, at discs around centres and at the escape circle, orbits of the browser end as those of the library."""
+"""In rotating frames, at discs and at the escape circle, orbits in the browser end as in the library."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ GRAZED = {
 
 
 def random_states(example: Example) -> np.ndarray:
-    """(COUNT, 4) states inside the exits, in random directions."""
+    """Return states inside the exits, in random directions, of shape (COUNT, 4)."""
     chance, potential, energy = np.random.default_rng(1), example.potential, example.energy
     x, y = chance.uniform(-example.half_side, example.half_side, (2, 20 * COUNT))
     inside = (potential.value(x, y) < energy) & (find_outside_channels(potential, energy, x, y) == 0)
@@ -94,7 +94,7 @@ def random_states(example: Example) -> np.ndarray:
 def ends_in_browser(
     potential: Potential, energy: float, states: np.ndarray, t_max: float, folder: Path, *, is_backward: bool = False
 ) -> dict[str, dict[str, np.ndarray]]:
-    """What `run_orbits.js` finds of states, with times in units of the potential."""
+    """Return what `run_orbits.js` finds of states, with times in units of the potential."""
     portable, units = make_portable_system(potential, energy), potential.units
     data: dict[str, Any] = {"system": portable.to_dict(), "module": portable.module, "energy": energy / units.energy}
     data |= {"states": (states / units.state).tolist(), "horizon": t_max / units.time, "isBackward": is_backward}
@@ -106,12 +106,12 @@ def ends_in_browser(
 
 
 def decided(fate: np.ndarray) -> np.ndarray:
-    """The library calls orbits bounded that are inside at the horizon."""
+    """Return the fates of the browser, bounded for orbits that are inside at the horizon, as in the library."""
     return np.where(fate == Fate.NOT_COMPUTED, Fate.BOUNDED, fate)
 
 
 def ends_in_library(potential: Potential, energy: float, states: np.ndarray, t_max: float) -> tuple[Outcomes, np.ndarray]:
-    """The outcomes of states, and which of them do not depend on small changes of the starts."""
+    """Return the outcomes of states, and which of them do not depend on small changes of the starts."""
     turned = states + SMALL * np.column_stack([np.zeros((len(states), 2)), -states[:, 3], states[:, 2]])
     outcomes, others = (classify_orbits(potential, energy, each, t_max) for each in (states, turned))
     same_time = ~(np.abs(outcomes.escape_time - others.escape_time) > SAME_TIME)
@@ -138,7 +138,7 @@ def test_orbits_end_as_those_of_the_library(name: str, tmp_path: Path) -> None:
 
 
 def touching_states(potential: Potential, energy: float, share: float) -> np.ndarray:
-    """(n, 4) states of orbits that come as close to a disc as a share of its radius, `TO_THE_DISC` later."""
+    """Return (n, 4) states whose orbits, `TO_THE_DISC` later, are nearest to a disc, beyond its radius by a share."""
     centre, turned = potential.centres[0], np.linspace(0.0, 2.0 * np.pi, COUNT, endpoint=False)
     distance = share * centre.radius
     x, y = centre.x + distance * np.cos(turned), centre.y + distance * np.sin(turned)

@@ -1,4 +1,4 @@
-"""What the page shows, as data."""
+"""The view that the browser gets follows the state of the page."""
 
 from __future__ import annotations
 

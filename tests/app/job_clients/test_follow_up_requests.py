@@ -1,4 +1,4 @@
-"""Follow-up analyses are requested for complete maps while they are wanted."""
+"""Follow-up analyses of complete maps are requested while they are wanted."""
 
 from __future__ import annotations
 

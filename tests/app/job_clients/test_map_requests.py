@@ -108,7 +108,7 @@ def test_no_frame_of_an_old_energy_follows_one_of_the_new(session: Session) -> N
 
 
 class LatestCalls:
-    """Runs callbacks later, and only the latest call of each."""
+    """Runs callbacks later, each with its latest arguments only."""
 
     def __init__(self) -> None:
         self.pending: dict[Callable[..., None], tuple[Any, ...]] = {}
@@ -123,7 +123,7 @@ class LatestCalls:
 
 
 class ManualJobs:
-    """Requests whose results the test delivers."""
+    """Accepts requests; the test delivers their results."""
 
     def __init__(self) -> None:
         self.jobs: list[Job[Any]] = []

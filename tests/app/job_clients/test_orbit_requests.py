@@ -20,7 +20,7 @@ from tests.waiting import SECONDS
 
 
 class Recorder:
-    """Records the calls that the views would get."""
+    """Records calls to the views."""
 
     def __init__(self) -> None:
         self.orbits: tuple[ChosenOrbit, ...] = ()

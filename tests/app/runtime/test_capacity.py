@@ -1,4 +1,4 @@
-"""How many pages the processors have room for."""
+"""Capacity admits as many pages as the processors can serve."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CORES_PER_PAGE = 0.02
 
 @dataclass
 class Machine:
-    """Two processors with other programs, in an imagined time."""
+    """Two simulated processors with other programs."""
 
     others: float = 0.0
     own: float = 0.0
@@ -49,7 +49,7 @@ class Machine:
 
 
 def admitted(capacity: Capacity) -> int:
-    """How many visitors are let in before anyone has acted."""
+    """Return the number of visitors admitted before anyone has acted."""
     pages = dict[str, float]()
     while capacity.has_room(pages, str(len(pages))):
         pages[str(len(pages))] = 1.0

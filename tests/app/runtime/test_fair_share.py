@@ -1,4 +1,4 @@
-"""The share of the event loop's time that a page may take."""
+"""A page gets its share of the event loop's time."""
 
 from __future__ import annotations
 

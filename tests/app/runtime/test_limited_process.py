@@ -1,4 +1,4 @@
-"""Calls that exceed their time or their memory end, and later ones do not notice."""
+"""Calls that exceed their time or memory end, without effects on later calls."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def fill_memory() -> None:
 
 
 def read_pipe(pipe: Path) -> str:
-    """Waits for what is written."""
+    """Wait for the text that the other process writes."""
     return pipe.read_text()
 
 

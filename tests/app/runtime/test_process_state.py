@@ -1,4 +1,4 @@
-"""The state of a server process."""
+"""Settings and capacity of a server process reach its jobs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., Proce
 
 
 class SparedJobs(Jobs):
-    """Jobs that record whether first frames are spared."""
+    """Jobs that record whether first frames have priority."""
 
     def __init__(self) -> None:
         super().__init__()

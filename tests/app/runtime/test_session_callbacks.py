@@ -22,18 +22,18 @@ from tests.waiting import SECONDS
 
 
 async def new_session() -> tuple[ServerSession, ApplicationContext]:
-    """A session, and the server's context, which owns it."""
+    """Return a session, and the server's context, which owns it."""
     context = ApplicationContext(Application())
     return await context.create_session_if_needed("session"), context  # type: ignore[arg-type]
 
 
 def is_held(session: ServerSession) -> bool:
-    """Whether changes wait to be sent together."""
+    """Return whether changes wait to be sent together."""
     return session.document.callbacks.hold_value == "combine"
 
 
 class Calls:
-    """Keeps the arguments of calls on the event loop, which can be awaited."""
+    """Records the arguments of calls on the event loop, and lets tests await the calls."""
 
     def __init__(self) -> None:
         self._calls = asyncio.Queue[Any]()
@@ -42,7 +42,7 @@ class Calls:
         self._calls.put_nowait(value)
 
     async def take(self, count: int) -> list[Any]:
-        """The next calls."""
+        """Return the next calls."""
         async with asyncio.timeout(SECONDS):
             return [await self._calls.get() for _ in range(count)]
 

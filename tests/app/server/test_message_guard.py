@@ -1,4 +1,4 @@
-"""Messages of a WebSocket: only those of a page reach Bokeh; floods and other protocols close the connection."""
+"""Only messages of a page reach Bokeh. Floods and other protocols close the WebSocket."""
 
 from __future__ import annotations
 

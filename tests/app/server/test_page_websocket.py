@@ -1,4 +1,4 @@
-"""The socket of a page: changes reach the page at once, and messages beyond the page's share of the event loop's time wait."""
+"""Changes reach a page at once. Messages of a page wait beyond its share of the event loop's time."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def build(document: Document) -> None:
 
 @asynccontextmanager
 async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIterator[tuple[Channel, Document]]:
-    """Open pages; the channel and the document of the last one."""
+    """Open pages; return the channel and the document of the last page."""
     server = Server({"/app": Application(FunctionHandler(make))}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
     server.start()
     address, channels = f"http://127.0.0.1:{server.port}/app", []
@@ -69,7 +69,7 @@ async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIt
 
 
 async def receive(channel: Channel, kind: str) -> str:
-    """The content of the next message of a kind."""
+    """Return the content of the next message of a kind."""
     async for each, content in channel.messages():
         if each == kind:
             return content
@@ -157,7 +157,7 @@ def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessS
         session, texts = document.session_context.session, iter(range(5))
 
         async def lengthen_title() -> asyncio.Task[None]:
-            """Begin to send a long text under the session's lock."""
+            """Begin to send a long title under the session's lock."""
             title = f"{next(texts)}{LONG}"
             task = asyncio.create_task(session.with_document_locked(setattr, slider_of(document), "title", title))
             for _ in range(100):

@@ -212,7 +212,7 @@ def test_websocket_of_another_origin_is_refused(served: Served) -> None:
 
 
 def check_stop(served: Served, number: signal.Signals) -> None:
-    """A signal ends the server within seconds, during a map that takes minutes, with a whole log."""
+    """Check that a signal ends the server within seconds, during a map that takes minutes, with a whole log."""
     run_on_new_loop(lambda: stop_during_a_map(served, number))
     assert served.running.process.wait(SECONDS) == 0
     assert time.monotonic() - served.stopped_at < 30.0
@@ -232,7 +232,7 @@ def test_sigterm_stops_panel_during_a_computation(tmp_path: Path) -> None:
 
 
 def check_log(served: Served) -> None:
-    """The last record is that of the stop, and no record has a traceback."""
+    """Check that the last record is that of the stop, and no record has a traceback."""
     text = served.log.read_text()
     records = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
     assert records[-1]["message"] == "stopping"
@@ -241,7 +241,7 @@ def check_log(served: Served) -> None:
 
 
 def upgrade(served: Served, token: str, origin: str) -> int:
-    """Status of a request for a WebSocket."""
+    """Return the status of a request for a WebSocket."""
     headers = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "x"}
     # urllib would send "Connection: close".
     connection = http.client.HTTPConnection(served.host, timeout=SECONDS)
@@ -253,7 +253,7 @@ def upgrade(served: Served, token: str, origin: str) -> int:
 
 
 def check_nonce(page: str, policy: str) -> None:
-    """All scripts of a page have the nonce of its policy."""
+    """Check that all scripts of a page have the nonce of its policy."""
     [nonce] = set(re.findall(r'<script nonce="([^"]+)"', page))
     assert f"'nonce-{nonce}'" in policy
     assert page.count("<script") == page.count("<script nonce=")

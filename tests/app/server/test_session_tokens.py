@@ -1,4 +1,4 @@
-"""Signed tokens: what they contain, and which ones are refused without being inflated."""
+"""Signed tokens contain the parameters of the link, and other tokens are refused without being inflated."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def socket_request(token: str) -> HTTPServerRequest:
 
 
 def bomb(expires: int = 2**40) -> str:
-    """A token that is not signed and needs much memory when it is inflated."""
+    """Return a token that is not signed and needs much memory when it is inflated."""
     payload = {"session_id": "x" * 44, "session_expiry": expires, "__bk__zlib_": _encode(zlib.compress(b"0" * INFLATED))}
     return _encode(json.dumps(payload).encode())
 

@@ -1,4 +1,4 @@
-"""Analyses of a map: requests and display of their results."""
+"""Analyses of a map are requested, and their results shown."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ def frame() -> EscapeMap:
 
 
 def unfinished(frame: EscapeMap, energy: float) -> EscapeMap:
-    """A frame of a map of another energy."""
+    """Return a frame of a map of another energy."""
     return replace(frame, spec=replace(frame.spec, energy=energy), complete=False)
 
 
 @pytest.fixture(autouse=True)
 def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Little work for each exponent of the curves against energy."""
+    """Limit the work for each exponent of the curves, which widens the intervals."""
     monkeypatch.setattr("engine.sweeps.measures.WORK", 1e7)
 
 

@@ -1,4 +1,4 @@
-"""The view in the controls is compared with another one: its map is requested, drawn, counted and removed."""
+"""A second view is compared with that in the controls: its map is requested, drawn, counted and removed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Choice of a potential: validation, use, and messages for invalid ones."""
+"""Potentials are chosen or typed, reviewed, and refused with messages."""
 
 from __future__ import annotations
 

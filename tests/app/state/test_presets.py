@@ -47,7 +47,7 @@ COMPILED_LONG = ("bar",)
 
 
 def marked(key: str, value: Any) -> Any:
-    """A parameter of a test that integrates orbits."""
+    """Return a parameter of a test that integrates orbits."""
     return pytest.param(value, id=key, marks=pytest.mark.slow if key in COMPILED_LONG else ())
 
 
@@ -193,7 +193,7 @@ def test_the_sticky_orbit_looks_regular_and_escapes_late() -> None:
 
 
 def near(share: float, count: int) -> Any:
-    """Equal to a share in a caption, rounded to 1 %, of `count` random orbits: the probability of a false alarm is 4e-8."""
+    """Match a share of `count` random orbits that a caption rounds to 1 %. The probability of a false alarm is 4e-8."""
     return pytest.approx(share, abs=0.005 + 5.5 * math.sqrt(share * (1.0 - share) / count))
 
 

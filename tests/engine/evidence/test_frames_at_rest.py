@@ -1,4 +1,4 @@
-"""What rests on the symmetry of time reversal, on tori as evidence or on fixed steps is refused or off where it does not hold."""
+"""Analyses that need time reversal, tori as evidence or fixed steps are refused or off where these do not hold."""
 
 from __future__ import annotations
 

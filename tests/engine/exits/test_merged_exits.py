@@ -1,4 +1,4 @@
-"""Exits of two channels, above the maximum of V between these."""
+"""Two channels have one exit above the maximum of V between them."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def above(potential: Potential) -> float:
 
 
 def random_states(potential: Potential, energy: float, count: int) -> np.ndarray:
-    """Starts in the inner part of the well."""
+    """Return starts in the inner part of the well."""
     random, reach = np.random.default_rng(1), 0.3 * np.hypot(*potential.saddles.T).min()
     place, angle = random.uniform(-reach, reach, (count, 2)), random.uniform(0.0, 2.0 * np.pi, count)
     speed = np.sqrt(2.0 * (energy - potential.value(*place.T)))

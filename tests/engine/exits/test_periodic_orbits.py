@@ -1,4 +1,4 @@
-"""The Lyapunov orbits of rotating systems, and those at rest found by the same method."""
+"""Lyapunov orbits of rotating systems, and of systems at rest by the same method, agree with published orbits and heyoka."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ HILL_SADDLE = -0.5 * 3.0 ** (4.0 / 3.0)
 
 
 def orbit_of(potential: Potential, energy: float, channel: int) -> PeriodicOrbit:
-    """The orbit, in units of the well."""
+    """Return the orbit, in units of the well."""
     orbit = find_orbit_in_rotating_frame(potential.in_well_units, energy / potential.units.energy, channel)
     assert orbit is not None
     return orbit
 
 
 def path_of(potential: Potential, energy: float, channel: int) -> tuple[float, np.ndarray]:
-    """Period and path (4, 201) in the units of the potential."""
+    """Return the period and path (4, 201) in the units of the potential."""
     orbit = orbit_of(potential, energy, channel)
     return orbit.period * potential.units.time, orbit.path * potential.units.state[:, None]
 
 
 def crossings_of(mu: float | None, period: float, path: np.ndarray) -> np.ndarray:
-    """(4, n) the states in which an orbit crosses y = 0, integrated by heyoka from the points before."""
+    """Return the states in which an orbit crosses y = 0, integrated by heyoka from the points before, of shape (4, n)."""
 
     def later(point: int, time: float) -> np.ndarray:
         return integrate(mu, path[:, point], np.array([0.0, time]))[-1]

@@ -1,4 +1,4 @@
-"""The exits of rotating systems: lines at the outer edges of their Lyapunov orbits."""
+"""Exits of rotating systems are lines at the outer edges of their Lyapunov orbits."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ HILL_WITH_CENTRE = hill().with_outcomes([Centre(0.0, 0.0, 0.01)])
 
 
 def random_starts(energy: float, count: int) -> np.ndarray:
-    """(count, 4) states around the centre of Hill's problem, with velocities in random directions."""
+    """Return states around the centre of Hill's problem, with velocities in random directions, of shape (count, 4)."""
     random = np.random.default_rng(5)
     x, y = 0.3 * random.uniform(-1.0, 1.0, (2, count))
     angle = random.uniform(0.0, 2.0 * np.pi, count)

@@ -1,4 +1,4 @@
-"""Graphs of expressions: how few sums over all lower orders the series of a gradient need."""
+"""Graphs of expressions need few sums over all lower orders for the series of a gradient."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Canonical form of expressions."""
+"""Expressions have a canonical form."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def test_parts_cover_all_indices_in_order(count: int, workers: int) -> None:
 
 
 class CancelledWhileWaiting(Future[None]):
-    """A call that is cancelled after `result` has been called."""
+    """A call that is cancelled while `result` waits."""
 
     def result(self, timeout: float | None = None) -> None:
         self.cancel()
@@ -57,7 +57,7 @@ def long_call(*, on_frame: object = None, execution: Execution = DEFAULT_EXECUTI
 
 
 class Terminal(StringIO):
-    """A stream that says it is a terminal."""
+    """A stream that claims to be a terminal."""
 
     def isatty(self) -> bool:
         return True

@@ -1,4 +1,4 @@
-"""Former names warn, and stand for the present ones."""
+"""Former names work like the present names, with a warning."""
 
 from __future__ import annotations
 

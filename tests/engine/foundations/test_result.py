@@ -20,7 +20,7 @@ PLAIN = {"potential", "verdict", "divergent start", "entropy"}
 
 
 def arrays_of(result: Any) -> Iterator[np.ndarray]:
-    """The arrays of a result, and of the results in it; a map keeps the state of its orbits, which is no result."""
+    """Yield the arrays of a result and of the results in it, without the states of orbits that a map keeps."""
     if isinstance(result, np.ndarray):
         yield result
     elif isinstance(result, tuple):

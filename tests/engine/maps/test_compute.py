@@ -1,4 +1,4 @@
-"""Maps computed in blocks of rows, and maps with their reliability."""
+"""Maps computed in blocks of rows are the same as maps computed at once."""
 
 from __future__ import annotations
 

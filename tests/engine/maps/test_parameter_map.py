@@ -39,7 +39,7 @@ def along_epsilon() -> EscapeMap:
 
 
 def ordinary_map(spec: MapSpec, axis: ParameterAxis, value: float) -> EscapeMap:
-    """The starts at one value of the parameter as a map of that potential, made without a parameter."""
+    """Return the starts at one value of the parameter as a map of that potential, made without a parameter."""
     potential = axis.system.with_parameter(axis.key, value).potential
     window = spec.find_window()
     if spec.plane.parameter_axis == 1:

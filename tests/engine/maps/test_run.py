@@ -52,7 +52,7 @@ def assert_same_map(one: EscapeMap, other: EscapeMap) -> None:
 
 
 def early(escape_map: EscapeMap) -> np.ndarray:
-    """(rows, columns) bool: pixels called bounded before t_max."""
+    """Return which pixels are called bounded before t_max, (rows, columns)."""
     return ~np.isin(escape_map.evidence, (Evidence.NONE, Evidence.INTEGRATED))
 
 

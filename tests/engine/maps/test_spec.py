@@ -38,7 +38,7 @@ def test_outer_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
 
 
 def starts_on_a_symmetry_line(spec: MapSpec) -> int:
-    """The number of pixels with x = px = 0 or y = py = 0."""
+    """Return the number of pixels with x = px = 0 or y = py = 0."""
     x, ordinate = np.meshgrid(*spec.pixel_centres())
     states = spec.start_states(x.ravel(), ordinate.ravel())
     return int(sum((states[:, pair] == 0.0).all(axis=1).sum() for pair in ([0, 2], [1, 3])))

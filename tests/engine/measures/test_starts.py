@@ -23,7 +23,7 @@ def whole() -> EscapeMap:
 
 
 def with_fate(frame: EscapeMap, fate: Fate) -> EscapeMap:
-    """The map with one escaping pixel changed."""
+    """Return the map with one escaping pixel changed."""
     codes = frame.fate.copy()
     codes[np.unravel_index(np.argmax(codes), codes.shape)] = fate
     return replace(frame, fate=codes)

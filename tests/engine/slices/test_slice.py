@@ -42,7 +42,7 @@ def test_zero_velocity_curve_has_the_required_energy(plane: Plane) -> None:
 
 
 def interior_by_path(name: str, plane: Plane, energy: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points of the interior on a large grid: those connected to the origin without crossing a Lyapunov orbit."""
+    """Return points of the interior on a large grid: those connected to the origin without crossing a Lyapunov orbit."""
     side = np.linspace(-2.2, 2.2, 551)
     x, ordinate = np.meshgrid(side, side)
     y = ordinate if plane is Plane.X_Y else np.zeros_like(x)
@@ -114,7 +114,7 @@ def oblique_slices(draw: st.DrawFn) -> Slice:
 
 
 def slices() -> st.SearchStrategy[Slice]:
-    """Any slice of one system."""
+    """Return any slice of one system."""
     return st.one_of(slices_of_coordinates(), slices_with_an_angle(), oblique_slices())
 
 

@@ -1,4 +1,4 @@
-"""The table of measures: what each entry gives to files, tables, the page and figures."""
+"""Each entry of the table of measures has numbers and words for files, tables, the page and figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results that are written to files come back equal."""
+"""Results read from files are equal to the written results."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ WRITERS: dict[str, Callable[[Result, Path], Path]] = {"NetCDF": to_netcdf, "Zarr
 
 
 def assert_equal(found: Any, wanted: Any) -> None:
-    """Equal to the last bit, but for the integration state, which files do not hold; datasets tell how results were made."""
+    """Check equality to the last bit, without the integration state, which files do not contain."""
     assert type(found) is type(wanted)
     for field in fields(wanted):
         one, other = getattr(found, field.name), getattr(wanted, field.name)

@@ -1,4 +1,4 @@
-"""Plans of sweeps."""
+"""Plans of sweeps estimate starts, bytes and time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compilation ahead of time."""
+"""Kernels are compiled ahead of time, in the order of need, without delaying maps."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def test_channels_and_escape_energy_of_literature_entries(name: str, channels: i
 
 
 def second_integral(name: str) -> tuple[sympy.Expr, sympy.Expr]:
-    """The Hamiltonian of an integrable entry and an integral independent of it."""
+    """Return the Hamiltonian of an integrable entry and an integral independent of it."""
     px, py = sympy.symbols("px py")
     value = sum(sympy.nsimplify(c, rational=True) * X**i * Y**j for i, j, c in POTENTIALS[name].terms)
     energy = (px**2 + py**2) / 2 + value

@@ -1,4 +1,4 @@
-"""The Jacobi constants of Lagrange points beside those of the literature, and the names of these points."""
+"""Jacobi constants and names of Lagrange points are those of the literature."""
 
 from __future__ import annotations
 

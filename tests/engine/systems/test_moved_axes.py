@@ -1,4 +1,4 @@
-"""Axes moved to a well elsewhere: potentials as their authors write them, with their energies."""
+"""Axes move to a well elsewhere, so that potentials keep their authors' formulas and energies."""
 
 from __future__ import annotations
 

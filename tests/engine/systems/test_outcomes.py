@@ -1,4 +1,4 @@
-"""Outcomes: order, words, and as attributes of files."""
+"""Outcomes have an order, words, and a form in files."""
 
 from __future__ import annotations
 

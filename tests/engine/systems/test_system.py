@@ -1,4 +1,4 @@
-"""The selected system: its potential, name and energy range."""
+"""A system has a potential, a formula, parameters and an energy range."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ UNEQUAL = Potential("unequal", ((2, 0, 0.5), (0, 2, 0.6), (1, 2, -1.0), (3, 0, 0
 
 
 def times_inside(potential: Potential, energy: float, states: np.ndarray, t_max: float) -> np.ndarray:
-    """(n,) times until orbits leave; t_max for those that stay, which have no escape time."""
+    """Return the times until orbits leave, (n,), or t_max for orbits that stay."""
     return np.fmin(classify_orbits(potential, energy, states, t_max).escape_time, t_max)
 
 

@@ -1,4 +1,4 @@
-"""Many orbits at chosen times: the states of single orbits, the outcomes of batches, and times of each orbit."""
+"""Orbits sampled at chosen times have the states of single orbits and the outcomes of batches."""
 
 from __future__ import annotations
 

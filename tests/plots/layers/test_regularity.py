@@ -1,4 +1,4 @@
-"""Regular and chaotic orbits have colours of their own, before and after they are judged."""
+"""Regular and chaotic orbits have different colours, before and after they are judged."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def colour_of(character: Regularity) -> str:
 
 
 def painted(frame: EscapeMap, regularity: RegularityMap | None = None) -> np.ndarray:
-    """The colours of the pixels of the layer."""
+    """Return the colours of the pixels of the layer."""
     assert REGULARITY.pixels is not None
     known = layer_columns(frame, {"judge"}) if regularity is None else result_columns("judge", frame, regularity)
     return np.array(REGULARITY.pixels.colours(PAPER))[known["character"][0]]

@@ -165,7 +165,7 @@ def test_the_orbit_along_the_y_axis_is_not_an_island() -> None:
 
 
 def counted(window: Window) -> dict[tuple[int, ...], float]:
-    """Percentages with starts outside counted, from a finer independent map."""
+    """Return percentages with starts outside counted, from a finer independent map."""
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=300.0))
     return {(k,): 100.0 * share for k, share in whole.fractions(count_outside=True).items() if k >= 1}
 

@@ -1,4 +1,4 @@
-"""Comparisons with papers on rotating systems: the measures, and what they show."""
+"""Maps of rotating systems have the measures that are compared with papers."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def computed() -> EscapeMap:
 
 
 def with_fates(computed: EscapeMap, columns: list[int]) -> EscapeMap:
-    """The map with one fate per column, and the number of the column as the escape time."""
+    """Return the map with one fate per column, and the number of the column as the escape time."""
     times = np.tile(np.arange(SIDE, dtype=float), (SIDE, 1))
     return replace(computed, fate=np.tile(np.array(columns, np.int8), (SIDE, 1)), escape_time=times)
 

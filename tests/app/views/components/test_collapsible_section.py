@@ -1,4 +1,4 @@
-"""Sections are built when they are first shown, and stand on the page only while they are shown."""
+"""Sections are built when first shown, and are on the page only while shown."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.views.components.collapsible_section import Drawers, Stack
 
 
 class Builds:
-    """Makers of contents that record their calls."""
+    """Makes contents of sections, and records the calls."""
 
     def __init__(self) -> None:
         self.made: list[str] = []

@@ -1,4 +1,4 @@
-"""The legend of a map has the colours of its palette, and what the map shows."""
+"""The legend of a map names its outcomes and layers, in the colours of the palette."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ ALL = frozenset(int(fate) for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSID
 
 
 def legend(picture: str, potential: Potential = CASES["II"], **changes: Any) -> str:
-    """HTML of the legend of a picture."""
+    """Return HTML of the legend of a picture."""
     values: dict[str, Any] = {"palette": PAPER, "times": TimeScale(2.5, 100.0), "fates": ALL}
     return picture_legend(map_legend(picture, ShownMap(MapSpec(potential, Plane.X_PX, 0.19), **(values | changes))))
 
 
 def entries(html: str) -> list[tuple[str, str]]:
-    """Label and colour of each entry."""
+    """Return the label and colour of each entry."""
     return [(label.replace("&gt;", ">"), colour) for colour, label in PATCH.findall(html)]
 
 

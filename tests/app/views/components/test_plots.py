@@ -1,4 +1,4 @@
-"""Figures keep their callbacks, and several models are added with one search of the page's models."""
+"""Figures keep their callbacks, and models are added with one search of the page's models."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def test_on_touch_screens_the_wheel_tool_ignores_two_fingers(maps: MapsView) -> 
 
 
 def clicks(*points: tuple[float, float]) -> list[tuple[str, float, float]]:
-    """What is called when points of a map are clicked quickly one after the other."""
+    """Return the calls after quick clicks on points of a map, one after the other."""
     called: list[tuple[str, float, float]] = []
     view = make_maps(tap=lambda x, y: called.append(("tap", x, y)), dive=lambda x, y: called.append(("dive", x, y)))
     view.show_pictures(PICTURES_ALONE)

@@ -1,4 +1,4 @@
-"""Ranges report the window where the user leaves them, and end at double precision."""
+"""Ranges report the window after a gesture, and end at double precision."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HOME = MapSpec(CASES["I"], Plane.X_PX, 0.19)
 
 
 class RangesOnPage:
-    """Ranges in a document, at the window of the whole interior, what they report, and how often a gesture ends."""
+    """Ranges in a document at the window of the whole interior, with their reports and the number of gestures."""
 
     def __init__(self) -> None:
         self.zooms: list[Window | None] = []

@@ -1,4 +1,4 @@
-"""Pictures stand side by side, or one of them large above the others."""
+"""Pictures stand side by side, or one is large above the others."""
 
 from __future__ import annotations
 

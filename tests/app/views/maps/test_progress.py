@@ -1,4 +1,4 @@
-"""The status has the shares of the outcomes in their colours, and says how far a map is."""
+"""The status shows the shares of outcomes in their colours, and the progress of a map."""
 
 from __future__ import annotations
 

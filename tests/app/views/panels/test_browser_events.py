@@ -1,4 +1,4 @@
-"""Keys of the browser and links to its address."""
+"""Keys and addresses pass between the browser and the page."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.app.browser_messages import send
 
 
 def events_of(*keys: str) -> tuple[BrowserEvents, list[tuple[Any, ...]]]:
-    """Events, and the arguments of what they call."""
+    """Return events, and the recorded arguments of their listeners."""
     calls: list[tuple[Any, ...]] = []
     actions = BrowserActions(*[lambda *values: calls.append(values) for _ in fields(BrowserActions)])
     return BrowserEvents(actions, list(keys) or list(KEYS)), calls

@@ -1,4 +1,4 @@
-"""The code that embeds a view, and the link that leads from the frame to the whole page."""
+"""The code to embed a view shows one picture, with a link to the whole page."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ADDRESS = "https://maps.example.org/deep/app"
 
 
 def source(code: str) -> str:
-    """The address in the code of a frame."""
+    """Return the address in the code of a frame."""
     found = re.fullmatch(r'<iframe src="([^"]*)" [^>]*></iframe>', code)
     assert found is not None
     return unescape(found[1])

@@ -31,7 +31,7 @@ class Drawer:
         return {box.label: box for row in rows for box in row.objects}
 
     def type(self, label: str, number: float) -> None:
-        """A number that is typed into a box."""
+        """Type a number into a box."""
         send(self.boxes[label], {"value": number, "count": 1, "done": True})
 
 

@@ -1,4 +1,4 @@
-"""Compiled code is limited in its amount, since it is never unloaded."""
+"""The amount of compiled code is limited, because code is never unloaded."""
 
 from __future__ import annotations
 

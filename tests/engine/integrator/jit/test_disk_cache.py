@@ -1,4 +1,4 @@
-"""Kernels that another process compiles."""
+"""Processes share compiled kernels on disk."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ TEXTS = (
 
 
 def texts_of(fast: int) -> pytest.MarkDecorator:
-    """The texts; only some are in the fast suite, because compilation takes up to seconds for each kernel."""
+    """Return the texts, of which the fast suite tests only some, because compiling a kernel takes up to seconds."""
     return pytest.mark.parametrize(
         "text", [*TEXTS[:fast], *(pytest.param(text, marks=pytest.mark.slow) for text in TEXTS[fast:])]
     )

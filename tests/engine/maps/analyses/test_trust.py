@@ -41,7 +41,7 @@ def map_and_trust(
 
 
 def rerun(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: float) -> tuple[OrbitBatch, np.ndarray]:
-    """Orbits integrated directly to t_max, and their states (n, 4) at their escape or at t_max."""
+    """Return orbits integrated directly to t_max, and their states (n, 4) at their escape or at t_max."""
     potential, t_max = whole.spec.potential, whole.spec.t_max
     energies, row = np.unique(
         ordinate if whole.spec.plane is Plane.X_H else np.full(x.size, whole.spec.energy), return_inverse=True

@@ -1,4 +1,4 @@
-"""Common roots of two polynomials: known ones, exact counts, multiplicities."""
+"""Common roots of two polynomials are found with their exact number and multiplicity."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def roots_of(first: sympy.Expr, second: sympy.Expr) -> np.ndarray:
 
 
 def intersections(first: list[tuple[int, int, int]], second: list[tuple[int, int, int]]) -> np.ndarray | None:
-    """Intersections of lines of two families; None if two lines are parallel or two points are equal."""
+    """Return intersections of lines of two families; None if two lines are parallel or two points are equal."""
     points = []
     for (a, b, c), (d, e, f) in product(first, second):
         if a * e == b * d:

@@ -1,4 +1,4 @@
-"""Critical points of polynomials: exact ones, indices, units, common curves."""
+"""Critical points of polynomials are exact, complete, independent of units, and refused along curves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def random_terms(seed: int, degree: int) -> dict[tuple[int, int], float]:
 
 
 def count_turns(potential: Potential, radius: float) -> int:
-    """Turns of the gradient along a circle about the origin."""
+    """Count the turns of the gradient along a circle about the origin."""
     angle = np.linspace(0.0, 2.0 * np.pi, 200_001)
     along_x, along_y = potential.gradient(radius * np.cos(angle), radius * np.sin(angle))
     direction = np.unwrap(np.arctan2(along_y, along_x))

@@ -1,4 +1,4 @@
-"""Potentials that are expressions: the same results as polynomials where both are possible, units, parameters."""
+"""Potentials as expressions have the same results as polynomials, and units and parameters."""
 
 from __future__ import annotations
 

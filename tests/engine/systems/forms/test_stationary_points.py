@@ -1,4 +1,4 @@
-"""Critical points of expressions: known ones, those of polynomials, scales, and refusals."""
+"""Critical points of expressions agree with known points and with polynomials, in any unit, or are refused."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from engine.systems.potential import Potential
 
 
 def points_of(potential: Potential) -> np.ndarray:
-    """Those of the potential as an expression, also if it is a polynomial."""
+    """Return the critical points of a potential as an expression, also of a polynomial."""
     form = potential.form
     expression = ExpressionForm(from_terms(form.coefficients)) if isinstance(form, PolynomialForm) else form
     points = expression.find_critical_points()[:, :2]
