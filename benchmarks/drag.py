@@ -18,10 +18,14 @@ from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 
 VIEWS = (("I", 0.19), ("III", 0.45), ("III", 0.30))
+# Half the range of a drag, in units of the energy.
 SPAN = 0.06
 DRAG_SECONDS = 4.0
+# Number of orbits under the cursor.
 HOVERS = 60
-ENSEMBLES, REPEATS = (1000, 5000, 20000), 10
+# Numbers of orbits in the tab "Watch".
+ENSEMBLES = (1000, 5000, 20000)
+REPEATS = 10
 MEMORY_SAMPLES = 5
 SCRIPT = Path(__file__).with_name("drag.js")
 

@@ -16,7 +16,8 @@ import numpy as np
 from engine import CASES, Evidence, Fate, MapSpec, Plane, compute_map
 from engine.systems.catalogue.table import PAPER_ENERGIES
 
-SIDE, T_MAX = 61, 1e5
+SIDE = 61
+T_MAX = 1e5
 EARLY = [code for code in Evidence if code > Evidence.INTEGRATED]
 
 

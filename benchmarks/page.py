@@ -22,7 +22,9 @@ from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import PANEL, served_app, started_app
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-headless-shell")
+# Places of the actions, as shares of the range of the slider or of the plane.
 SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
+# Number of pages that are opened and closed for the memory of the server.
 CYCLES = 30
 NEW_POTENTIALS = ("½(x² + y²) − x²y² − x³/4", "½(x² + y²) − x²y² − 0.1x⁴y²")
 # Pixels are on the screen at the second animation frame after a change of the source.
@@ -83,7 +85,7 @@ ELEMENTS = """() => {
     walk(document)
     return count
 }"""
-# Until the first pixels have come, or all of them.
+# Conditions that the first pixels, or all pixels, have arrived.
 FIRST_PIXELS, ALL_PIXELS = (
     f"() => {{ const data = window.Bokeh?.documents[0]?.get_model_by_name('maps')?.data; return {condition} }}"
     for condition in ("data?.fate?.[0]?.shape[0] > 1", "data?.complete?.[0] === true")

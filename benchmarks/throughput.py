@@ -39,13 +39,18 @@ ENERGIES = {
     "Two Yukawa centres": -0.5,
 }
 BELOW_ESCAPE = 0.96
-ORBITS, REPEATS = 64, 3
-# Durations in exact units of time, see `Well`; the short one is for the comparison of states.
-DURATION, SHORT = 1e4, 20.0
-# Bounded orbits stay farther from a body than this many of its radii.
+ORBITS = 64
+REPEATS = 3
+# Duration of the timed integrations, in exact units of time (see `Well`).
+DURATION = 1e4
+# Duration before the comparison of states, in exact units of time.
+SHORT = 20.0
+# Smallest distance of the orbits from a body, in radii of the body.
 KEPT_APART = 20.0
-PERMITTED_ERROR, USUAL_TOLERANCE = 1e-11, 1e-13
-# One tolerance for each order of heyoka, which determines its step: 13 to 20 without 19.
+# Largest energy error of heyoka with its loosest tolerance.
+PERMITTED_ERROR = 1e-11
+USUAL_TOLERANCE = 1e-13
+# One tolerance for each order of heyoka, 13 to 20 without 19. The order determines the step.
 TOLERANCES = (5e-11, 1e-11, 1e-12, 1e-13, 2e-14, 2e-15, 2.2e-16)
 WIDE_BATCH = 8
 

@@ -19,8 +19,14 @@ from cli.system_errors import describe_system_error
 
 NAME = "escape-explorer"
 
-INVALID_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
-"""Exit codes: invalid arguments; failure while running; Ctrl-C, as in shells (128 + SIGINT)."""
+INVALID_REQUEST = 2
+"""Exit code for invalid arguments."""
+
+FAILED = 1
+"""Exit code for a failure while running."""
+
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as in shells: 128 + SIGINT."""
 
 COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
 """Names of the modules in `commands`, which are imported when needed."""

@@ -11,8 +11,11 @@ from reproduction.analyses.published_fits import PAPER_FITS
 CHANNEL_ENERGIES = {"I": 0.15, "II": 0.2, "III": 0.3}
 """Energies of the figures that show an orbit through each exit."""
 
-STICKY_CASE, STICKY_ENERGY = "III", 0.26
-"""Case and energy of the paper's regular, chaotic and super-sticky orbits, on (x, px)."""
+STICKY_CASE = "III"
+"""Case of the paper's regular, chaotic and super-sticky orbits, on (x, px)."""
+
+STICKY_ENERGY = 0.26
+"""Energy of these orbits."""
 
 # Decimals of energies. Maps are looked up by energy, so equal energies must be equal to the bit.
 _DECIMALS = 6

@@ -17,9 +17,12 @@ from plots.pictures.palette import Entry, Mark, Palette
 # Number of images that the page computes. Later images are less than a pixel apart.
 _IMAGES = 3
 
-# Strokes of the first, the second and all later images: later images lie closer together.
-_WIDTHS, _ALPHAS = (1.6, 1.0, 0.6), (1.0, 0.9, 0.6)
-_RIM = 0.8
+# Widths of the first, the second and all later images, in pixels. Later images lie closer together.
+_WIDTHS = (1.6, 1.0, 0.6)
+# Opacities of these images.
+_ALPHAS = (1.0, 0.9, 0.6)
+# Width of the halo on each side of a line, in pixels.
+_HALO_RIM = 0.8
 
 IMAGE = Setting(
     name="images",
@@ -53,7 +56,7 @@ def select_image(manifolds: StableManifolds, image: int) -> StableManifolds:
 
 def _stroke(channel: int, image: int, arcs: list[ManifoldArc]) -> Stroke:
     place = min(image, len(_WIDTHS)) - 1
-    halo_width = _WIDTHS[place] + 2.0 * _RIM if image == 1 else 0.0
+    halo_width = _WIDTHS[place] + 2.0 * _HALO_RIM if image == 1 else 0.0
     lines = tuple(np.column_stack([arc.x, arc.px]) for arc in arcs)
     return Stroke(channel, lines, _WIDTHS[place], halo_width, _ALPHAS[place])
 

@@ -22,9 +22,12 @@ TRAIL = 25.0
 
 # Twice the number of pixels of the plot, for high-density screens.
 _SHADED_PIXELS = 600
+# Smallest opacity of visited pixels in a density image, 0 to 255.
 _FAINTEST = 50
-# Half the side of the window of a path, in units of the path's reach, and its limit in distances of the farthest saddle.
-_AROUND_PATH, _FARTHEST_SHOWN = 1.1, 10.0
+# Half the side of the window of a path, in units of the path's reach.
+_AROUND_PATH = 1.1
+# Limit of half the side, in distances of the farthest saddle.
+_FARTHEST_SHOWN = 10.0
 
 
 @dataclass(frozen=True, eq=False)

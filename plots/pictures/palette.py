@@ -260,8 +260,11 @@ DARK = LineColours(
     text="#f0f0f0",
 )  # fmt: skip
 
-MEASURED, SET_ASIDE = "#4c8dc4", "#b9c3cf"
-"""Colours of measured points and of points excluded from a fit."""
+MEASURED = "#4c8dc4"
+"""Colour of measured points."""
+
+SET_ASIDE = "#b9c3cf"
+"""Colour of measured points that are excluded from a fit."""
 
 LAW_COLOURS = {"exponential": "#d1495b", "power law": "#b58900"}
 """Colours of fitted decay laws."""

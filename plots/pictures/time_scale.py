@@ -16,7 +16,10 @@ _LEFT_OUT = 0.01
 _LEAST = 0.1
 # Scales at least this long, in powers of ten, end at round numbers, so that they seldom change from map to map.
 _LONG = 1.0
-_ROUND, _FINE = (1.0, 2.0, 5.0, 10.0), tuple(tenth / 10.0 for tenth in range(10, 101))
+# Ends of long scales, times a power of ten.
+_ROUND = (1.0, 2.0, 5.0, 10.0)
+# Ends of short scales, times a power of ten.
+_FINE = tuple(tenth / 10.0 for tenth in range(10, 101))
 
 
 @dataclass(frozen=True)

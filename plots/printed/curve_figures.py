@@ -22,8 +22,10 @@ from plots.printed.figure_style import SCREEN, FigureStyle
 # Equal curves, such as the shares of mirror-image channels, coincide. The second is dashed, so that both are visible.
 _DASHED = (0, (4.0, 3.0))
 _SAMPLES = 300
-# Height of the figure of curves, in units of its width, with two columns and with one column.
-_HEIGHT, _HEIGHT_OF_COLUMN = 1.2, 4.5
+# Height of the figure of curves with two columns, in units of its width.
+_HEIGHT = 1.2
+# Height with one column.
+_HEIGHT_OF_COLUMN = 4.5
 # Share of remaining starts above which the curve is in the upper half of its panel.
 _MOST_STAY = 0.4
 _SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}

@@ -31,8 +31,11 @@ from plots.printed.potential_figure import draw_well
 FRAMES_PER_SECOND = 25
 """Frames per second of all movies."""
 
+# Height of the figure in units of its width.
 _HEIGHT = 0.55
-_PARTICLE = 3.0
+# Area of a particle in square points.
+_PARTICLE_AREA = 3.0
+# Lower end of the axis of shares, in units of the share of one orbit.
 _LEAST_SHARE = 0.5
 _MIXED_DASHES = (0, (4, 3))
 
@@ -113,7 +116,7 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
     show_window(well, window, "x", "y", style, equal=True)
     count = well.set_title(" ", loc="left", fontsize=style.font_size, color=LIGHT.text)
     colours = [palette.entry(max(fate, Fate.BOUNDED), orbits.outcomes).colour for fate in orbits.fate.tolist()]
-    particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE, c=colours, linewidths=0, zorder=3)
+    particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE_AREA, c=colours, linewidths=0, zorder=3)
     survival = _draw_chart(chart, potential, orbits, style)
     set_font(figure)
     # One layout is enough, because the axes do not move between frames.

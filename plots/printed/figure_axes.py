@@ -45,8 +45,10 @@ _FILE_OPTIONS: Any = {
     # Elements have the same names in every file.
     "svg.hashsalt": "escape-explorer",
 }
+# Width of the lines of frames and ticks, in points.
 _FRAME = 0.7
-_MOST_TICKS = 5
+# Largest number of intervals between ticks on a linear axis.
+_MOST_TICK_INTERVALS = 5
 # Approximate number of letters in a line of text as wide as its font size.
 _LETTERS_PER_EM = 2.0
 # Largest number of columns of a legend below a panel.
@@ -100,7 +102,7 @@ def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -
         if scale == "log":
             axis.set_minor_formatter(NullFormatter())
         else:
-            axis.set_major_locator(MaxNLocator(_MOST_TICKS, steps=[1, 2, 5, 10]))
+            axis.set_major_locator(MaxNLocator(_MOST_TICK_INTERVALS, steps=[1, 2, 5, 10]))
     if grid:
         axes.grid(alpha=0.25, linewidth=0.5)
 

@@ -55,9 +55,12 @@ from plots.printed.figure_axes import (
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
 
-# Distances in units of the font size: from a map to the text below its axis label, from a colour bar to the text below its
-# labels, and from a map to the left edge of its legend.
-_BELOW_AXIS, _BELOW_BAR, _LEFT_OF_AXIS = 3.7, 3.4, 3.0
+# Distance from a map to the text below its axis label, in units of the font size.
+_BELOW_AXIS = 3.7
+# Distance from a colour bar to the text below its labels, in units of the font size.
+_BELOW_BAR = 3.4
+# Distance from a map to the left edge of its legend, in units of the font size.
+_LEFT_OF_AXIS = 3.0
 # Height of a colour bar, as a share of the side of its map.
 _BAR_HEIGHT = 0.04
 # Initial height of a row of maps with legends, before the height is fitted, in units of the width of a map with labels.
@@ -66,8 +69,10 @@ _ROW_HEIGHT = 2.0
 _LEGEND_WIDTH = 0.9
 # Approximate number of letters of a title as wide as its font size.
 _LETTERS_PER_EM = 2.6
-# Width of a letter of a tick label, and the space between labels, in units of the font size.
-_LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
+# Width of a letter of a tick label, in units of the font size.
+_LETTER_WIDTH = 0.5
+# Space between tick labels, in units of the font size.
+_BETWEEN_LABELS = 1.0
 # Smallest distance between ticks of a colour bar, as a share of its length.
 _BETWEEN_TICKS = 0.15
 _EXIT_DASHES = (0, (2.0, 1.5))

@@ -29,8 +29,11 @@ from plots.printed.figure_style import SCREEN, FigureStyle
 from plots.printed.map_figure import draw_curve, draw_limits, draw_pixels, show_window
 from plots.printed.potential_figure import draw_well
 
-# Height of the figure with two columns and with one column, in units of its width.
-_HEIGHT, _HEIGHT_OF_COLUMN = 0.58, 1.9
+# Height of the figure with two columns, in units of its width.
+_HEIGHT = 0.58
+# Height with one column.
+_HEIGHT_OF_COLUMN = 1.9
+# Lower end of the axis of time, in units of time.
 _EARLIEST_TIME = 0.01
 _PATH = "path"
 # The Lyapunov exponent repeats what SALI shows.

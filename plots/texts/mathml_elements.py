@@ -8,8 +8,11 @@ from engine.expressions.text import short_fraction
 
 # Numbers this close to a short fraction, or to the square root of a short fraction, are written as such.
 _ROUNDING = 1e-10
-COORDINATE_DIGITS, COEFFICIENT_DIGITS = 4, 12
-"""Significant digits of decimal numbers: of coordinates, and of coefficients."""
+COORDINATE_DIGITS = 4
+"""Significant digits of coordinates that are decimal numbers."""
+
+COEFFICIENT_DIGITS = 12
+"""Significant digits of coefficients that are decimal numbers."""
 
 
 def number(value: float, shown: int = COORDINATE_DIGITS) -> str:

@@ -28,8 +28,10 @@ MOST_CROSSINGS = 40
 FEWEST_REMAINING = 50
 """Smallest number of remaining starts for which p_n is drawn. With fewer, p_n depends on the grid."""
 
-# First and last index of the part of the colour scale of escape times that contrasts with white and black.
-_LIGHTEST, _DARKEST = 50, 255
+# First index of the part of the colour scale of escape times that contrasts with white.
+_LIGHTEST = 50
+# Last index of this part.
+_DARKEST = 255
 _SAMPLES = 400
 
 

@@ -32,9 +32,10 @@ from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 LONGEST_DRAWN = 4e6
 """Latest escape time of a drawn orbit. Integration takes a second per 1e5 time units."""
 
-# Number of time intervals in each panel for which minimum and maximum of R² are drawn, and number of samples in each interval.
-# R² oscillates with a period of about π, so the samples of an interval cover all phases.
-_INTERVALS, _SAMPLES = 1000, 1000
+# Number of time intervals in each panel for which minimum and maximum of R² are drawn.
+_INTERVALS = 1000
+# Number of samples in each interval. R² oscillates with a period of about π, so the samples cover all phases.
+_SAMPLES = 1000
 # Share of the time before the escape that the second panel shows.
 _LAST = 0.01
 _TIME_UNIT = 1e5

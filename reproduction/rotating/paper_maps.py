@@ -16,10 +16,14 @@ from engine import POTENTIALS, Coordinate, MapSpec, Plane, Potential, Slice, Win
 BODY_RADII = (1e-5, 1e-4, 1e-3, 1e-2)
 """Radii of both bodies of the Copenhagen problem, in units of their distance."""
 
-# Pixels per side. Islands around the Moon are small.
-_SIDE, _SIDE_AT_MOON = 150, 300
+# Pixels per side.
+_SIDE = 150
+# Pixels per side around the Moon, where islands are small.
+_SIDE_AT_MOON = 300
+# In units of time of the system.
+_T_MAX = 1e3
 # In units of time of the system. Orbits around the Moon end soon.
-_T_MAX, _T_MAX_AT_MOON = 1e3, 1e2
+_T_MAX_AT_MOON = 1e2
 
 _RETROGRADE = Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, -0.5 * np.pi),))
 
