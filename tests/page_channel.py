@@ -41,7 +41,7 @@ class Channel:
             raise RuntimeError("the page has no token")
         request = HTTPRequest(re.sub("^http", "ws", address) + "/ws", **options)
         socket = await websocket_connect(request, subprotocols=["bokeh", token[1]])
-        # As in browsers.
+        # Options as in browsers.
         socket.protocol.set_nodelay(True)
         return cls(address, socket)
 

@@ -48,7 +48,7 @@ def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]
         patch.setenv("ESCAPE_EXPLORER_FRAME_ANCESTORS", host)
         address = stack.enter_context(served_app(log))
         yield address
-        # Read before the server stops: Bokeh logs errors of pages that are still connecting then.
+        # The log is read before the server stops, because Bokeh then logs errors of pages that are still connecting.
         text = log.read_text()
     assert "Traceback" not in text, text
 

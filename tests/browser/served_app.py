@@ -123,7 +123,7 @@ def started_app(
     assert process.stdout is not None
     output = Output(process.stdout, log)
     try:
-        # Written when the server listens already.
+        # The server writes this when it already listens.
         output.wait_for("preparing ")
         yield RunningApp(f"http://127.0.0.1:{port}", process, output)
     finally:

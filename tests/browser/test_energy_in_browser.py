@@ -36,7 +36,7 @@ def moving_picture(explorer: ExplorerPage) -> Locator:
 
 
 def test_pixels_follow_the_slider_without_the_server(explorer: ExplorerPage) -> None:
-    # Until the engine is there.
+    # Wait until the browser has its engine.
     explorer.drag_energy_to(0.3, let_go=False)
     explorer.wait_for_preview(0.22)
     explorer.page.evaluate(WATCH)
@@ -117,7 +117,7 @@ def test_an_energy_typed_right_after_choosing_a_case_is_used_and_shown(explorer:
 def test_an_energy_that_is_being_typed_stays_when_the_case_changes(explorer: ExplorerPage) -> None:
     exact_energy(explorer).press("ControlOrMeta+a")
     exact_energy(explorer).press_sequentially("0.6")
-    # Without taking the focus from the box.
+    # This does not take the focus from the box.
     explorer.radio("III").evaluate("radio => radio.click()")
     explorer.wait_for_view("case=III", "h=0.35&")
     expect(exact_energy(explorer)).to_have_value("0.6")

@@ -12,7 +12,7 @@ from playwright.sync_api import expect
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-# What moves on the screen, beginning now.
+# Elements that move on the screen from now on.
 _WATCH_SHIFTS = """() => {
     window.shifts = []
     const place = ({x, y, width, height}) => [x, y, width, height].map(Math.round).join(" ")
@@ -88,7 +88,7 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     explorer.page.evaluate(_PAINTED)
     assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
     explorer.press("Find divergent start")
-    # Its line opens with the button, and stays as it is when the search ends.
+    # The line of the message opens with the button, and keeps its height when the search ends.
     expect(explorer.page.locator(".note").first).to_contain_text(re.compile("divergent start is|start that escapes elsewhere"))
     begin = explorer.page.evaluate(_PAINTED)
     expect(explorer.text("The divergent start is")).to_be_visible()

@@ -46,7 +46,7 @@ POLL_MS = 100
 PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
 LEGEND, SHARES, VERDICT = ".legend, .legend [title]", "table[aria-label=statistics]", ".verdict"
 
-# What the page shows, and what has to be equal; the first difference, or null. The parts of shadow roots count.
+# Returns the first difference between the page, including shadow roots, and the expected content; null if there is none.
 _DIFFERENCE = """expected => {
     if (window.location.search !== expected.address) return "another address"
     const found = {}, texts = Object.fromEntries(Object.keys(expected.texts).map(place => [place, ""]))
@@ -84,13 +84,13 @@ _DIFFERENCE = """expected => {
     return null
 }"""
 
-# Waits for the step, from whose entry a further one is counted; a new entry ends it.
+# Waits for a step through the history. Further steps are counted from its entry, and a new entry ends the wait.
 _GO = """steps => {
     const target = navigation.entries()[navigation.currentEntry.index + steps]
     if (target?.sameDocument) return navigation.traverseTo(target.key).finished.then(() => null, () => null)
 }"""
 
-# The end of waiting: the page agrees, or its address is another one.
+# The wait ends when the page agrees, or its address changes.
 _AGREEMENT = f"""expected => {{
     const difference = ({_DIFFERENCE})(expected)
     return [null, "another address"].includes(difference) && {{agrees: difference === null}}

@@ -72,7 +72,7 @@ def test_two_fingers_that_move_the_same_way_move_the_map(explorer: ExplorerPage)
     move_fingers(explorer, ((-50, 0), (-10, -60)), ((50, 0), (90, -60)))
     explorer.wait_for_view("window=")
     np.testing.assert_allclose(window(explorer)[:, 1], before[:, 1], rtol=1e-6)
-    # What was between the fingers still is.
+    # The same region is still between the fingers.
     np.testing.assert_allclose(explorer.point("basins", *before[:, 0]), np.add(middle, (40, -60)), atol=1.0)
     assert explorer.page.evaluate("() => window.scrollY") == 0
 

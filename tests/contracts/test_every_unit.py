@@ -43,7 +43,7 @@ from tests.contracts.scaling import Scaling
 
 EXACT = (Scaling(8.0, 4.0**-3), Scaling(1.0, 1.0, 16.0), Scaling(2.0**-6, 1.0), Scaling(1.0, 4.0**8))
 INEXACT = (Scaling(3.0, 0.7), Scaling(1.0, 1.0, 8.0))
-# No powers of 2, from the least to the largest that are supported.
+# Factors from the smallest to the largest supported, not powers of 2.
 FAR = (Scaling(1e-6, 1e6), Scaling(7e4, 5e5), Scaling(1.0, 1.0, 8.0))
 
 
@@ -53,7 +53,7 @@ def test_a_coefficient_without_effect_is_refused() -> None:
     )
 
 
-# Of degree 4, with channels of different kinds, and in other units than those of its well.
+# A potential of degree 4, with channels of different kinds, and not in units of its well.
 SKEW = Potential("skew", ((2, 0, 0.9), (0, 2, 0.41), (3, 0, 0.23), (1, 2, -0.52), (0, 4, -0.07)))
 ENERGY, UNIT_OF_TIME = 1.1 * SKEW.escape_energy, SKEW.units.time
 

@@ -43,7 +43,7 @@ def straight(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return files_of(folder / "store")
 
 
-# The calls of a map: its tiles, then those that look for evidence.
+# The calls of a map: first its tiles, then the tests for evidence.
 @pytest.mark.parametrize("good_calls", [0, 20])
 def test_dropped_call_ends_a_sweep_that_resumes_with_the_same_bytes(
     good_calls: int, tmp_path: Path, straight: dict[str, bytes]

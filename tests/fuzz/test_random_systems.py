@@ -18,12 +18,12 @@ from tests.peers.well_comparison import Comparison, compare_with_heyoka
 CHUNK = 10
 # Refusals of wells that are not open, as no orbit escapes or the escape energy is not defined, and of energies of merged exits.
 EXPECTED = ("No saddle leads out", "The well is open without a saddle", "are one exit above V")
-# Most other refusals of a chunk.
+# Largest number of other refusals in a chunk.
 MOST_REFUSED = 2
 # Starts in a rotating system, and exact units of time for which they are followed.
 STARTS, DURATION = 40, 40.0
-# Fewest robust orbits of a system: of others rounding errors decide the ends or the crossings. At the high energy of one system
-# that is so for all orbits.
+# Smallest share of robust orbits in a system. Rounding errors decide the ends or crossings of other orbits. For one system
+# at its high energy, this is true of all orbits.
 LEAST_ROBUST = 0.5
 CHAOTIC_SEEDS = {39}
 chunks = pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def check_well(seed: int) -> tuple[list[Comparison], list[str]]:
 @chunks
 def test_random_wells_agree_with_heyoka_in_random_units(chunk: int) -> None:
     seeds = range(CHUNK * chunk, CHUNK * (chunk + 1))
-    # In a process of its own, as compiled code stays in memory until the end of its process.
+    # In a separate process, because compiled code stays in memory until the end of its process.
     with ProcessPoolExecutor(1, mp_context=fork_context()) as process:
         found = dict(zip(seeds, process.map(check_well, seeds), strict=True))
     assert not {seed: wrong for seed, (comparisons, _) in found.items() if (wrong := [w for c in comparisons for w in c.wrong])}

@@ -25,7 +25,7 @@ async def send(port: int, request: bytes) -> bytes:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     try:
         writer.write(request)
-        # Else the server waits for the rest of an incomplete request.
+        # Otherwise the server waits for the rest of an incomplete request.
         writer.write_eof()
         first = (await asyncio.wait_for(reader.read(), ANSWER_SECONDS)).partition(b"\r\n")[0]
         await asyncio.wait_for(writer.drain(), ANSWER_SECONDS)

@@ -43,7 +43,7 @@ def exits_of(potential: Potential, energy: float) -> list[Exit]:
     x, y, *_ = coordinates()
     exits = [_line(orbit.channel, orbit.curve, x, y) for orbit in find_lyapunov_orbits(potential, energy)]
     for fate, centre in enumerate(potential.centres, potential.channels + 1):
-        # Divided by the radius, so that the height of each has the same scale.
+        # Division by the radius gives all exits the same scale.
         height = 1.0 - ((x - centre.x) ** 2.0 + (y - centre.y) ** 2.0) * (1.0 / centre.radius**2)
         exits.append(Exit(fate, height, lambda _x, _y: True))
     if potential.escape_radius is not None:

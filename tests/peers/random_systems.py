@@ -93,5 +93,5 @@ def random_system(seed: int) -> tuple[Potential, float]:
         lambda: well.with_outcomes(escape_radius=radius),
         lambda: parse_formula(body, parameters=values).in_rotating_frame(well.rotation).with_outcomes([centre], radius),
     )
-    # The exits of a well at rest are no lines; `well_comparison` is about these.
+    # The exits of a well at rest are not straight lines; `well_comparison` compares them.
     return builders[int(random.integers(0 if well.rotation else 2, len(builders)))](), energy

@@ -10,7 +10,7 @@ import numpy as np
 from engine import Potential
 from tests.peers import taylor_heyoka
 
-# Points of a path in each step, how often the interval of a crossing is divided into as many parts, and points of an exit.
+# Points of a path in each step, repeated divisions of the interval of a crossing into that many parts, and points of an exit.
 _SAMPLES, _ZOOMS, _EXIT_POINTS = 16, 5, 2001
 
 
@@ -57,7 +57,7 @@ class Peer:
 
     def __init__(self, potential: Potential, tolerance: float) -> None:
         self.upward: list[float] = []
-        # Without a reference to this object, which would never be freed.
+        # The lambda has no reference to this object, because heyoka would keep it for ever.
         passed = self.upward.append
         y, upward = taylor_heyoka.coordinates()[1], hy.event_direction.positive
         # heyoka does not copy a lambda.

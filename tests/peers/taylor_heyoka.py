@@ -49,7 +49,7 @@ def _in_heyoka(form):
 @_in_heyoka.register
 def _(form: PolynomialForm):
     x, y, *_ = coordinates()
-    # Not as powers: the series of y**3 divides by y.
+    # Products instead of powers, because the series of y**3 divides by y.
     terms = (math.prod([x] * i + [y] * j, start=hy.expression(c)) for i, j, c in form.terms)
     return sum(terms, start=hy.expression(0.0))
 

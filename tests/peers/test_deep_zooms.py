@@ -24,7 +24,7 @@ def zoomed(seed: int, width: float) -> EscapeMap:
         whole = compute_map(MapSpec(POTENTIAL, Plane.X_PX, ENERGY, (SIDE, SIDE), window, t_max=T_MAX))
         if now <= width:
             return whole
-        # Some pixels wide, so that the boundary stays in the window.
+        # The square is some pixels wide, so that the boundary stays in the window.
         now = max(now / 5.0, width)
         places = np.argwhere(find_unlike_neighbours(whole.fate, 0 * whole.crossings) & (whole.fate > 0))
         row, column = places[rng.integers(len(places))]
@@ -63,7 +63,7 @@ def test_the_estimated_share_of_lost_pixels_covers_the_wrong_ones_and_is_not_muc
     wrong = float(np.mean((long_fates(whole) != whole.fate)[escaped]))
     assert whole.rounded_share is not None
     # The estimate also counts crossings that change, and pixels that are right only on the map.
-    # Seeds choose the windows, and maps are equal to the bit on all processors: no sample varies.
+    # No sample varies: seeds choose the windows, and maps are equal to the bit on all processors.
     assert wrong - 0.02 <= whole.rounded_share <= 4.0 * wrong + 0.04
 
 

@@ -52,7 +52,7 @@ def test_ridges_lie_on_the_manifolds_of_their_direction_of_time(direction: str, 
     ridges = find_ridges(descriptor)
     assert len(ridges) > 500
     assert share_within_a_pixel(ridges, manifold_points(3, sign)) > 0.98
-    # Later images lie close together, so that the first two tell one direction of time from the other.
+    # Only the first two images distinguish the directions of time, because later images lie close together.
     first, wrong = manifold_points(2, sign), manifold_points(2, -sign)
     assert share_within_a_pixel(ridges, first) > 0.85 > 2.0 * share_within_a_pixel(ridges, wrong)
     assert share_within_a_pixel(first, ridges) > 0.75

@@ -18,7 +18,7 @@ NAMES = [entry.name for entry in ROTATING_ENTRIES]
 STARTS, ENERGIES, DURATION = 60, 3, 40.0
 # Shares of a radius, or of the distance of a saddle, by which the nearest point of an orbit lies beyond an exit.
 DEPTHS = (1e-9, -1e-9)
-# In exact units of time, between the start of a grazing orbit, its nearest point, and the end of the integration.
+# Times from the start of a grazing orbit to its nearest point, and from there to the end, in exact units of time.
 TIME_TO_TURN, AFTER = 1.0, 0.1
 
 
@@ -122,10 +122,10 @@ def test_an_orbit_that_grazes_an_exit_ends_there_only_beyond_it(name: str, energ
 
     tested = 0
     for fate, turning in grazing_states(potential, energy, depth):
-        # Some that turn back slowly turn outward again, and cross the exit.
+        # Some orbits that turn back slowly turn outward again, and cross the exit.
         turning = turning[are_inside(taylor_heyoka.propagated(potential, turning, after - before))]
         starts = taylor_heyoka.propagated(potential, turning, -before)
-        # Backward in time some pass close to the other body, where heyoka's steps lose the energy.
+        # Backward in time some orbits pass close to the other body, where heyoka's steps do not conserve the energy.
         starts = starts[np.abs(potential.energy(starts) - energy) < 1e-10 * potential.units.energy]
         starts = starts[are_inside(starts)]
         # Orbits that have passed an exit before are not counted.

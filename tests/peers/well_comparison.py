@@ -34,7 +34,7 @@ DRAWN = Scaling(1.0, 1.0)
 def flood_fill(potential: Potential, energy: float, exits: Exits) -> tuple[np.ndarray, ...]:
     """x, y (GRID, GRID), whether inside, and whether known: below the energy and three pixels from all exits and walls."""
     corner, inside = np.full(2, SMALLEST * potential.units.length), np.ones((GRID, GRID), bool)
-    # Until the grid holds the whole interior, which may be slender.
+    # The grid grows until it contains the whole interior, which may be slender.
     while (at_edges := [inside[:, [0, -1]].any(), inside[[0, -1]].any()]) != [False, False]:
         corner *= np.where(at_edges, 1.3, 1.0)
         x, y = np.meshgrid(*(np.linspace(-far, far, GRID) for far in corner))

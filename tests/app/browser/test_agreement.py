@@ -48,7 +48,7 @@ SLICES = (
 # Powers of ten.
 ZOOMS = (0, 0, 2, 2, 5, 9)
 SIDE, COARSE, HORIZON = 30, 10, 30.0
-# Of all pixels, sensitive ones included.
+# Smallest share of equal pixels, including sensitive pixels.
 LEAST_SHARE = 0.995
 
 

@@ -25,7 +25,7 @@ from tests.app.browser_messages import send
 
 Report = Callable[..., None]
 NAN = float("nan")
-# Wrong for every component.
+# Messages that are wrong for every component.
 NEVER = [None, 7, "x", [], {}, {"other": 1}]
 
 
@@ -100,7 +100,7 @@ EXAMPLES = {
     ),
     "player of orbits": Example(
         make_player,
-        # Numbers of a browser have no type: 5.0 arrives as 5.
+        # JavaScript has one type of numbers: 5.0 arrives as 5.
         [({"step": step, "begin": 5, "end": 12.5}, (step,)) for step in (0, 1, 600)],
         [
             {"step": 3},

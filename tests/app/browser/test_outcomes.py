@@ -36,13 +36,13 @@ from tests.node import needs_node, run_node
 COUNT = 400
 # In units of the well, as the page computes at rest.
 HORIZON = 100.0
-# A change of the starts that decides nothing where the motion is not very sensitive, and what that changes of times.
+# Shift of the starts that changes no outcome unless the motion is very sensitive, and the changes of times that it causes.
 SMALL, SAME_TIME = 1e-11, 1e-5
-# Those of the browser are located to 1e-9.
+# The browser locates end times to 1e-9.
 TIME_ERROR = 1e-6
-# How far beyond the edge of a disc, or inside of it, orbits are at their closest, as a share of the radius.
+# Smallest distances of orbits from the edge of a disc, outside or inside, as a share of the radius.
 DEPTH = 1e-3
-# Time from the start to the disc.
+# Time from the start to the disc, in units of time.
 TO_THE_DISC = 0.3
 
 
@@ -155,14 +155,14 @@ def touching_states(potential: Potential, energy: float, share: float) -> np.nda
 def test_an_orbit_that_grazes_a_disc_within_a_step_collides(name: str, tmp_path: Path) -> None:
     potential, energy = GRAZED[name]
     collision = potential.channels + 1
-    # In the step that passes the horizon, and before.
+    # The orbit ends in the step that passes the horizon, or before.
     for share, t_max in itertools.product((1.0 - DEPTH, 1.0 + DEPTH), (1.1 * TO_THE_DISC, 10.0 * TO_THE_DISC)):
         states = touching_states(potential, energy, share)
         outcomes = classify_orbits(potential, energy, states, t_max)
         touched = (outcomes.fate == collision) & (outcomes.escape_time < 1.1 * TO_THE_DISC)
         assert touched.all() if share < 1.0 else not touched.any()
         found = ends_in_browser(potential, energy, states, t_max, tmp_path)
-        # What has collided is not followed beyond the edge.
+        # Orbits that have collided are not followed beyond the edge.
         assert np.isnan(found["player"]["x"][outcomes.fate == collision]).all()
         for way, ends in found.items():
             np.testing.assert_array_equal(decided(ends["fate"]), outcomes.fate, err_msg=way)

@@ -54,7 +54,7 @@ def test_only_the_steps_of_a_coroutine_count() -> None:
         clock.now += 1.0
         other.set()
         assert await task == "done"
-        # It has got the share of two seconds and has taken one.
+        # In two seconds the page may use its share of them; it has used one second.
         assert share.wait_seconds() == 0.0
         share.take(2.0 * SHARE - 1.0)
         assert share.wait_seconds() == 0.0

@@ -131,7 +131,7 @@ def test_calls_after_the_session_are_dropped() -> None:
         document = weakref.ref(session.document)
         session.destroy()
         call(1)
-        # What the call has begun ends before.
+        # Tasks that the call has started end first.
         begun = asyncio.Event()
         asyncio.get_running_loop().call_soon(begun.set)
         await begun.wait()

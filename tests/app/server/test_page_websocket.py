@@ -62,7 +62,7 @@ async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIt
     finally:
         for channel in channels:
             channel.close()
-            # What is under way must arrive before the server's tasks end.
+            # Messages in transit must arrive before the server's tasks end.
             async for _ in channel.messages():
                 pass
         server.stop()
@@ -102,7 +102,7 @@ async def move_slider(channel: Channel, document: Document) -> None:
 
 def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        # What has to be made up for takes half a second.
+        # The excess that must be waited for is half a second.
         state.fair_share(document).take(BURST_SECONDS + 0.5 * SHARE)
         channel.set(slider_of(document).id, value=5)
         assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
@@ -169,7 +169,7 @@ def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessS
             with set_curdoc(document):
                 pane.object = f"{next(texts)}{LONG}"
         assert "title" in await receive(channel, "PATCH-DOC")
-        # The first part of the three changes, whose end is still under way.
+        # The first part of the three changes. Their end is still in transit.
         await channel.part()
         tasks.append(await lengthen_title())
         with set_curdoc(document):

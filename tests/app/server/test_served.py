@@ -26,7 +26,7 @@ from tests.browser.served_app import RunningApp, started_app
 from tests.page_channel import Channel
 from tests.waiting import SECONDS
 
-# Bounded orbits, which take longer than any test.
+# A map of bounded orbits, which takes longer than any test.
 LONG_MAP = {"case": "III", "h": "0.26", "resolution": "900", "t_max": "1e+06", "plane": "x_y"}
 MARKUP = {"V": '"><script>1</script>', "h": "0.25"}
 

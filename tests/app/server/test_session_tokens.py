@@ -106,7 +106,7 @@ def test_a_token_may_begin_a_session_for_a_limited_time_of_the_monotonic_clock(
     age: float, fresh: bool, application: BokehTornado, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     token = issue_token(application, request(), {}, clock=lambda: 50.0)
-    # The clock of the wall does not matter.
+    # The wall clock does not matter.
     monkeypatch.setattr(time, "time", lambda: 2.0**33)
     assert may_begin_session(application, token, clock=lambda: 50.0 + age) == fresh
 

@@ -23,7 +23,7 @@ from tests.app.session.opened_page import opened_page, tell_ready, wait_for
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
-# Whatever takes time, or reads from the disk what did; a potential has no other costly quantities.
+# All quantities of a potential that take time, or are read from the disk.
 _FUNCTIONS = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
 SLOW = [inspect.unwrap(function).__code__ for function in _FUNCTIONS]
 STARTED, TOOL = sys.monitoring.events.PY_START, 4
@@ -33,7 +33,7 @@ STARTED, TOOL = sys.monitoring.events.PY_START, 4
 def called() -> Iterator[list[str]]:
     """The slow functions that are called in this process."""
     called: list[str] = []
-    # As when the server starts.
+    # The state is that at the start of a server.
     for case in CASES:
         review_catalogue_entry(case)
     sys.monitoring.use_tool_id(TOOL, "slow functions")

@@ -20,10 +20,10 @@ from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
 from tests.waiting import SECONDS
 
-# With the integrator of case I.
+# A potential with the integrator of case I.
 WEAKER = "½(x² + y²) − 0.5xy²"
 STRONGER = "½(x² + y²) − 2xy²"
-# With an integrator that no other test compiles.
+# A potential with an integrator that no other test compiles.
 NEW = "½(x² + y²) + x²y − y³/3 + 0.001x^6"
 # The channels 1 and 3 merge at h = 0.5.
 CHANNELS_THAT_MERGE = "½(x² + y²) − xy² − x⁴/8"

@@ -88,6 +88,6 @@ def test_the_player_gets_the_rate_of_mixed_motion_where_starts_share_energy_and_
     for several in (Plane.X_H, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))):
         session.state.plane = several
         assert session.player.rate == 0.0
-        # A result that is known is there at once.
+        # A cached result is available at once.
         session.state.plane = Plane.X_PX
         assert session.player.rate == expected

@@ -57,7 +57,7 @@ def test_every_point_of_the_orbit_lies_on_its_exit_curve_and_beyond_its_gate(pot
 
 
 def test_gates_of_several_energies_lie_inside_all_exits() -> None:
-    # At the higher energy the axes of the exit are others.
+    # At the higher energy the exit has other axes.
     energies = [1.02 * BENT_WALL.escape_energy, 2.0 * BENT_WALL.escape_energy]
     a, b, c = exit_gates(np.array([exit_curves(BENT_WALL, energy) for energy in energies]))[0]
     for energy in energies:

@@ -33,7 +33,7 @@ from tests.peers.dop853 import equations
 
 # Even in x and y. The maxima lie on the y axis, between channels 1 and 2, and between 3 and 4.
 SYMMETRIC = Potential("symmetric", ((2, 0, 0.8902), (0, 2, 0.3619), (2, 4, -0.94), (0, 6, -0.0346)))
-# No symmetry, and a channel apart from those that merge.
+# A potential without symmetry, and with a channel that does not merge.
 GENERAL = Potential(
     "general",
     (
@@ -42,7 +42,7 @@ GENERAL = Potential(
     ),
 )
 MAXIMUM = SYMMETRIC.well.channel_mergers[0].energy
-# In units of the maximum.
+# Energies in units of that of the maximum.
 ABOVE = 1.2
 
 

@@ -13,7 +13,7 @@ from engine.foundations.execution import Execution
 from engine.results import Outcomes
 
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
-# Has bounded, escaping, forbidden and outside pixels, and more pixels than the first frame.
+# A map with bounded, escaping, forbidden and outside pixels, and more pixels than the first frame.
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.35, (70, 66), t_max=300.0)
 
 

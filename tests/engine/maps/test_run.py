@@ -27,7 +27,7 @@ from engine.maps.result import PIXEL_ARRAYS
 from tests.forgetful_pool import ForgetfulPool
 
 ALONG_EPSILON = Slice(Coordinate.X, ParameterAxis("epsilon", 0.9, 1.1, System("I")))
-# The orbits of each are tested twice, at t = 1000 and 10 000, and those of the last one also at 100 000.
+# The orbits of each map are tested at t = 1000 and 10 000, and those of the last map also at 100 000.
 SPECS = {
     "III": MapSpec(CASES["III"], Plane.X_PX, 0.30, (24, 24), t_max=2e4),
     "many energies": MapSpec(CASES["III"], Plane.X_H, (0.25, 0.5), (16, 12), t_max=2e4),

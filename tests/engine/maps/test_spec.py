@@ -44,7 +44,7 @@ def starts_on_a_symmetry_line(spec: MapSpec) -> int:
     return int(sum((states[:, pair] == 0.0).all(axis=1).sum() for pair in ([0, 2], [1, 3])))
 
 
-# x and y held by a momentum of 0 or by an angle, in both orders of the axes.
+# Slices over x and y with a fixed momentum of 0 or a fixed angle, in both orders of the axes.
 @pytest.mark.parametrize(
     ("plane", "energy"),
     [

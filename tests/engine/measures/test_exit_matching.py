@@ -47,7 +47,7 @@ def test_as_many_orbits_pass_from_one_exit_to_another_as_back() -> None:
     assert counts.min() > 10
     # The difference of each of a few pairs is normal; the probability of a false alarm is 4e-8.
     assert np.all(np.abs(counts - counts.T) <= 5.5 * np.sqrt(counts + counts.T))
-    # They remember how they entered.
+    # The orbits remember how they entered.
     assert np.ptp(counts / counts.sum(axis=1, keepdims=True), axis=0).max() > 0.1
 
 

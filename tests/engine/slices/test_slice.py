@@ -177,7 +177,7 @@ def test_a_start_of_any_slice_is_forbidden_exactly_where_energy_is_missing(plane
     np.testing.assert_array_equal(np.isnan(states).any(axis=1)[clear], missing[clear] > 0.0)
 
 
-# With pixels at 0, and without.
+# Maps with and without pixels at 0.
 @pytest.mark.parametrize("shape", [(6, 4), (5, 3)])
 @example(Slice(Coordinate.X, Coordinate.BETA))
 @example(Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, 0.0),)))

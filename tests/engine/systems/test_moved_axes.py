@@ -40,7 +40,7 @@ def test_saddles_have_the_energies_that_authors_state(
 def test_the_lowest_exit_of_de_leon_and_berne_is_the_saddle_of_their_formula() -> None:
     potential = parse_formula(f"{DE_LEON_BERNE}; well (0, 0.7)")
     assert review_potential(potential).refusal is None
-    # Their saddle is at (0, 0), with V = 1.
+    # In the authors' formula the saddle is at (0, 0), with V = 1.
     assert potential.escape_energy == pytest.approx(1.0, abs=1e-14)
     lowest = potential.saddles[np.argmin(potential.well.saddle_energies)]
     np.testing.assert_allclose(lowest + potential.origin, 0.0, atol=1e-14)

@@ -59,7 +59,7 @@ def test_two_windows_of_digits_must_fit_into_t_max(t_max: float, count: int) -> 
 # Conclusions.
 
 
-# Of SALI, the exponent, the digits of halves, and the digits.
+# Conclusions of SALI, the exponent, the digits of halves, and the digits.
 TORUS = [Verdict.NO_SIGN, Verdict.NO_SIGN, Verdict.REGULAR, Verdict.REGULAR]
 
 

@@ -155,7 +155,7 @@ def test_escape_energy_and_lyapunov_orbits_are_computed() -> None:
     escape = StatedNumber("II", None, (), "", Quantity.ESCAPE_ENERGY, Relation.EXACTLY, 1 / 6)
     r2 = StatedNumber("III", Plane.X_Y, (0.26,), "", Quantity.LYAPUNOV_R2, Relation.ABOUT, 1.26)
     assert measure(escape).agrees
-    # Known from an independent computation of these orbits.
+    # This number is known from an independent computation of the orbits.
     assert measure(r2).computed == pytest.approx((1.004, 1.016), abs=5e-4)
 
 

@@ -43,7 +43,7 @@ def test_the_mode_chooses_the_active_tool(maps: MapsView, drag: Drag, kind: type
     for mode in (drag, Drag.PAN, drag):
         maps.set_drag(mode)
     assert isinstance(maps.figures["basins"].toolbar.active_drag, kind)
-    # Made once, when it is first chosen.
+    # The tool is made once, when it is first chosen.
     assert len(tools(maps, BoxZoomTool)) == (drag is Drag.ZOOM)
     assert len(tools(maps, BoxSelectTool)) == (drag is Drag.COUNT)
 

@@ -72,7 +72,7 @@ def test_an_account_has_a_share_of_the_limit(limited: CompiledOperations) -> Non
             limited.add("second", 1)
     with charged_to("other"):
         limited.add("second", SHARE)
-    # Nobody's.
+    # Code without an account.
     limited.add("third", 2 * SHARE)
     assert limited.used == MOST
 

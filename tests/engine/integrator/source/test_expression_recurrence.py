@@ -18,7 +18,7 @@ from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
 from engine.integrator.source.series import ORDER
 
-# Together all kinds of nodes.
+# Together these formulas have all kinds of nodes.
 TEXTS = (
     "½r² − x²y exp(−y²)",
     "−1/√(x² + 0.7y² + 0.3) + 0.2 x² y log(2 + x)",

@@ -84,7 +84,7 @@ def test_a_constant_shifts_the_range_of_energies() -> None:
 
 
 def test_nested_roots_are_searched_once_each() -> None:
-    # With a search for each way that leads to an inner root, this takes half a minute instead of a second.
+    # With a separate search for each path to an inner root, this would take half a minute instead of a second.
     text = "1+y²"
     for k in range(1, 7):
         text = f"({text}+x^{k})^.5"

@@ -86,7 +86,7 @@ def test_points_are_those_of_newtons_method_from_many_starts(seed: int) -> None:
 @pytest.mark.parametrize(
     ("text", "points", "minima"),
     [
-        # Softened bodies, and bumps: what is divided by is small, and 0 nowhere.
+        # Softened bodies, and bumps. Divisors are small, but nowhere 0.
         ("½(x² + y²) − x²y² + 0.001/((x² − 0.5)² + (y² − 0.5)² + 1e-3)", 13, 1),
         ("½(x² + y²) − 1/√((x − 0.5)² + y² + 0.02²) − 1/√((x + 0.5)² + y² + 0.02²)", 3, 2),
         # A minimum so narrow that no start of Newton's method finds it, and a saddle beside it.

@@ -59,7 +59,7 @@ def test_the_family_has_its_symmetries(n: int) -> None:
 
 
 def test_a_far_saddle_in_a_narrow_valley_is_reviewed() -> None:
-    # It is 27 000 units away, and the curvatures across and along the valley have the ratio 550.
+    # The saddle is 27 000 units away, and the curvatures across and along the valley have the ratio 550.
     terms = (
         *((2, 0, 0.5303), (0, 2, 0.7672), (1, 1, -0.1449), (2, 1, -0.4607), (1, 4, -0.0938), (1, 3, -0.2776), (0, 5, -0.0645)),
         *((3, 0, 0.3398), (4, 0, 0.3995), (2, 3, -0.2132), (0, 4, 0.0443), (1, 2, -0.7503), (3, 2, 0.0155)),
