@@ -23,7 +23,7 @@ from tests.app.session.opened_page import opened_page, tell_ready, wait_for
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
-# All quantities of a potential that take time, or are read from the disk.
+# Functions that compute slow quantities of a potential, or read them from the disk.
 _FUNCTIONS = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
 SLOW = [inspect.unwrap(function).__code__ for function in _FUNCTIONS]
 STARTED, TOOL = sys.monitoring.events.PY_START, 4
