@@ -60,6 +60,9 @@ class Example:
 COPENHAGEN = POTENTIALS["Copenhagen"]
 ROTATING_WELL = parse_formula("½(x² + y²) − x y²").in_rotating_frame(0.3).with_outcomes((), 3.0)
 EXAMPLES = {
+    "a mass in a rotating frame": Example(
+        parse_formula("½(x² + y²) − x y²; masses (8, 8)").in_rotating_frame(0.1), 0.19, 0.8, horizon=2.0 * HORIZON
+    ),
     "two bodies in a rotating frame": Example(COPENHAGEN, -1.3, 3.0),
     "case I with a disc": Example(CASES["I"].with_outcomes([Centre(0.3, 0.1, 0.05)]), 0.19, 0.8),
     "well in a rotating frame": Example(ROTATING_WELL, 0.25, 1.2),
@@ -87,8 +90,8 @@ def random_states(example: Example) -> np.ndarray:
     x, y = chance.uniform(-example.half_side, example.half_side, (2, 20 * COUNT))
     inside = (potential.value(x, y) < energy) & (find_outside_channels(potential, energy, x, y) == 0)
     x, y = x[inside][:COUNT], y[inside][:COUNT]
-    speed, angle = np.sqrt(2.0 * (energy - potential.value(x, y))), chance.uniform(0.0, 2.0 * np.pi, COUNT)
-    return np.column_stack([x, y, speed * np.cos(angle), speed * np.sin(angle)])
+    momentum, angle = np.sqrt(2.0 * potential.mass * (energy - potential.value(x, y))), chance.uniform(0.0, 2.0 * np.pi, COUNT)
+    return np.column_stack([x, y, momentum * np.cos(angle), momentum * np.sin(angle)])
 
 
 def ends_in_browser(
