@@ -121,7 +121,7 @@ def test_a_start_can_be_typed(explorer: ExplorerPage) -> None:
     expect(explorer.text(f"Escaped through exit {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
 
 
-def test_zooming_one_map_computes_the_region_for_all(explorer: ExplorerPage) -> None:
+def test_zooming_one_map_computes_the_region_for_all_maps(explorer: ExplorerPage) -> None:
     width = explorer.column("dw")
     explorer.turn_wheel("times", 0.4, 0.1, -500)
     explorer.wait_for_view("window=")

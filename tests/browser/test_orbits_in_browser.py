@@ -97,7 +97,7 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
 
 
-def test_messages_end_with_what_they_were_about(explorer: ExplorerPage) -> None:
+def test_messages_disappear_with_their_subject(explorer: ExplorerPage) -> None:
     explorer.open_fold("Type a start")
     explorer.type_number("px", "nothing")
     expect(explorer.text("Type a number into both boxes first.")).to_be_visible()

@@ -31,7 +31,7 @@ def move_time_to(explorer: ExplorerPage, share: float) -> None:
 _LOADED = "module => performance.getEntriesByType('resource').some(entry => entry.name.endsWith(`/${module}`))"
 
 
-def test_the_player_is_loaded_when_it_is_asked_for_and_the_well_drains(open_explorer: OpenExplorer) -> None:
+def test_the_player_is_loaded_on_request_and_the_well_drains(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{QUICK}&watch=well,1000,1,-2")
     # The engine in the browser is loaded after the first map.
     explorer.page.wait_for_function(_LOADED, arg="main.js")

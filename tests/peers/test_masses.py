@@ -58,7 +58,7 @@ def path_of(potential: Potential, state: np.ndarray, times: np.ndarray, mass: fl
 
 
 @pytest.mark.parametrize("seed", [seed for seed in SEEDS if heavy_system(seed)[0].channels])
-def test_orbits_of_a_mass_are_those_of_its_equations_of_motion(seed: int) -> None:
+def test_orbits_with_a_mass_obey_their_equations_of_motion(seed: int) -> None:
     (potential, energy), mass = heavy_system(seed), random_mass(seed)
     starts = sample_starts(potential, energy, 5, seed=seed)
     kinetic = (starts[:, 2:] ** 2).sum(axis=1) / (2.0 * mass)
@@ -130,7 +130,7 @@ def test_a_mass_can_be_the_axis_of_a_map() -> None:
     np.testing.assert_array_equal(2.0 * times[0].escape_time, times[1].escape_time)
 
 
-def test_the_jacobi_constant_is_that_of_a_unit_mass() -> None:
+def test_the_jacobi_constant_of_a_mass_is_that_of_a_unit_mass() -> None:
     at_rest, heavy = (parse_formula(f"−{k}/√(r² + 1){masses}") for k, masses in ((1, ""), (8, "; masses (8, 8)")))
     one, other = at_rest.in_rotating_frame(0.3), heavy.in_rotating_frame(0.3)
     assert other.jacobi_constant(8.0 * -0.5) == pytest.approx(one.jacobi_constant(-0.5))

@@ -97,7 +97,7 @@ def robust_pixels(plane: Slice, spec: MapSpec, random: np.random.Generator) -> t
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(COUNT))
-def test_fates_of_robust_pixels_are_those_of_heyoka(number: int) -> None:
+def test_fates_of_robust_pixels_agree_with_heyoka(number: int) -> None:
     random = np.random.default_rng([32, number])
     system = SYSTEMS[number % len(SYSTEMS)]
     plane, potential = random_slice(random, system), system.potential

@@ -38,7 +38,7 @@ def energies_of(name: str) -> list[float]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_outcomes_are_those_of_heyoka(name: str) -> None:
+def test_outcomes_agree_with_heyoka(name: str) -> None:
     potential = System(name).potential
     for energy in energies_of(name):
         starts = sample_starts(potential, energy, STARTS, seed=1)

@@ -73,7 +73,7 @@ def positions_of_heyoka(potential: Potential, state: np.ndarray, times: np.ndarr
 
 
 @needs_node
-def test_orbits_are_where_heyoka_has_them_until_they_leave(followed: Followed) -> None:
+def test_orbits_agree_with_heyoka_until_they_leave(followed: Followed) -> None:
     compared = 0
     places = np.array([[frame["x"], frame["y"]] for frame in followed.frames])
     for orbit in range(COUNT):

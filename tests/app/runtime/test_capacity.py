@@ -127,7 +127,7 @@ def test_one_visitor_cannot_fill_the_server_for_others_but_may_use_all_of_it_alo
     assert not capacity.has_room({"crowd": float(most)}, "crowd")
 
 
-def test_a_page_counts_less_when_its_visitor_rests_and_nothing_when_it_is_left() -> None:
+def test_an_idle_page_counts_less_and_an_abandoned_page_nothing() -> None:
     clock = Clock()
     share = FairShare(clock.monotonic)
     assert count_page(share, connected=False) == count_page(share, connected=True) == 1.0

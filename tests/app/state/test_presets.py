@@ -157,7 +157,7 @@ def test_fates_agree_with_the_caption(key: str) -> None:
     assert fates(view_of(key)) == FATES[key]
 
 
-def test_the_example_on_stable_manifolds_shows_them() -> None:
+def test_the_example_on_stable_manifolds_shows_manifolds() -> None:
     assert "manifolds=yes" in write_link(ViewState(**view_of("threads").values()))
 
 

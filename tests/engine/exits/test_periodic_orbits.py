@@ -68,9 +68,7 @@ def test_brake_orbits_are_also_found_by_continuation(potential: Potential, energ
         (L2, 2.95787377644491, 5.640853006654308, 61.0217545317533),
     ],
 )
-def test_orbits_of_earth_and_moon_are_those_of_the_catalogue(
-    channel: int, jacobi: float, period: float, stability: float
-) -> None:
+def test_orbits_of_earth_and_moon_agree_with_the_catalogue(channel: int, jacobi: float, period: float, stability: float) -> None:
     """Three-Body Periodic Orbits of NASA's Jet Propulsion Laboratory, version 1.0: Earth-Moon, planar Lyapunov orbits.
 
     Jacobi constant, period and stability index (λ + 1/λ)/2 of some members of both families, from a published copy of what its

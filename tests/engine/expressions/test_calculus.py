@@ -47,7 +47,7 @@ def values_of(expression: Expression) -> np.ndarray:
 
 @seeds
 @pytest.mark.parametrize("orders", [(1, 0), (0, 1), (2, 0), (1, 1), (0, 2)])
-def test_derivatives_are_those_of_sympy(seed: int, orders: tuple[int, int]) -> None:
+def test_derivatives_agree_with_sympy(seed: int, orders: tuple[int, int]) -> None:
     expression = random_expression(seed)
     derived = expression
     for axis, order in enumerate(orders):

@@ -73,7 +73,7 @@ def test_the_former_functions_of_orbits_refuse_another_potential() -> None:
         find_multipliers(CASES["I"], exit_orbit)
 
 
-def test_the_former_request_of_curves_is_one_of_a_sweep() -> None:
+def test_the_former_request_of_curves_is_a_request_of_a_sweep() -> None:
     with pytest.warns(DeprecationWarning, match="^CurvesSpec is deprecated: use SweepSpec$"):
         spec = engine.CurvesSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), 500.0, exponent=False)  # type: ignore[attr-defined]
     assert spec == SweepSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)

@@ -68,7 +68,7 @@ class CallCounter(SerialExecutor):
 
 
 @each_spec
-def test_a_map_continued_from_shorter_ones_is_the_one_computed_at_once(spec: MapSpec) -> None:
+def test_a_map_continued_from_shorter_maps_equals_a_map_computed_at_once(spec: MapSpec) -> None:
     result = None
     for t_max in (*LADDER, spec.t_max):
         result = compute_map(replace(spec, t_max=t_max), resume=result)

@@ -230,7 +230,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_a_file_of_another_kind_than_the_wanted_one_is_refused(tmp_path: Path) -> None:
+def test_a_file_of_an_unwanted_kind_is_refused(tmp_path: Path) -> None:
     CASES["I"].save(tmp_path / "case.nc")
     assert open_result(tmp_path / "case.nc", Potential) == CASES["I"]
     with pytest.raises(ValueError, match=r"case\.nc: holds Potential; must hold EscapeMap$"):

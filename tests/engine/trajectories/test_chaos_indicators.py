@@ -44,7 +44,7 @@ def late_escape() -> tuple[np.ndarray, Orbit]:
 # Digits by window length.
 
 
-def test_digits_of_a_torus_rise_to_those_of_evidence() -> None:
+def test_digits_of_a_torus_rise_to_the_number_that_is_evidence() -> None:
     found = compute_birkhoff_digits(CASES["I"], start_states(CASES["I"], Plane.X_PX, 0.12, np.array([-0.2]), np.zeros(1))[0], 1e5)
     assert found.digits.size > 1
     assert np.all(np.diff(found.digits) > 1.0)

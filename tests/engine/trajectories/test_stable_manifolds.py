@@ -78,7 +78,7 @@ def test_arcs_separate_escapes_after_n_crossings_from_orbits_that_turn_back(name
             assert separating_share(CASES[name], energy, channel, image) >= 0.99
 
 
-def test_arcs_of_a_channel_on_the_axis_separate_earlier_escapes_from_later_ones() -> None:
+def test_arcs_of_a_channel_on_the_axis_separate_earlier_from_later_escapes() -> None:
     image = 2
     points = points_with_normals(manifolds(CASES["II"], 0.2), 1, image)
     times = []

@@ -85,7 +85,7 @@ def test_undecided_pixels_show_those_of_an_earlier_map() -> None:
     assert draw_over(frame, earlier, (2, 2))["fate"][0].tolist() == [[5, 8], [9, 6]]
 
 
-def test_coarse_pixels_do_not_replace_finer_ones_of_the_same_place() -> None:
+def test_coarse_pixels_do_not_replace_finer_pixels_of_the_same_place() -> None:
     earlier = columns_of([[7, 8], [9, 6]], (0.0, 2.0, 0.0, 2.0))
     frame = columns_of([[5]], (0.0, 2.0, 0.0, 2.0))
     assert draw_over(frame, earlier, (4, 4))["fate"][0].tolist() == [[7, 8], [9, 6]]

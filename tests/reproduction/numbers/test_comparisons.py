@@ -180,7 +180,7 @@ def test_a_window_is_recovered_from_its_percentages(window: Window) -> None:
     assert found.share((1,)) == pytest.approx(counted(window)[1,], abs=2.0)
 
 
-def test_percentages_in_a_window_are_reported_beside_those_inside() -> None:
+def test_percentages_in_a_window_are_reported_in_addition_to_those_inside() -> None:
     number = replace(
         share_of((1,)), case="II", plane=Plane.X_PX, counting=Counting.WINDOW, value=70.0, quantity=Quantity.ESCAPED_BY
     )

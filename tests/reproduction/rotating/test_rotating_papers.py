@@ -61,7 +61,7 @@ def test_starts_next_to_islands_are_at_no_boundary_of_basins(computed: EscapeMap
     assert times.inside == 2.0
 
 
-def test_late_ends_are_those_with_the_longest_times(computed: EscapeMap) -> None:
+def test_late_orbits_have_the_longest_times(computed: EscapeMap) -> None:
     frame = with_fates(computed, [1] * 10 + [BOUNDED] * 2)
     assert share_next_to_islands(frame, late=False) == pytest.approx(20.0)
     assert share_next_to_islands(frame, late=True) == 100.0

@@ -65,7 +65,7 @@ def test_axes_ranges_and_held_coordinates_are_chosen(drawer: Drawer) -> None:
     assert drawer.state.plane == Slice(C.X, ParameterAxis("epsilon", 0.5, 1.5, System("I")))
 
 
-def test_an_illegal_slice_is_refused_with_its_reason_and_the_last_one_stays(drawer: Drawer) -> None:
+def test_an_illegal_slice_is_refused_with_its_reason_and_the_last_slice_stays(drawer: Drawer) -> None:
     drawer.panel.axes[1].value = "epsilon"
     drawer.type("to", -3.0)
     assert "the lower end must be below the upper end" in drawer.panel.message.object

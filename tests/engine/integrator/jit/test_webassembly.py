@@ -65,7 +65,7 @@ def native(potential: Potential, state: np.ndarray, curves: np.ndarray) -> dict[
 
 @needs_node
 @pytest.mark.parametrize("name", ["III", "typed", "rotating", "body", pytest.param("functions", marks=pytest.mark.slow)])
-def test_the_first_steps_are_the_native_ones_to_rounding(name: str, tmp_path: Path) -> None:
+def test_the_first_steps_equal_native_steps_to_rounding(name: str, tmp_path: Path) -> None:
     potential = POTENTIALS[name].in_well_units
     states, curves = starts(potential), exit_curves(potential, ENERGY)
     portable = make_portable_system(potential, 2.0 * ENERGY)

@@ -91,7 +91,7 @@ def test_the_tangent_map_is_the_derivative_of_the_flow(text: str) -> None:
 
 
 @texts_of(fast=2)
-def test_values_and_slopes_are_those_of_numpy(text: str) -> None:
+def test_values_and_slopes_agree_with_numpy(text: str) -> None:
     potential, kernels = parse_formula(text), kernels_of(text)
     for x, y in states_of(5)[:, :2].tolist():
         expected = (potential.value(x, y), *potential.gradient(x, y))

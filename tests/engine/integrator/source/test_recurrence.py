@@ -62,7 +62,7 @@ def transition_matrix(potential: Potential, state: np.ndarray, h: float) -> np.n
 
 
 @each_potential
-def test_series_equal_those_of_heyoka(name: str) -> None:
+def test_series_agree_with_heyoka(name: str) -> None:
     for state, series in zip(some_states(6), np.moveaxis(jets_of(POTENTIALS[name], some_states(6)), -1, 0), strict=True):
         expected = taylor_heyoka.taylor_coefficients(POTENTIALS[name], state)[:, : ORDER + 1]
         np.testing.assert_allclose(series, expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())

@@ -57,7 +57,7 @@ def integrate(potential: Potential, state: np.ndarray, end: float, power: float)
 
 @pytest.mark.parametrize(("direction", "power"), [(TimeDirection.FORWARD, 0.5), (TimeDirection.BACKWARD, 1.0)])
 @pytest.mark.parametrize("name", SPECS)
-def test_the_integral_is_that_of_another_method_until_the_exit(name: str, direction: TimeDirection, power: float) -> None:
+def test_the_integral_until_the_exit_agrees_with_another_method(name: str, direction: TimeDirection, power: float) -> None:
     spec = SPECS[name]
     frame = compute_map(spec)
     found = compute_lagrangian_descriptor(frame, power=power, direction=direction)

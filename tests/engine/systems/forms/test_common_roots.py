@@ -53,7 +53,7 @@ def test_products_of_lines_vanish_at_the_intersections(first: list, second: list
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_the_number_of_roots_is_that_of_sturms_theorem(seed: int) -> None:
+def test_the_number_of_roots_agrees_with_sturms_theorem(seed: int) -> None:
     rng = np.random.default_rng(seed)
     degree = 3 + seed % 2
     value = sum(int(rng.integers(-9, 10)) * X**i * Y**j for i, j in product(range(degree + 1), repeat=2) if 0 < i + j <= degree)

@@ -89,7 +89,7 @@ def test_a_circle_with_rounding_errors_is_refused() -> None:
 
 
 @pytest.mark.parametrize(("seed", "distance", "count", "exits"), [(702, 858.47, 5, 3), (681, 7506.9, 6, 3)])
-def test_a_point_far_from_the_others_is_found_in_any_units(seed: int, distance: float, count: int, exits: int) -> None:
+def test_a_point_far_from_other_points_is_found_in_any_units(seed: int, distance: float, count: int, exits: int) -> None:
     unit = 0.018
     potential = Potential("", tuple((i, j, c / unit ** (i + j)) for i, j, c in random_well(seed, 10).terms))
     assert len(potential.critical_points) == count

@@ -66,7 +66,7 @@ def test_refusals_have_reasons(text: str, reason: str) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_points_are_those_of_newtons_method_from_many_starts(seed: int) -> None:
+def test_points_agree_with_newtons_method_from_many_starts(seed: int) -> None:
     chance = np.random.default_rng(seed)
     bumps = [(*chance.uniform(-2.0, 2.0, 2), chance.uniform(0.5, 3.0), chance.uniform(-1.0, 1.0)) for _ in range(3)]
     text = "½(x² + y²)" + "".join(f"{h:+.3f}exp(−{w:.3f}((x − {a:.3f})² + (y − {b:.3f})²))" for a, b, w, h in bumps)
