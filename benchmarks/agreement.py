@@ -1,4 +1,4 @@
-"""Comparison of the browser's pixels with the server's: random views of systems of the catalogue, down to 1e-6 of the plane.
+"""Compare the browser's pixels with the server's, in random views of systems of the catalogue, down to 1e-6 of the plane.
 
 Needs Node.js. Run: uv run python -m benchmarks.agreement
 """
@@ -31,7 +31,7 @@ def main() -> None:
 
 
 def report(name: str, spec: MapSpec, fate: np.ndarray, time: np.ndarray) -> None:
-    """Return one line: all pixels, the robust ones, and the times of those that escape in both."""
+    """Print one line: agreement on all pixels, on robust pixels, and of the times of pixels that escape in both."""
     escape_map, window = compute_map(spec), spec.find_window()
     expected = expected_fate(escape_map).ravel()
     same = fate == expected

@@ -1,4 +1,4 @@
-"""The actions of attackers in `benchmarks.hostile`: one entry of `ATTACKS` for each way to keep the server busy."""
+"""The actions of attackers in `benchmarks.hostile`. Each way to keep the server busy is an entry of `ATTACKS`."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from tests.fuzz.random_formulas import random_link
 _WORST_MAP = "?case=III&h=0.3&plane=x_px&t_max=1000000&resolution=900&judge=yes&trust=yes&manifolds=yes&origins=yes"
 _REQUEST_PAUSE = 0.05
 _SLOW_PAGES = 10
-# Number of actions of each attack if all follow one another.
+# Seconds for each attack when all follow one another.
 _TURN_SECONDS = 15.0
 
 Attack = Callable[[SimulatedSession, random.Random], AsyncGenerator[None]]
-"""The actions of an attacker; each step is one action and the pause after it."""
+"""The actions of an attacker. Each step is one action and the pause after it."""
 
 
 async def do_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """For comparison."""
+    """Do nothing, for comparison."""
     while True:
         await asyncio.sleep(1.0)
         yield
 
 
 async def compute_worst_map(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """The map that takes longest, with all layers, at slightly different energies."""
+    """Request the map that takes longest, with all layers, at slightly different energies."""
     for number in itertools.count():
         visitor.follow_link(_WORST_MAP.replace("h=0.3", f"h={0.3 + 1e-6 * number!r}"))
         await asyncio.sleep(10.0)
@@ -45,7 +45,7 @@ async def compute_worst_map(visitor: SimulatedSession, choice: random.Random) ->
 
 
 async def sweep_energies(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Curves against energy, with the largest map in view."""
+    """Request curves against energy, with the largest map in view."""
     for case in itertools.cycle(["III", "II", "I"]):
         visitor.follow_link(f"?case={case}&resolution=900&t_max=1000000&analysis=energies")
         await asyncio.sleep(2.0)
@@ -55,7 +55,7 @@ async def sweep_energies(visitor: SimulatedSession, choice: random.Random) -> As
 
 
 async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """A potential of new powers each second, so that its integrator must be compiled."""
+    """Type a potential of new powers each second, so that its integrator must be compiled."""
     while True:
         powers = [(i, degree - i) for degree in range(3, 9) for i in range(degree + 1)]
         terms = " + ".join(f"{choice.uniform(-0.2, 0.2):.3f}*x^{i}*y^{j}" for i, j in choice.sample(powers, 6))
@@ -65,7 +65,7 @@ async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> A
 
 
 async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Pages with formulas of every kind, one after another."""
+    """Open pages with formulas of every kind, one after another."""
     while True:
         await visitor.open_formula(formula_link(choice))
         await asyncio.sleep(_REQUEST_PAUSE if visitor.is_open else 1.0)
@@ -73,21 +73,21 @@ async def open_formulas(visitor: SimulatedSession, choice: random.Random) -> Asy
 
 
 async def follow_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Links with formulas of every kind, followed in one page."""
+    """Follow links with formulas of every kind in one page."""
     while True:
         await visitor.follow_formula(formula_link(choice))
         yield
 
 
 async def type_formulas(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Formulas of every kind in the box of one page."""
+    """Type formulas of every kind in one page."""
     while True:
         await visitor.type_formula(random_link(choice)["V"])
         yield
 
 
 async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Twenty clicks a second on long orbits, removed when there are five."""
+    """Click twenty long orbits a second, and remove them when there are five."""
     for number in itertools.count():
         if number % 5 == 0:
             visitor.follow_link("?case=III&h=0.3&t_max=1000000&resolution=112")
@@ -97,7 +97,7 @@ async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncGenera
 
 
 async def flip_choices(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Resolution and colours, changed as fast as messages are accepted."""
+    """Change resolution and colours as fast as messages are accepted."""
     for resolution, palette in itertools.cycle(itertools.product((112, 224, 450, 900), ("paper", "safe"))):
         visitor.follow_link(f"?case=III&h=0.3&resolution={resolution}&palette={palette}")
         await asyncio.sleep(0.005)
@@ -105,7 +105,7 @@ async def flip_choices(visitor: SimulatedSession, choice: random.Random) -> Asyn
 
 
 async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Pages with a radial potential of new coefficients, one after another."""
+    """Open pages with a radial potential of new coefficients, one after another."""
     while True:
         powers = "".join(f"{sign}{choice.uniform(0.5, 1.5):.6f}*r^{2 * n}" for n, sign in zip(range(2, 7), "-+-+-", strict=True))
         await visitor.fetch(f"/app?case=typed&V={quote(f'r^2/2{powers}')}")
@@ -114,7 +114,7 @@ async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Ra
 
 
 async def name_modules(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Resources of components in all modules of large packages, none of which the page needs."""
+    """Request resources of components in all modules of large packages that the page does not need."""
     names = _module_names()
     choice.shuffle(names)
     for name in itertools.cycle(names):
@@ -124,7 +124,7 @@ async def name_modules(visitor: SimulatedSession, choice: random.Random) -> Asyn
 
 
 async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """WebSockets with a token of 53 kB, which is close to the limit of a header and decompresses to 30 MB."""
+    """Open WebSockets with a token of 53 kB, close to the limit of a header, that decompresses to 30 MB."""
     token = await asyncio.to_thread(_large_token)
     while True:
         await visitor.connect(token)
@@ -133,7 +133,7 @@ async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> A
 
 
 async def drop_sessions(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Pages whose connections are closed at once."""
+    """Open pages and close their connections at once."""
     while True:
         await visitor.drop()
         await asyncio.sleep(_REQUEST_PAUSE)
@@ -141,7 +141,7 @@ async def drop_sessions(visitor: SimulatedSession, choice: random.Random) -> Asy
 
 
 async def read_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """Pages that ask for maps and do not read them."""
+    """Open pages that ask for maps and do not read them."""
     pages = [visitor.another() for _ in range(_SLOW_PAGES)]
     for page in pages:
         await page.open()
@@ -160,7 +160,7 @@ async def read_nothing(visitor: SimulatedSession, choice: random.Random) -> Asyn
 
 
 async def do_everything(visitor: SimulatedSession, choice: random.Random) -> AsyncGenerator[None]:
-    """All attacks in turn, without a pause."""
+    """Make all attacks in turn, without a pause."""
     for name in itertools.cycle(name for name, attack in ATTACKS.items() if attack not in (do_nothing, do_everything)):
         end = time.perf_counter() + _TURN_SECONDS
         async with aclosing(ATTACKS[name](visitor, choice)) as actions:
@@ -171,12 +171,12 @@ async def do_everything(visitor: SimulatedSession, choice: random.Random) -> Asy
 
 
 def formula_link(choice: random.Random) -> str:
-    """A link with a formula of a random kind, to a small and short map."""
+    """Return a link to a small and short map of a formula of a random kind."""
     return "?" + urlencode({"case": "typed", "resolution": "112", "t_max": "100", **random_link(choice)}, errors="replace")
 
 
 def _module_names() -> list[str]:
-    """Modules of the packages, which are not imported here."""
+    """Return the names of all modules of the packages, without importing them."""
     specs = [importlib.util.find_spec(package) for package in ("bokeh", "matplotlib", "numba", "panel", "scipy", "tornado")]
     folders = [(list(spec.submodule_search_locations or ()), spec.name) for spec in specs if spec is not None]
     return [module.name for paths, package in folders for module in pkgutil.iter_modules(paths, f"{package}.")]

@@ -1,4 +1,4 @@
-"""Measurements of the engine in the browser: frames per second and delays of drags, orbit under the cursor, memory of the page.
+"""Measure the engine in the browser: frames per second and delays of drags, orbit under the cursor, memory of the page.
 
 Run alone on the machine: uv run python -m benchmarks.drag --memory 10
 """
@@ -18,16 +18,20 @@ from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 
 VIEWS = (("I", 0.19), ("III", 0.45), ("III", 0.30))
+# Half the range of a drag, in units of the energy.
 SPAN = 0.06
 DRAG_SECONDS = 4.0
+# Number of orbits under the cursor.
 HOVERS = 60
-ENSEMBLES, REPEATS = (1000, 5000, 20000), 10
+# Numbers of orbits in the tab "Watch".
+ENSEMBLES = (1000, 5000, 20000)
+REPEATS = 10
 MEMORY_SAMPLES = 5
 SCRIPT = Path(__file__).with_name("drag.js")
 
 
 def ready_page(browser: Browser, address: str, case: str, energy: float, more: str = "") -> ExplorerPage:
-    """A page whose browser has the system of the view."""
+    """Return a page whose browser has the system of the view."""
     explorer = open_page(browser, address, f"?case={case}&h={energy}&t_max=1000{more}")
     explorer.page.evaluate(f"async () => {{ {SCRIPT.read_text()}; window.bench = bench }}")
     explorer.page.evaluate("() => window.bench.ready()")
@@ -44,7 +48,7 @@ def drag(explorer: ExplorerPage, energy: float, seconds: float) -> dict[str, Any
 
 
 def report_drags(browser: Browser, address: str) -> None:
-    """Frames per second, and time from a move of the slider to its pixels."""
+    """Print frames per second, and the time from a move of the slider to its pixels."""
     print(
         "| view | pictures per second | frames per second | ms from move to pixels: median, 95 %, worst |"
         " side in pixels: least, median | messages |"
@@ -66,7 +70,7 @@ def report_drags(browser: Browser, address: str) -> None:
 
 
 def report_hover(browser: Browser, address: str) -> None:
-    """Time for the orbit under the cursor, on the thread of the page."""
+    """Print the time for the orbit under the cursor, on the thread of the page."""
     explorer = ready_page(browser, address, "III", 0.45)
     points = [explorer.point("basins", 0.5 * (2 * k / HOVERS - 1), 0.2) for k in range(HOVERS)]
     times = explorer.page.evaluate("points => window.bench.hover(points)", points)
@@ -75,7 +79,7 @@ def report_hover(browser: Browser, address: str) -> None:
 
 
 def report_watch(browser: Browser, address: str) -> None:
-    """Time of the first picture of new orbits, and frames per second while they leave."""
+    """Print the time to the first picture of new orbits, and frames per second while the orbits leave."""
     print("\n| orbits | ms to the first picture: median, worst | frames per second | ms of a frame: median, worst |")
     print("|---|---|---|---|")
     for count in ENSEMBLES:
@@ -91,7 +95,7 @@ def report_watch(browser: Browser, address: str) -> None:
 
 
 def report_memory(browser: Browser, address: str, minutes: float) -> None:
-    """Memory of the page's scripts after minutes of dragging."""
+    """Print the memory of the page's scripts after minutes of dragging."""
     explorer = ready_page(browser, address, "III", 0.45)
     session = explorer.page.context.new_cdp_session(explorer.page)
     sizes = [heap_megabytes(session)]
@@ -103,7 +107,7 @@ def report_memory(browser: Browser, address: str, minutes: float) -> None:
 
 
 def heap_megabytes(session: CDPSession) -> float:
-    """Memory in use after a garbage collection."""
+    """Return the memory in use after a garbage collection."""
     session.send("HeapProfiler.collectGarbage")
     usage = session.send("Runtime.getHeapUsage")
     return float(usage["usedSize"] + usage.get("backingStorageSize", 0)) / 1e6

@@ -1,4 +1,4 @@
-"""Orbits that are called bounded on evidence but escape when they are integrated to t_max.
+"""Count orbits that are called bounded on evidence but escape when they are integrated to t_max.
 
 All maps of the paper are computed: three cases, two planes, nine energies.
 Each map of 61 x 61 starts is computed with and without evidence.
@@ -16,7 +16,8 @@ import numpy as np
 from engine import CASES, Evidence, Fate, MapSpec, Plane, compute_map
 from engine.systems.catalogue.table import PAPER_ENERGIES
 
-SIDE, T_MAX = 61, 1e5
+SIDE = 61
+T_MAX = 1e5
 EARLY = [code for code in Evidence if code > Evidence.INTEGRATED]
 
 
@@ -28,7 +29,7 @@ def specs() -> Iterator[MapSpec]:
 
 
 def count_orbits(spec: MapSpec) -> np.ndarray:
-    """Count bounded orbits, those on evidence, the ones of these that escape, and escapes after t = 1000."""
+    """Count bounded orbits, orbits bounded on evidence, escapes among the latter, and escapes after t = 1000."""
     on_evidence, whole = compute_map(spec), compute_map(replace(spec, use_evidence=False))
     early = np.isin(on_evidence.evidence, EARLY)
     assert np.array_equal(on_evidence.fate[~early], whole.fate[~early])

@@ -1,9 +1,9 @@
-"""Thousands of random formulas in links and typed, from several addresses: answers, the event loop, memory, the log.
+"""Send thousands of random formulas, in links and typed, from several addresses; measure answers, event loop, memory and log.
 
 Run: uv run python -m benchmarks.formulas --count 20000
      uv run python -m benchmarks.formulas --count 20000 --proxy
 
-Options are the same as of `benchmarks.hostile`, whose table is printed; there is no other visitor.
+Options and the printed table are those of `benchmarks.hostile`; there is no other visitor.
 """
 
 from __future__ import annotations
@@ -32,44 +32,44 @@ from benchmarks.simulated_sessions import Record, SimulatedSession
 from tests.fuzz.random_formulas import random_link
 
 FIRST_ADDRESS = 1000
-"""Number of the first address of pages that are opened for one formula, because a proxy limits the pages of an address."""
+"""Number of the first address that opens a page for one formula. A proxy limits the pages of each address."""
 
 REOPEN_SECONDS = 1.0
-"""Time until a page that was closed is opened again."""
+"""Pause before a closed page is opened again, in seconds."""
 
 PROGRESS = 1000
-"""Number of formulas after which a line says how many have been sent."""
+"""After each this many formulas, a line is printed."""
 
 
 async def open_page(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
-    """A page from another address, with its connection, until its formula is reviewed."""
+    """Open a page from another address, with its connection, until its formula is reviewed."""
     await other.open_formula(formula_link(choice))
     await other.close()
 
 
 async def request_page(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
-    """A page from another address without a connection."""
+    """Request a page from another address without a connection."""
     await other.fetch(urljoin("/app", formula_link(choice)))
 
 
 async def follow_link(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
-    """A link in the open page."""
+    """Follow a link in the open page."""
     await visitor.follow_formula(formula_link(choice))
 
 
 async def type_formula(visitor: SimulatedSession, other: SimulatedSession, choice: random.Random) -> None:
-    """A formula in the box of the open page."""
+    """Type a formula in the open page."""
     await visitor.type_formula(random_link(choice)["V"])
 
 
 Way = Callable[[SimulatedSession, SimulatedSession, random.Random], Awaitable[None]]
 
 WAYS: dict[Way, int] = {open_page: 4, request_page: 6, follow_link: 45, type_formula: 45}
-"""How a formula reaches the server, and how often; a new page costs the server as much as five formulas in an open one."""
+"""Weights of the ways by which formulas reach the server. A new page costs as much as five formulas in an open page."""
 
 
 async def send_formulas(places: Sequence[Place], visitors: int, count: int, seed: int) -> tuple[Record, Record, int]:
-    """Send formulas by visitors of each place; return no waits of others, the waits of these, and the number of formulas."""
+    """Send formulas by visitors of each place; return an empty record for other visitors, the visitors' record, and the count."""
     numbers, record = iter(range(count)), Record()
     senders = [(place, seed + number) for number, place in enumerate([*places] * visitors)]
     await asyncio.gather(*(_send(place, address, numbers, record) for place, address in senders))

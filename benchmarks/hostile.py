@@ -1,4 +1,4 @@
-"""Waits of one visitor while another visitor keeps the server as busy as the page allows, in several ways.
+"""Measure how long one visitor waits while another keeps the server as busy as the page allows, in several ways.
 
 Run: uv run python -m benchmarks.hostile --seconds 60
      uv run python -m benchmarks.hostile --seconds 60 --processes 2
@@ -6,9 +6,8 @@ Run: uv run python -m benchmarks.hostile --seconds 60
      uv run python -m benchmarks.hostile --seconds 600 --attack everything
      uv run python -m benchmarks.hostile --seconds 90 --attack "sessions opened and dropped" --attack "slow readers"
 
-Each process has a visitor of either kind; the one whose waits are measured drags, clicks, chooses, types and opens the page
-again. With ``--proxy`` there are two processes behind nginx with `deploy/nginx.conf`, and the cookies of the visitors choose the
-process.
+Each process has an attacker and a normal visitor, who drags, clicks, chooses, types and opens the page again. With ``--proxy``
+there are two processes behind nginx with `deploy/nginx.conf`, and the visitors' cookies choose the process.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, nginx, prox
 from tests.page_channel import NO_OPTIONS, Options
 
 LONGEST_WAIT_SECONDS = 3.0
-"""Longest permitted time to the first frame of the other visitor's map, and to the answer of ``/liveness``."""
+"""Longest permitted time to the first frame of the normal visitor's map, and to the answer of ``/liveness``."""
 
 LONGEST_REVIEW_SECONDS = 20.0
 """Longest permitted time until the page shows the review of a formula."""
@@ -48,7 +47,7 @@ MOST_LINES = 3.0
 """Largest number of log lines for each formula."""
 
 MOST_LIMITED_MEGABYTES = 1024.0 + 300.0
-"""Largest memory of the process for typed formulas: its limit, and its memory at the start."""
+"""Largest permitted memory of the process for typed formulas: its limit plus its memory at the start."""
 
 REST_SECONDS = 5.0
 """Pause between two attacks."""
@@ -102,7 +101,7 @@ class Effect:
 async def visiting(
     place: Place, seed: int, record: Record, actions: Mapping[str, int] = MappingProxyType(ACTIONS)
 ) -> AsyncIterator[SimulatedSession]:
-    """A session with an open page, of a visitor with an individual address behind the proxy."""
+    """Yield a session with an open page, of a visitor with an individual address behind the proxy."""
     session = new_session(place, seed, record, actions)
     await session.open()
     while not session.is_open:
@@ -117,13 +116,13 @@ async def visiting(
 def new_session(
     place: Place, seed: int, record: Record, actions: Mapping[str, int] = MappingProxyType(ACTIONS)
 ) -> SimulatedSession:
-    """A session that is not open yet, of a visitor with an individual address behind the proxy."""
+    """Return a session that is not open yet, of a visitor with an individual address behind the proxy."""
     headers = place.options.get("headers", {}) | visitor_headers(ADDRESS_HEADER, seed)
     return SimulatedSession(place.address, seed, record, {**place.options, "headers": headers}, actions)
 
 
 async def observe(servers: Sequence[Server], run: Awaitable[tuple[Record, Record, int]]) -> Effect:
-    """The awaited result of an attack: waits of other visitors, waits of the attackers, and number of the attackers' actions."""
+    """Return the effects of an attack, which returns the records of normal visitors and attackers, and the number of actions."""
     before, liveness, limited = largest_memory(servers), list[float](), [0.0]
     lines = [len(server.log_lines()) for server in servers]
     for server in servers:
@@ -154,12 +153,12 @@ async def _probe(server: Server, liveness: list[float], limited: list[float]) ->
 
 
 def largest_memory(servers: Sequence[Server]) -> float:
-    """Largest resident memory of a process, in megabytes."""
+    """Return the largest resident memory of a process, in megabytes."""
     return max(resident_megabytes(server.process) for server in servers)
 
 
 async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) -> tuple[Record, Record, int]:
-    """Return waits of one visitor of each process during an attack, waits of the attackers, and the number of their actions."""
+    """Attack; return the record of one normal visitor per process, the attackers' record, and the number of actions."""
     record, attackers, actions = Record(), Record(), 0
 
     async def run_attack(place: Place, number: int) -> None:
@@ -197,7 +196,7 @@ async def _visit(place: Place, seed: int, record: Record, end: float) -> None:
 
 @contextmanager
 def behind_proxy(servers: Sequence[Server], folder: Path) -> Iterator[list[Place]]:
-    """Run nginx in front of two servers; one place for each of them."""
+    """Run nginx in front of two servers, and yield a place for each server."""
     program = nginx()
     if program is None:
         raise RuntimeError("nginx is not installed")
@@ -221,12 +220,12 @@ async def _find_places(proxy: Proxy, servers: Sequence[Server]) -> list[Place]:
 
 
 def waits(record: Record) -> list[float]:
-    """All waits, including those in vain."""
+    """Return all waits, including waits in vain."""
     return [*(wait for times in record.waits.values() for wait in times), *record.replaced, *record.opening, *record.reviews]
 
 
 def count_delayed_messages(servers: Sequence[Server]) -> int:
-    """Messages of all processes that waited because their page took more than its share."""
+    """Return messages of all processes that waited because their page took more than its share."""
     return sum(server.delayed_messages() for server in servers)
 
 
@@ -237,7 +236,7 @@ COLUMNS = (
 
 
 def row(name: str, effect: Effect, delayed_messages: int) -> str:
-    """A row of the table with `COLUMNS`."""
+    """Return a row of the table with `COLUMNS`."""
     megabytes = " | ".join(f"{size:.0f}" for size in (*effect.megabytes, effect.limited_megabytes))
     seconds = waits(effect.record)
     late = ", ".join(str(sum(wait > limit for wait in seconds)) for limit in (LONG_WAIT_SECONDS, LONGEST_WAIT_SECONDS))
@@ -250,7 +249,7 @@ def row(name: str, effect: Effect, delayed_messages: int) -> str:
 
 
 def find_problems(effect: Effect) -> Iterator[str]:
-    """Violations of the limits."""
+    """Yield violations of the limits."""
     for what, seconds in (("waits", waits(effect.record)), ("answers of /liveness", effect.liveness)):
         late = [wait for wait in seconds if wait > LONGEST_WAIT_SECONDS]
         if late:
@@ -276,7 +275,7 @@ def _find_problems_of_formulas(effect: Effect) -> Iterator[str]:
 
 @contextmanager
 def running(processes: int, *, proxy: bool) -> Iterator[tuple[list[Server], list[Place]]]:
-    """Run servers; with a proxy two of them behind nginx."""
+    """Run servers, with a proxy two servers behind nginx, and yield the servers and their places."""
     with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
         count = 2 if proxy else processes
         servers = [end.enter_context(served(Path(folder) / f"log {n}", **shared_by(count))) for n in range(count)]
@@ -289,7 +288,7 @@ def running(processes: int, *, proxy: bool) -> Iterator[tuple[list[Server], list
 
 
 def end_with(servers: Sequence[Server], problems: Sequence[str]) -> int:
-    """Print the problems and those in the logs; return the exit code."""
+    """Print these problems and the errors in the logs; return the exit code."""
     found = [*problems, *list(dict.fromkeys(line for server in servers for line in server.error_lines()))[:5]]
     print("\nPassed." if not found else "\nFailed: " + "; ".join(found) + ".")
     return 1 if found else 0

@@ -1,10 +1,10 @@
-"""Load test: simulated sessions drag the energy slider for minutes; waiting times, processor time, memory and remaining sessions.
+"""Measure waits, processor time, memory and remaining sessions while simulated sessions drag the energy slider for minutes.
 
 Run: uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 300
      uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 150 --busy-cores 1
      uv run python -m benchmarks.load --sessions 6 --seconds 30
 
-Visitors whom a full server refuses try again as their page does. Waits are counted while a visitor has a page.
+Visitors refused by a full server try again, as their page does. Waits count while a visitor has a page.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ from benchmarks.simulated_sessions import Record, SimulatedSession
 from engine.foundations.cache_files import CACHE_VARIABLE
 
 LONG_WAIT_SECONDS = 2.0
-"""Waits for the first frame of a map that are longer than this are counted."""
+"""Longer waits for the first frame of a map are counted."""
 
 LONGEST_WAIT_SECONDS = 3.0
 """Longest permitted time to the first frame of a map."""
 
 REST_SECONDS = 60.0
-"""All sessions must end within this time after their sockets are closed."""
+"""Longest permitted time from the closing of the sockets to the end of all sessions."""
 
 SERVER_OPTIONS = (
     "--use-xheaders",
@@ -51,7 +51,7 @@ SERVER_OPTIONS = (
 CACHE_SENTENCE = "Kernel cache: empty when the first process started, shared by all."
 START_SECONDS = 240.0
 WARM_SESSIONS = 6
-"""The memory of a page is counted from this session on, because the first ones load what all share."""
+"""Number of sessions that do not count for the memory of a page, because they load what all sessions share."""
 _ROOT = Path(__file__).parents[1]
 # Refused pages are counted by the visitors.
 _ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^\s*Traceback|Task exception was never retrieved")
@@ -69,11 +69,11 @@ class Server:
     megabytes: list[float] = field(default_factory=list)
 
     def sessions(self) -> int:
-        """Number of open sessions."""
+        """Return the number of open sessions."""
         return self._count("sessions_open")
 
     def delayed_messages(self) -> int:
-        """Number of messages that waited because their page took more than its share."""
+        """Return the number of messages that waited because their page took more than its share."""
         return self._count("messages_delayed_total")
 
     def _count(self, metric: str) -> int:
@@ -82,15 +82,15 @@ class Server:
         return int(float(count))
 
     def log_lines(self) -> list[str]:
-        """All lines of the log."""
+        """Return all lines of the log."""
         return self.log.read_text().splitlines()
 
     def count_lines(self, first_line: int) -> int:
-        """Number of lines of the log from a line on, without those on late iterations of the event loop."""
+        """Return the number of log lines after the first `first_line`, without those on late iterations of the event loop."""
         return sum(_LATE not in line for line in self.log_lines()[first_line:])
 
     def longest_turn(self, first_line: int) -> tuple[float, str]:
-        """Longest processor time of a late iteration of the event loop in the log from a line on, in milliseconds, and its cause.
+        """Return the longest processor time in ms of a late iteration of the event loop after `first_line` lines, and its cause.
 
         The time of garbage collections is left out, because it grows with the number of pages.
         """
@@ -98,7 +98,7 @@ class Server:
         return max(((float(own) - float(collected), cause) for own, collected, cause in found), default=(0.0, ""))
 
     def seconds_until_live(self) -> float:
-        """Seconds until ``/liveness`` answers."""
+        """Return seconds until ``/liveness`` answers."""
         begin = time.perf_counter()
         with urllib.request.urlopen(self.address.removesuffix("/app") + "/liveness", timeout=60):
             return time.perf_counter() - begin
@@ -108,11 +108,11 @@ class Server:
         Path(f"/proc/{self.process}/clear_refs").write_text("5")
 
     def peak_megabytes(self) -> float:
-        """Peak of the resident memory."""
+        """Return the peak of the resident memory."""
         return peak_megabytes(self.process)
 
     def limited_megabytes(self) -> float:
-        """Peak of the resident memory of the process for typed formulas, as long as it runs."""
+        """Return the peak of the resident memory of the running process for typed formulas."""
         with suppress(psutil.Error):
             # A process that is just beginning is not counted, because it is still a copy of the server.
             children = [child for child in psutil.Process(self.process).children() if "loky" in " ".join(child.cmdline())]
@@ -120,12 +120,12 @@ class Server:
         return 0.0
 
     def cpu_seconds(self) -> float:
-        """Processor time of the process so far."""
+        """Return the processor time of the process so far."""
         fields = Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / 100.0
 
     def error_lines(self) -> list[str]:
-        """Lines of the log with errors."""
+        """Return the lines of the log with errors."""
         return [line for line in self.log_lines() if _ERROR_LINE.search(line)]
 
     async def watch(self) -> None:
@@ -137,7 +137,7 @@ class Server:
 
 @contextmanager
 def busy_cores(count: int) -> Iterator[None]:
-    """Run this many other programs, each of which occupies a core, for as long as servers need to measure them."""
+    """Run this many other programs, each of which occupies a core, until servers have measured them."""
     programs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
     try:
         time.sleep(WINDOW_SECONDS if programs else 0.0)
@@ -149,13 +149,13 @@ def busy_cores(count: int) -> Iterator[None]:
 
 
 def shared_by(processes: int) -> dict[str, str]:
-    """The environment of one of several server processes on this machine."""
+    """Return the environment of one of several server processes on this machine."""
     return {variable_name("processes"): str(processes)}
 
 
 @contextmanager
 def served(log: Path, **environment: str) -> Iterator[Server]:
-    """Run the app on a free port, with additional environment variables; its kernels are compiled when this begins."""
+    """Run the app on a free port, with additional environment variables; yield when its kernels are compiled."""
     with started(log, **environment) as (server, process):
         wait_until_ready(server, process)
         yield server
@@ -163,7 +163,7 @@ def served(log: Path, **environment: str) -> Iterator[Server]:
 
 @contextmanager
 def started(log: Path, **environment: str) -> Iterator[tuple[Server, subprocess.Popen[bytes]]]:
-    """Start the app on a free port, with additional environment variables; it does not answer yet when this begins.
+    """Start the app on a free port, with additional environment variables; yield before it answers.
 
     Compiled kernels are stored beside the log, so that the user's kernel cache does not affect the measurement.
     """
@@ -204,11 +204,11 @@ class Outcome:
     open_sessions
         Sessions on the server before the first action.
     refused
-        Visitors who were refused before the first action, and the number of them who were never admitted.
+        Number of visitors refused before the first action, and number of visitors never admitted.
     remaining_sessions
-        Sessions on the server after all were closed.
+        Sessions on the server after all pages are closed.
     busy_cores
-        Processor time of the server per second.
+        Mean number of cores that the server used.
     page_megabytes
         Resident memory per open page before the first action.
     """
@@ -221,7 +221,7 @@ class Outcome:
 
 
 async def load(servers: Sequence[Server], record: Record, sessions: int, seconds: float, seed: int) -> Outcome:
-    """Open the sessions, distributed over the servers in turn, run them for some time and close them."""
+    """Open the sessions, on the servers in turn, run them for some time, and close them."""
     monitors = [asyncio.create_task(server.watch()) for server in servers]
     simulated = [SimulatedSession(servers[n % len(servers)].address, seed + n, record) for n in range(sessions)]
     for session in simulated[:WARM_SESSIONS]:
@@ -250,23 +250,23 @@ def count_sessions(servers: Sequence[Server]) -> int:
 
 
 def count_cpu_seconds(servers: Sequence[Server]) -> float:
-    """Processor time of all processes."""
+    """Return the processor time of all processes."""
     return sum(server.cpu_seconds() for server in servers)
 
 
 def count_megabytes(servers: Sequence[Server]) -> float:
-    """Resident memory of all processes."""
+    """Return the resident memory of all processes."""
     return sum(resident_megabytes(server.process) for server in servers)
 
 
 def resident_megabytes(process: int) -> float:
-    """Resident memory of a process."""
+    """Return the resident memory of a process."""
     pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
     return pages * 4096 / 2**20
 
 
 def peak_megabytes(process: int) -> float:
-    """Peak of the resident memory of a process; 0 if it has ended."""
+    """Return the peak of the resident memory of a process; 0 if it has ended."""
     try:
         status = Path(f"/proc/{process}/status").read_text()
     except OSError:
@@ -275,7 +275,7 @@ def peak_megabytes(process: int) -> float:
 
 
 def summary(times: list[float]) -> str:
-    """Count, minimum, median, 95th and 99th percentile, and maximum."""
+    """Return count, minimum, median, 95th and 99th percentile, and maximum as text."""
     if not times:
         return "0 | – | – | – | – | –"
     percentiles = statistics.quantiles(times, n=100, method="inclusive") if len(times) > 1 else times * 99
@@ -312,12 +312,12 @@ def report(servers: Sequence[Server], record: Record, outcome: Outcome) -> None:
 
 
 def all_waits(record: Record) -> list[float]:
-    """All waits for maps, including those in vain."""
+    """Return all waits for maps, including waits in vain."""
     return [*(wait for times in record.waits.values() for wait in times), *record.replaced]
 
 
 def find_problems(servers: Sequence[Server], record: Record, remaining: int, ceiling: float) -> Iterator[str]:
-    """Violations of the limits."""
+    """Yield violations of the limits."""
     waits = all_waits(record)
     late = [wait for wait in waits if wait > LONGEST_WAIT_SECONDS]
     if not waits:

@@ -1,4 +1,4 @@
-"""Time of a short map and of its first frame, with warm kernels: medians.
+"""Measure the median time of a short map and of its first frame, with warm kernels.
 
 Run: uv run python -m benchmarks.maps
 """
@@ -24,7 +24,7 @@ MAPS = (
 
 
 def time_map(spec: MapSpec) -> tuple[float, float]:
-    """Seconds to the first frame and to the complete map."""
+    """Return seconds to the first frame and to the complete map."""
     frames: list[float] = []
 
     def record(_frame: EscapeMap) -> None:

@@ -1,4 +1,4 @@
-"""Measures of basins and escapes on maps of (x, px): the tables of the documents on these measures.
+"""Print the tables of the documents on measures of basins and escapes, for maps of (x, px).
 
 Run: uv run python -m benchmarks.measures
 """

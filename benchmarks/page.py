@@ -1,4 +1,4 @@
-"""The page in headless Chromium: opening, latency of the server's pixels, bytes of an update, server memory.
+"""Measure the page in headless Chromium: opening, latency of the server's pixels, bytes of an update, server memory.
 
 The engine in the browser is measured by `benchmarks.drag`. Run: uv run python -m benchmarks.page
 """
@@ -22,7 +22,9 @@ from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import PANEL, served_app, started_app
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-headless-shell")
+# Places of the actions, as shares of the range of the slider or of the plane.
 SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
+# Number of pages that are opened and closed for the memory of the server.
 CYCLES = 30
 NEW_POTENTIALS = ("½(x² + y²) − x²y² − x³/4", "½(x² + y²) − x²y² − 0.1x⁴y²")
 # Pixels are on the screen at the second animation frame after a change of the source.
@@ -44,7 +46,7 @@ WATCH = """() => {
 
 
 def wait_for_map(explorer: ExplorerPage) -> tuple[float, float]:
-    """Wait for the complete map; return the ms from the start of the action to its first and to its last frame."""
+    """Wait for the complete map; return the milliseconds from the start of the action to the first and to the last frame."""
     explorer.page.wait_for_function("() => window.painted.whole !== undefined")
     painted = explorer.page.evaluate("() => window.painted")
     time.sleep(0.5)
@@ -83,7 +85,7 @@ ELEMENTS = """() => {
     walk(document)
     return count
 }"""
-# Until the first pixels have come, or all of them.
+# Conditions that the first pixels, or all pixels, have arrived.
 FIRST_PIXELS, ALL_PIXELS = (
     f"() => {{ const data = window.Bokeh?.documents[0]?.get_model_by_name('maps')?.data; return {condition} }}"
     for condition in ("data?.fate?.[0]?.shape[0] > 1", "data?.complete?.[0] === true")
@@ -92,7 +94,7 @@ TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnima
 
 
 def report_opening(browser: Browser, address: str) -> None:
-    """Navigation to the first map, with an empty browser cache and then with a full one; also the server's answer alone."""
+    """Print the time from navigation to the first map, with an empty and a full browser cache, and the server's time."""
     context = browser.new_context(viewport={"width": 1600, "height": 1000})
     openings = []
     for _ in range(OPENINGS):
@@ -140,7 +142,7 @@ def open_once(page: Page, address: str) -> Opening:
 
 
 def open_fresh_server(browser: Browser) -> str:
-    """Wait of the first visitor of a server whose kernels are in the cache and are still being loaded."""
+    """Return the wait of the first visitor of a server that is still loading its cached kernels."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()
         with started_app(Path(folder) / "log", *PANEL) as running:
@@ -152,7 +154,7 @@ def open_fresh_server(browser: Browser) -> str:
 
 
 def seconds_to_answer(address: str) -> float:
-    """Time of the server for a new page, from the request to the last byte of the document."""
+    """Return the server's time for a new page, from the request to the last byte of the document."""
     begin = time.perf_counter()
     with urllib.request.urlopen(address, timeout=60) as answer:
         answer.read()
@@ -168,7 +170,7 @@ def open_page(browser: Browser, address: str, link: str = "") -> ExplorerPage:
 
 
 def report_latency(browser: Browser, address: str) -> None:
-    """Latency of new pixels after three kinds of actions."""
+    """Print the latency of new pixels after three kinds of actions."""
     print("| case | action | first pixels, ms: median, maximum | complete map, ms: median, maximum |")
     print("|---|---|---|---|")
     for case, h in (("I", 0.25), ("III", 0.45)):
@@ -182,7 +184,7 @@ def report_latency(browser: Browser, address: str) -> None:
 
 
 def measure(explorer: ExplorerPage, action: Callable[[ExplorerPage, float], None], share: float) -> tuple[float, float]:
-    """Latency of one action, as in `wait_for_map`; after a box zoom the view returns to the whole plane."""
+    """Return the latency of one action, as in `wait_for_map`; after a box zoom the view returns to the whole plane."""
     action(explorer, share)
     times = wait_for_map(explorer)
     if action is zoom_box:
@@ -192,7 +194,7 @@ def measure(explorer: ExplorerPage, action: Callable[[ExplorerPage, float], None
 
 
 def report_typing(browser: Browser, address: str) -> None:
-    """Time from the last letter of a typed potential to its first pixels, including its review and compilation."""
+    """Print the time from the last letter of a typed potential to its first pixels, including review and compilation."""
     for formula in NEW_POTENTIALS:
         explorer = open_page(browser, address, "?t_max=1000")
         explorer.press("Other …")
@@ -209,7 +211,7 @@ def report_typing(browser: Browser, address: str) -> None:
 
 
 def report_bytes(browser: Browser, address: str) -> None:
-    """Bytes from the release of the slider to the complete map."""
+    """Print the bytes from the release of the slider to the complete map."""
     context = browser.new_context(viewport={"width": 1600, "height": 1200})
     received: list[int] = []
 
@@ -231,7 +233,7 @@ def report_bytes(browser: Browser, address: str) -> None:
 
 
 def report_memory(browser: Browser, address: str) -> None:
-    """Memory of the server while the page, with one orbit, is opened and closed repeatedly."""
+    """Print the memory of the server while the page, with one orbit, is opened and closed repeatedly."""
     process = server_process(address)
     sizes = []
     for _ in range(CYCLES):
@@ -247,7 +249,7 @@ def report_memory(browser: Browser, address: str) -> None:
 
 
 def server_process(address: str) -> int:
-    """Process ID of the server."""
+    """Return the process ID of the server."""
     port = address.split(":")[-1].split("/")[0]
     for folder in Path("/proc").glob("[0-9]*"):
         command = (folder / "cmdline").read_bytes().split(b"\0")

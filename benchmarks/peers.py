@@ -1,6 +1,6 @@
-"""Orbits classified per second on one core, compared with heyoka with events, SciPy's DOP853 and a compiled Runge-Kutta loop.
+"""Compare the orbits classified per second on one core with heyoka with events, SciPy's DOP853 and a compiled Runge-Kutta loop.
 
-All classify starts of the same map to the same t_max; the slower ones classify a random sample.
+All methods classify starts of the same map to the same t_max; slower methods classify a random sample.
 
 Run: uv run python -m benchmarks.peers
 """
@@ -32,7 +32,7 @@ HEYOKA_TOLERANCE, SCIPY_TOLERANCE, NUMBA_TOLERANCE = 2.2e-16, 1e-13, 1e-11
 
 @contextmanager
 def one_core() -> Iterator[ThreadPoolExecutor]:
-    """A pool with a single thread, on the same core as the calling thread."""
+    """Yield a pool with a single thread, on the same core as the calling thread."""
     cores = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {min(cores)})
     try:
@@ -43,7 +43,7 @@ def one_core() -> Iterator[ThreadPoolExecutor]:
 
 
 def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
-    """Interior starts of a map, (n, 4), and their fates, (n,)."""
+    """Return the interior starts of a map, of shape (n, 4), and their fates, of shape (n,)."""
     result = compute_map(spec)
     x, ordinate = np.meshgrid(result.x, result.ordinate)
     inside = result.interior
@@ -51,7 +51,7 @@ def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
 
 
 def by_scipy(potential: Potential, energy: float, states: np.ndarray) -> np.ndarray:
-    """Straightforward use of `scipy.integrate.solve_ivp`, with an event for each exit."""
+    """Return the fates by a straightforward use of `scipy.integrate.solve_ivp`, with an event for each exit."""
     lines = exit_lines(potential, energy)
 
     def motion(_t: float, s: np.ndarray) -> list[float]:
@@ -84,7 +84,7 @@ A, B, E5 = dop853.A[:12, :12].copy(), dop853.B.copy(), dop853.E5.copy()
 
 @numba.njit(fastmath=True)
 def runge_kutta(exponents, coefficients, states, t_max, tolerance, curves, gates):
-    """Fates by an adaptive Runge-Kutta method of order 8 that tests for exits and crossings after each step."""
+    """Return the fates by an adaptive Runge-Kutta method of order 8 that tests for exits and crossings after each step."""
     fate = np.zeros(states.shape[0], np.int64)
     crossings = np.zeros(states.shape[0], np.int64)
     k, point, new, error = np.empty((13, 4)), np.empty(4), np.empty(4), np.empty(4)

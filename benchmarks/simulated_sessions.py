@@ -1,4 +1,4 @@
-"""Simulated sessions without a browser: the part of Bokeh's WebSocket protocol that dragging, choosing and clicking need."""
+"""Simulate sessions without a browser, with the part of Bokeh's WebSocket protocol that dragging, choosing and clicking need."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ DRAG_SECONDS = 0.4
 POLL_SECONDS = 0.05
 PAUSE_SECONDS = 1.0, 5.0
 FRAME_TIMEOUT_SECONDS = 30.0
-"""A frame that takes longer counts as an error."""
+"""Longest permitted wait for a frame; longer waits are errors."""
 
 ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
 """Actions and their weights."""
 
 ALL_ACTIONS = {"slider": 50, "case": 10, "plane": 10, "click": 10, "type": 10, "open": 10}
-"""Actions with formulas that are typed and pages that are opened again."""
+"""Actions and their weights, including typed formulas and pages opened again."""
 
 _OF_MAPS = ("slider", "case", "plane")
 
@@ -48,15 +48,15 @@ class Record:
     Attributes
     ----------
     opening
-        Time from the request of a page to its first map.
+        Times from the request of a page to its first map.
     waits
-        By action, time from the action to the first frame of its map.
+        By action, times from the action to the first frame of its map.
     replaced
-        Time waited in vain for a map before the next action replaced it.
+        Waits in vain, for maps that the next action replaced.
     reviews
-        Time from a formula, in a link or typed, to its review on the page.
+        Times from a formula, in a link or typed, to its review on the page.
     clicks, orbit_plots, refused
-        Counts; `refused` are pages that a full server, or a proxy with a limit, has not opened.
+        Counts; `refused` counts pages that a full server, or a proxy with a limit, did not open.
     errors
         Messages.
     """
@@ -121,7 +121,7 @@ class SimulatedSession:
         self._reader: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
-        """Load the page and wait for its first map, or count that a full server has refused it."""
+        """Load the page and wait for its first map, or count the refusal of a full server."""
         begin = time.perf_counter()
         self._models, self._case, self._plane, self._awaited = {}, "I", Plane.X_PX, None
         self._opened.clear()
@@ -134,7 +134,7 @@ class SimulatedSession:
             self._record.errors.append(f"no map within {FRAME_TIMEOUT_SECONDS:g} s of opening the page")
 
     async def open_formula(self, link: str) -> None:
-        """Load a page with a link that has a formula in place of this page, and wait until the formula is reviewed."""
+        """Replace this page by that of a link with a formula, and wait until the formula is reviewed."""
         await self.close()
         self._reviewed.clear()
         begin = time.perf_counter()
@@ -142,7 +142,7 @@ class SimulatedSession:
             await self._wait_for_review(begin)
 
     async def follow_formula(self, link: str) -> None:
-        """Show the view of a link that has a formula, as the browser's Back does, and wait until the formula is reviewed."""
+        """Show the view of a link with a formula, as the browser's Back does, and wait until the formula is reviewed."""
         self._reviewed.clear()
         self.follow_link(link)
         await self._wait_for_review(time.perf_counter())
@@ -171,7 +171,7 @@ class SimulatedSession:
         self._record.reviews.append(time.perf_counter() - begin)
 
     async def _load(self, address: str) -> bool:
-        """Load a page, or count that a full server has refused it; returns whether it is open."""
+        """Load a page, or count the refusal of a full server; return whether the page is open."""
         self._closing = False
         try:
             self._channel = await Channel.open(address, self._options)
@@ -199,7 +199,7 @@ class SimulatedSession:
         self._check_timeout()
 
     async def run_when_admitted(self, end: float) -> None:
-        """Act until `end`, and before it ask a full server for the page as a refused page does."""
+        """Ask a full server for the page as a refused page does, and once admitted act until `end`."""
         while not self.is_open and time.perf_counter() + RETRY_SECONDS < end:
             await asyncio.sleep(RETRY_SECONDS)
             await self.open()
@@ -219,11 +219,11 @@ class SimulatedSession:
             (await Channel.open(self._address, self._options)).close()
 
     def another(self) -> SimulatedSession:
-        """Another page of this visitor."""
+        """Return another page of this visitor."""
         return SimulatedSession(self._address, self._random.randrange(2**31), self._record, self._options)
 
     async def stop_reading(self) -> None:
-        """Keep the connection, but read nothing more from it."""
+        """Keep the connection, but stop reading from it."""
         self._closing = True
         if self._reader is not None:
             self._reader.cancel()
@@ -240,7 +240,7 @@ class SimulatedSession:
         return (await AsyncHTTPClient().fetch(address, raise_error=False, request_timeout=60.0, **self._options)).code
 
     async def connect(self, token: str) -> None:
-        """Open a WebSocket with this token, wait for the first message, and close it; the server may refuse it."""
+        """Open a WebSocket with this token, which the server may refuse, wait for the first message, and close the WebSocket."""
         with suppress(HTTPClientError, EOFError):
             channel = await Channel.connect(self._address, f'"token":"{token}"', self._options)
             await channel.part()
@@ -254,7 +254,7 @@ class SimulatedSession:
         self._open_channel.emit("data_event", model=model, data={"type": "map", "entries": entries})
 
     def press(self, label: str) -> None:
-        """Press a button, if it is on the page."""
+        """Press a button, if the page has it."""
         if label in self._models:
             self._open_channel.emit("button_click", model={"id": self._models[label]})
 
@@ -311,7 +311,7 @@ class SimulatedSession:
         return self._channel
 
     def _await_map(self, action: str, **parameters: str) -> None:
-        """Wait for the map of an action, which gives the page's address these parameters."""
+        """Begin to wait for the map of an action, after which the page's address has these parameters."""
         if self._awaited is not None:
             self._record.replaced.append(time.perf_counter() - self._awaited[1])
         self._awaited, self._parameters, self._accepted = (action, time.perf_counter()), parameters, False
@@ -369,7 +369,7 @@ class SimulatedSession:
             self._reviewed.set()
 
     def _on_pixels(self) -> None:
-        """Record the pixels of the map that is awaited."""
+        """Record the time of the pixels of the awaited map."""
         if not self._opened.is_set():
             self._opened.set()
         elif self._awaited is not None and self._accepted:
@@ -378,7 +378,7 @@ class SimulatedSession:
 
 
 def _named_models(part: Any) -> Iterator[tuple[str, str]]:
-    """Names, labels and accessible names of the models of a serialized document, with their ids."""
+    """Yield the names, labels and accessible names of the models of a serialized document, with their ids."""
     if isinstance(part, dict):
         attributes = part.get("attributes")
         if "id" in part and isinstance(attributes, dict):

@@ -1,6 +1,6 @@
-"""Speed and energy error of Taylor orders and tolerances, to choose the fastest with an error below 1e-11 at t = 1e5.
+"""Measure speed and energy error of Taylor orders and tolerances, to choose the fastest with an error below 1e-11 at t = 1e5.
 
-The propagation loop of the engine, with refill and event tests, on one core; 64 bounded orbits per case.
+The propagation loop of the engine runs with refill and event tests on one core, on 64 bounded orbits per case.
 
 Run: uv run python -m benchmarks.steps
 """
@@ -30,7 +30,7 @@ TRIALS = ((17, 1e-15), (18, 1e-15), (18, 3e-15), (19, 1e-15), (19, 3e-15), (19, 
 
 
 def bounded_starts(case: str) -> np.ndarray:
-    """(ORBITS, 4) random starts on (x, px) below the escape energy."""
+    """Return random starts on (x, px) below the escape energy, of shape (ORBITS, 4)."""
     x, px = np.random.default_rng(1).uniform(-0.7, 0.7, (2, 20 * ORBITS))
     states = start_states(CASES[case], Plane.X_PX, ENERGIES[case], x, px)
     inside = np.isfinite(states).all(axis=1) & (np.abs(x) < 0.5)
@@ -38,7 +38,7 @@ def bounded_starts(case: str) -> np.ndarray:
 
 
 def measure(case: str, order: int, tolerance: float) -> tuple[float, float, float]:
-    """Million steps per second, million time units per second, worst relative energy error.
+    """Return million steps per second, million time units per second, worst relative energy error.
 
     The function runs in a new process with its own kernel cache, because the order is compiled into the kernels.
     """

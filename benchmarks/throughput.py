@@ -1,9 +1,9 @@
-"""Integration speed on one core compared with heyoka's batch mode: the same bounded orbits of each potential of the catalogue.
+"""Compare the integration speed on one core with heyoka's batch mode, on the same bounded orbits of each potential.
 
-The engine runs with refill, exit and crossing tests; heyoka without events, in the faster of its batches, with the tolerance
-1e-13, and with the loosest one whose energy error is at most 1e-11, or that of the engine if that is larger. Times are those of
-the processor, the least of some runs in turn, so that other programs disturb little. Errors are the worst relative error of the
-energy at the end, and the median error of the states after a short time against an integration in extended precision, relative
+The engine runs with refill, exit and crossing tests. heyoka runs without events, in the faster of its batches, with two
+tolerances: 1e-13, and the loosest with an energy error of at most 1e-11, or at most the engine's error if that is larger. Times
+are the least processor time of some runs in turn, so that other programs disturb little. Energy errors are the worst relative
+errors at the end. State errors are the median errors after a short time against an integration in extended precision, relative
 to the largest coordinate.
 
 Run: uv run python -m benchmarks.throughput [NAME …]
@@ -28,7 +28,7 @@ from engine.integrator.source.recurrence import TOLERANCE
 from engine.systems.compiled import kernels_of
 from tests.peers.taylor_heyoka import equations
 
-# Energies at which many orbits are bounded; for other potentials, this part of the escape energy.
+# Energies at which many orbits are bounded. Other potentials have the energy `BELOW_ESCAPE` times the escape energy.
 ENERGIES = {
     "Copenhagen": -2.2,
     "Earth-Moon": -1.12,
@@ -39,13 +39,18 @@ ENERGIES = {
     "Two Yukawa centres": -0.5,
 }
 BELOW_ESCAPE = 0.96
-ORBITS, REPEATS = 64, 3
-# Durations in exact units of time, see `Well`; the short one is for the comparison of states.
-DURATION, SHORT = 1e4, 20.0
-# Bounded orbits stay farther from a body than this many of its radii.
+ORBITS = 64
+REPEATS = 3
+# Duration of the timed integrations, in exact units of time (see `Well`).
+DURATION = 1e4
+# Duration before the comparison of states, in exact units of time.
+SHORT = 20.0
+# Smallest distance of the orbits from a body, in radii of the body.
 KEPT_APART = 20.0
-PERMITTED_ERROR, USUAL_TOLERANCE = 1e-11, 1e-13
-# One tolerance for each order of heyoka, which determines its step: 13 to 20 without 19.
+# Largest energy error of heyoka with its loosest tolerance.
+PERMITTED_ERROR = 1e-11
+USUAL_TOLERANCE = 1e-13
+# One tolerance for each order of heyoka, 13 to 20 without 19. The order determines the step.
 TOLERANCES = (5e-11, 1e-11, 1e-12, 1e-13, 2e-14, 2e-15, 2.2e-16)
 WIDE_BATCH = 8
 
@@ -72,12 +77,12 @@ class Problem(NamedTuple):
     short: float
 
     def energy_error(self, states: np.ndarray) -> float:
-        """The worst relative error of the energies of states."""
+        """Return the worst relative error of the energies of states."""
         return float(np.max(np.abs(self.potential.energy(states) / self.energy - 1.0)))
 
 
 def pose(name: str) -> Problem:
-    """The problem of an entry of the catalogue."""
+    """Return the problem of an entry of the catalogue."""
     potential = POTENTIALS[name]
     energy = ENERGIES[name] if name in ENERGIES else BELOW_ESCAPE * potential.escape_energy
     unit = potential.well.exact_time_unit / potential.units.time
@@ -99,7 +104,7 @@ def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
 
 
 def by_engine(problem: Problem) -> Integrate:
-    """Integrate with the engine, with refill and tests of exits and crossings; return states at the start of the last step."""
+    """Return the integrator of the engine, with refill, exit and crossing tests; its states are at the start of the last step."""
     curves, kernels = closed_exits(problem.potential)[None], kernels_of(problem.potential)
     gates = exit_gates(curves)
 
@@ -116,7 +121,7 @@ def by_engine(problem: Problem) -> Integrate:
 
 
 def by_heyoka(problem: Problem, tolerance: float, batch: int) -> Integrate:
-    """heyoka's batch mode, without events."""
+    """Return heyoka's integrator in batch mode, without events."""
     integrator = hy.taylor_adaptive_batch(equations(problem.potential), np.zeros((4, batch)), tol=tolerance, force_avx512=True)
 
     def integrate(states: np.ndarray, duration: float) -> Run:
@@ -134,7 +139,7 @@ def by_heyoka(problem: Problem, tolerance: float, batch: int) -> Integrate:
 
 
 def state_error(problem: Problem, integrate: Integrate) -> float:
-    """The median error of states after the short time, relative to their largest coordinate."""
+    """Return the median error of states after the short time, relative to their largest coordinate."""
     run, errors = integrate(problem.starts, problem.short), []
     integrator = hy.taylor_adaptive(equations(problem.potential), np.zeros(4, np.longdouble), fp_type=np.longdouble)
     for start, state, t in zip(problem.starts, run.states, run.times, strict=True):
@@ -152,7 +157,7 @@ def fastest_batch(problem: Problem) -> int:
 
 
 def loosest(problem: Problem, batch: int, permitted: float) -> tuple[float, Integrate]:
-    """Return the loosest tolerance with which heyoka's error is permitted, or its tightest."""
+    """Return the loosest tolerance with a permitted error of heyoka, or else the tightest tolerance."""
     for tolerance in TOLERANCES:
         integrate = by_heyoka(problem, tolerance, batch)
         if problem.energy_error(integrate(problem.starts, problem.duration).states) <= permitted:

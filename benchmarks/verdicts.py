@@ -1,4 +1,4 @@
-"""Number of verdicts on single orbits, and on pixels of maps, that later turn out wrong, in ten chaotic seas with their islands.
+"""Count verdicts on single orbits and on pixels of maps that later turn out wrong, in ten chaotic seas with their islands.
 
 Starts are uniform on the energy surface; those that are bounded until t = 1000 are judged at several times, and again at 1e5. An
 orbit counts as chaotic if its SALI falls to 1e-7 by then or it escapes. Maps of (x, px) are judged at the same times.
@@ -41,25 +41,25 @@ SEAS = (
 TIMES = (1e3, 2e3, 4e3, 1e4, 2e4, 5e4, 1e5)
 WRONG = ((Verdict.REGULAR, True), (Verdict.CHAOTIC, False))
 SIDE = 48
-# Number of starts that are drawn for one that is bounded until the first time.
-DRAWN = 30
+# Number of random starts per start that is bounded until the first time.
+STARTS_PER_BOUNDED = 30
 
 
 def bounded_starts(potential: Potential, energy: float, count: int, seed: int) -> np.ndarray:
-    starts = sample_starts(potential, energy, DRAWN * count, seed=seed)
+    starts = sample_starts(potential, energy, STARTS_PER_BOUNDED * count, seed=seed)
     fates = classify_orbits(potential, energy, starts, t_max=TIMES[0]).fate
     return starts[fates == Fate.BOUNDED][:count]
 
 
 def shortened(orbit: Orbit, t_end: float) -> Orbit:
-    """Return the orbit until a time at which it is bounded."""
+    """Return the part of an orbit until a time at which the orbit is bounded."""
     count = int(np.searchsorted(orbit.t, t_end * (1.0 + 1e-12), side="right"))
     names = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
     return replace(orbit, fate=int(Fate.BOUNDED), **{name: getattr(orbit, name)[:count] for name in names})
 
 
 def count_verdicts(potential: Potential, energy: float, count: int, seed: int) -> Counter[tuple[float, Verdict | None, bool]]:
-    """Return the number of orbits by time, verdict at that time, and whether they are chaotic."""
+    """Count orbits by time, verdict at that time, and whether they are chaotic."""
     counts: Counter[tuple[float, Verdict | None, bool]] = Counter()
     for state in bounded_starts(potential, energy, count, seed):
         orbit = integrate_orbit(potential, state, TIMES[-1])
@@ -71,7 +71,7 @@ def count_verdicts(potential: Potential, energy: float, count: int, seed: int) -
 
 
 def count_pixels(potential: Potential, energy: float) -> Counter[tuple[float, Regularity, bool]]:
-    """The number of bounded pixels of a map by time, character then, and whether their orbits are chaotic by the last time."""
+    """Count bounded pixels of a map by time, character at that time, and whether their orbits are chaotic by the last time."""
     characters = {}
     for time in TIMES:
         pixels = compute_map(MapSpec(potential, Plane.X_PX, energy, (SIDE, SIDE), t_max=time))

@@ -1,6 +1,6 @@
-"""Values that commands read from words: the system, the slice, the energy, the start and others.
+"""Read values such as the system, the slice, the energy and the start from the words of a command.
 
-`READERS` lists functions that make a value from several options: a command with a parameter of that type has these options.
+`READERS` lists functions that make a value from several options. A command with a parameter of that type has these options.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ PALETTE_HELP = f"Colours: {', '.join(f'{key} ({palette.name})' for key, palette 
 
 
 def find_system(case: Case) -> System:
-    """Return the system of a case, which is not reviewed; ValueError if there is none.
+    """Return the system of a case, without a review; ValueError for a case that is neither a name nor a formula.
 
     Parameters
     ----------
@@ -61,22 +61,22 @@ def find_system(case: Case) -> System:
 
 _SLOW = ", ".join(name for name, measure in MEASURES.items() if measure.slow)
 Slow = Annotated[bool, typer.Option(help=f"Whether to compute the measures that take longest: {_SLOW}.")]
-"""Type of the option of commands that compute measures."""
+"""Type of the option that includes slow measures."""
 
 
 def check_measures(chosen: Collection[str] | None, known: Collection[str]) -> list[str]:
-    """Return chosen names of measures in the order of the known ones; ValueError for others."""
+    """Return the chosen names of measures in the order of `known`; ValueError for a name that is not known."""
     if wrong := [name for name in chosen or () if name not in known]:
         raise ValueError(f"measure={wrong[0]}: must be one of {', '.join(known)}")
     return [name for name in known if name in (chosen or ())]
 
 
 Case = Annotated[str, typer.Argument(metavar="CASE"), Of(find_system)]
-"""Type of the argument of commands for one system."""
+"""Type of the argument CASE of commands."""
 
 
 def find_potential(case: Case) -> Potential:
-    """Return the potential of ``NAME`` or of a formula in x and y, with optional parameters ``@omega_1=1.2,a=0.8``.
+    """Return the potential of a name or of a formula in x and y, with optional parameters ``@omega_1=1.2,a=0.8``.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def find_potential(case: Case) -> Potential:
     Raises
     ------
     ValueError
-        If it is neither a name nor a formula, a parameter is invalid, or the potential is not supported.
+        If the case is neither a name nor a formula, a parameter is invalid, or the potential is not supported.
     """
     potential = find_system(case).potential
     problem = refusal(review_potential(potential))
@@ -106,7 +106,7 @@ def find_plane(
     plane: Annotated[str | None, typer.Option("--plane", "--axes", metavar="AXES", help=PLANE_HELP)] = Plane.X_PX.key,
     fix: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE")] = None,
 ) -> Slice | None:
-    """Return the slice of some axes, whose parameters are those of a system; None without axes.
+    """Return the slice with some axes, which may be parameters of the system; None without axes.
 
     Parameters
     ----------
@@ -122,10 +122,10 @@ def find_plane(
 
 
 type GivenEnergy = float | None
-"""Type of the parameter of commands for an energy, or the Jacobi constant, that can be left out."""
+"""Type of an optional energy, given as h or by the Jacobi constant."""
 
 type OneEnergy = float
-"""Type of the parameter of commands for an energy, or the Jacobi constant."""
+"""Type of a required energy, given as h or by the Jacobi constant."""
 
 
 def find_energy(system: System, energy: float | None = None, jacobi: float | None = None) -> GivenEnergy:
@@ -160,14 +160,14 @@ def choose_energy(
     energy: GivenEnergy = None,
     energies: Annotated[tuple[float, float] | None, typer.Option(metavar="LOW HIGH")] = None,
 ) -> Energy:
-    """Return the energy of a map, or the range of an axis h; ValueError if the option that the slice needs is missing.
+    """Return the energy of a map, or the range of an axis h; ValueError if an option is missing that the slice needs.
 
     Parameters
     ----------
     plane
         The slice.
     energy
-        Of `find_energy`.
+        The result of `find_energy`.
     energies
         Range of h, for slices with an axis h.
     """
@@ -185,7 +185,7 @@ def _not_given(option: str, value: object) -> str:
 
 
 def find_palette(palette: Annotated[str, typer.Option(help=PALETTE_HELP)] = next(iter(PALETTES))) -> Palette:
-    """Return the palette of a name; ValueError if there is none."""
+    """Return the palette with a name; ValueError for an unknown name."""
     if palette not in PALETTES:
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
     return PALETTES[palette]
@@ -203,7 +203,7 @@ def read_resolution(text: str) -> tuple[int, int]:
 def space_values(
     low: float | None, high: float | None, count: int | None, listed: Sequence[float] | None = None
 ) -> tuple[float, ...]:
-    """Return the values of a sweep, evenly spaced including both ends, or as listed; ValueError for anything else.
+    """Return the values of a sweep: evenly spaced including both ends, or as listed; ValueError for other combinations.
 
     Parameters
     ----------
@@ -237,13 +237,13 @@ READERS: Mapping[Any, Callable[..., Any]] = {
     Palette: find_palette,
     LayerOptions: read_layers,
 }
-"""Functions that make a value from options; the values of their own parameters of these types are made first."""
+"""Functions, by type, that make a value from options. Parameters of these functions may have the same types."""
 
 OPTION_TYPES: Mapping[Any, Any] = {
     GivenWindow | None: Annotated[tuple[float, float, float, float] | None, typer.Option(metavar="X0 X1 Y0 Y1")],
     tuple[int, int]: Annotated[str, typer.Option(metavar="N or NxM", parser=read_resolution)],
 }
-"""Types of the options that are read from a single word."""
+"""For some types of parameters, the type that Typer reads."""
 
 
 def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
@@ -262,7 +262,7 @@ def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
 
 
 def _letters(formula: str) -> tuple[str, ...]:
-    """Return the letters of a formula; empty for text that is not a formula, which is refused later."""
+    """Return the letters of a formula, or none for text that is not a formula, which is refused later."""
     try:
         return formula_letters(formula)
     except ValueError:

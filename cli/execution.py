@@ -1,4 +1,4 @@
-"""How a command computes: with threads or a cluster, cancelled by Ctrl-C, with progress bars."""
+"""Run computations of commands with threads or a cluster, with progress bars, until Ctrl-C cancels them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RunContext:
-    """The execution of the computations of one run, and its progress bars.
+    """The execution and the progress bars of one run.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class RunContext:
     progress: Progress
 
     def start_stage(self, stage: str) -> Execution:
-        """Show the bar of a new stage, unless bars are disabled, and return the execution that reports to it.
+        """Show the bar of a new stage, unless bars are disabled, and return the execution that reports to the bar.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class Place:
         Raises
         ------
         concurrent.futures.CancelledError
-            On exit, if Ctrl-C was pressed: results may be incomplete and must not be written.
+            On exit, if Ctrl-C was pressed. Results may be incomplete and must not be written.
         """
         cancel = threading.Event()
         console = Console(stderr=True)
@@ -102,12 +102,12 @@ class Place:
 
 
 THREADS_ONLY = But(without=("scheduler", "local_cluster"))
-"""The place of a command that computes in this process."""
+"""Mark of a place for a command that computes only in this process."""
 
 
 @contextmanager
 def _cancel_on_ctrl_c(cancel: threading.Event) -> Iterator[None]:
-    """Set `cancel` at the first Ctrl-C; the second one raises KeyboardInterrupt at once."""
+    """Set `cancel` at the first Ctrl-C, and raise KeyboardInterrupt at the second."""
     in_thread = threading.current_thread() is not threading.main_thread()
     if in_thread or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         # Only the main thread can set signal handlers, and a shell starts background jobs with SIGINT ignored.
@@ -180,7 +180,7 @@ def describe_losses() -> Iterator[None]:
 
 @contextmanager
 def _ignore_ctrl_c() -> Iterator[None]:
-    """Make child processes ignore Ctrl-C, which a terminal sends to the whole process group; this process ends them."""
+    """Make child processes ignore Ctrl-C, which a terminal sends to the whole process group. This process ends the children."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

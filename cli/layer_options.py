@@ -1,4 +1,4 @@
-"""Options of the layers of a map."""
+"""Make the options of the layers of a map."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from plots.layers.table import LAYER_OF, LAYERS
 
 @dataclass(frozen=True)
 class LayerOptions:
-    """The requested layers; the options are those of `LAYERS`.
+    """The requested layers and their settings, from the options of `LAYERS`.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class LayerOptions:
         return [layer.picture.name for layer in self.layers if layer.picture is not None]
 
     def with_pictures(self, pictures: Collection[str]) -> LayerOptions:
-        """Return the layers with those added that some pictures show."""
+        """Return a copy that also requests the layers that some pictures show."""
         needed = {LAYER_OF[picture].name: True for picture in pictures if picture in LAYER_OF}
         return replace(self, values={**self.values, **needed})
 

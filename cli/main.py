@@ -1,4 +1,4 @@
-"""Program ``escape-explorer``: its commands and exit codes."""
+"""Run the program ``escape-explorer``: find and import a command, and turn errors into exit codes."""
 
 from __future__ import annotations
 
@@ -19,21 +19,27 @@ from cli.system_errors import describe_system_error
 
 NAME = "escape-explorer"
 
-INVALID_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
-"""Exit codes: invalid arguments; failure while running; Ctrl-C, as in shells (128 + SIGINT)."""
+INVALID_REQUEST = 2
+"""Exit code for invalid arguments."""
+
+FAILED = 1
+"""Exit code for a failure while running."""
+
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as in shells: 128 + SIGINT."""
 
 COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "ensemble", "sweep", "reproduce", "potential", "serve")
-"""Names of the modules in `commands`, which are imported when they are needed."""
+"""Names of the modules in `commands`, which are imported when needed."""
 
 FORMER_OPTIONS = {"--certify": "--evidence", "--no-certify": "--no-evidence"}
-"""Former names of options."""
+"""Present names of options, by former names."""
 
 
 class _Command(TyperCommand):
-    """A command whose arguments may begin with a minus, as formulas do: all its options begin with two."""
+    """A command whose arguments may begin with a minus, as formulas do. All its options begin with two."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the words with the arguments moved to the end, after ``--``."""
+        """Parse the words after moving the arguments to the end, behind ``--``."""
         values = {name: _count_values(option) for option in self.params for name in option.opts}
         words, rest, arguments = deque(args), list[str](), list[str]()
         while words and words[0] != "--":
@@ -56,7 +62,7 @@ def _count_values(option: Any) -> int:
 
 
 def _without_types_of_flags(params: list[Any]) -> list[Any]:
-    """Return the parameters; those without a value are shown without the name of a type."""
+    """Return the parameters with no type name for flags."""
     for option in params:
         if _count_values(option) == 0:
             option.metavar = ""
@@ -64,14 +70,14 @@ def _without_types_of_flags(params: list[Any]) -> list[Any]:
 
 
 class _Commands(TyperGroup):
-    """Commands that are known by name and summary; the module of a command is imported when it runs."""
+    """Commands known by name and summary. The module of a command is imported when the command runs."""
 
     def get_params(self, ctx: Any) -> list[Any]:
         """Return the parameters in the form that the help shows."""
         return _without_types_of_flags(super().get_params(ctx))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Return the name, the imported command and its words."""
+        """Return the name of a command, the imported command, and its words."""
         name, known, words = super().resolve_command(ctx, args)
         return name, known and _import_command(str(known.name)), words
 
@@ -121,8 +127,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Returns
     -------
-    Exit code: 0; 2 for invalid arguments; 1 for any other error; 130 after Ctrl-C. After an error one sentence is printed to
-    stderr, and no file is left half written.
+    Exit code: 0, or 2 for invalid arguments, 1 for any other error, 130 after Ctrl-C. After an error, one sentence is on stderr,
+    and no file is half written.
     """
     try:
         returned = program(arguments, prog_name=NAME, standalone_mode=False)

@@ -1,4 +1,4 @@
-"""A map and the results of its layers, computed one after the other."""
+"""Compute a map and then the results of its layers."""
 
 from __future__ import annotations
 

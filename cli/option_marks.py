@@ -1,4 +1,4 @@
-"""Marks for parameters of commands, used in ``Annotated``, from which the options are made."""
+"""Marks for parameters of commands, used in ``Annotated``. The options follow from the marks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Of:
-    """Marks an option with the help of a parameter of a request or function, and its default unless one is given.
+    """Gives an option the help of a parameter of a request or function, and the parameter's default unless another is given.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Of:
 
 @dataclass(frozen=True)
 class But:
-    """Marks a request for which a command lacks the options of some parameters, or has other defaults."""
+    """Removes options from a request in a command, or gives them other defaults."""
 
     without: tuple[str, ...] = ()
     defaults: Mapping[str, Any] = field(default_factory=dict)

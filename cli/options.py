@@ -1,4 +1,4 @@
-"""Options made from a function or dataclass: names, types and defaults of its parameters, with help from its docstring."""
+"""Make options from the parameters of a function or dataclass, with help from its docstring."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NAMES = {"use_evidence": ("--evidence/--no-evidence",)}
 
 
 def with_options(function: Callable[..., None]) -> Callable[..., None]:
-    """Return the function that Typer turns into a command: its parameters are the options from which the requests are made."""
+    """Return a function for Typer whose parameters are the options. It makes the requests and calls the command with them."""
 
     def run(**values: Any) -> None:
         _build(function, values)
@@ -34,7 +34,7 @@ def with_options(function: Callable[..., None]) -> Callable[..., None]:
 
 
 def _list_options(make: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """Return the options, by name, with which a function or a request is called."""
+    """Return the options, by name, from which the arguments of a function or a request are made."""
     options: dict[str, inspect.Parameter] = {}
     for parameter in _parameters(make):
         kind, marks = _split(parameter.annotation)
@@ -69,27 +69,27 @@ def _find_reader(kind: Any) -> Callable[..., Any] | None:
 
 
 def _make_option(make: Callable[..., Any], parameter: inspect.Parameter) -> inspect.Parameter:
-    """Return a keyword parameter as Typer reads it: with names, help and default."""
+    """Return a keyword parameter for Typer, with names, help and default."""
     kind, marks = _split(parameter.annotation)
     of = next((mark for mark in marks if isinstance(mark, Of)), Of(make))
     source = of.name or parameter.name
     default = parameter.default
     if default is MISSING and of.owner is not make:
         default = inspect.signature(of.owner).parameters[source].default
-    # Typer's own class of options or arguments, with properties that only the command line has, such as a name for the value.
+    # Typer's object for an option or argument has properties that only the command line needs, such as a name for the value.
     info = copy(next((mark for mark in marks if isinstance(mark, ParameterInfo)), typer.Option()))
     info.help = info.help or _describe(of.owner, source)
     # Typer treats the first name as the default value.
     if isinstance(info, OptionInfo) and info.default is ...:
         info.param_decls = _name(parameter.name, default)
     if isinstance(default, tuple):
-        # The resolution is given as one word.
+        # The resolution is one word, such as 224x224.
         default = "x".join(map(str, default))
     return inspect.Parameter(parameter.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, info])
 
 
 def _name(parameter: str, default: Any) -> tuple[str, ...]:
-    """Return the names of an option; a flag that is on by default has a name to switch it off."""
+    """Return the names of an option. A flag that is on by default also has a name that switches it off."""
     if parameter in NAMES:
         return NAMES[parameter]
     name = parameter.replace("_", "-")
@@ -106,7 +106,7 @@ def _describe(owner: Callable[..., Any], name: str) -> str:
 
 
 def _parameters(make: Callable[..., Any]) -> Collection[inspect.Parameter]:
-    """Return the parameters of a function or a request, with the types of their annotations."""
+    """Return the parameters of a function or a request, with evaluated annotations."""
     return inspect.signature(make, eval_str=True).parameters.values()
 
 

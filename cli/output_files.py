@@ -1,4 +1,4 @@
-"""Output files: named and reserved before the computation, written atomically."""
+"""Name and reserve output files before the computation, and write them atomically."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ Content = str | bytes
 
 
 def add_ending(stem: Path, ending: str) -> Path:
-    """Return the stem with a dot and the ending appended; dots in the stem are kept."""
+    """Return the stem with a dot and the ending appended. Dots in the stem stay."""
     return stem.with_name(f"{stem.name}.{ending}")
 
 
 def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -> tuple[Path, Sequence[str]]:
-    """Return stem and ending of a file name. A name without an ending is the stem, and the default endings are returned.
+    """Return stem and ending of a file name, or, of a name without an ending, the name and the default endings.
 
-    An ending begins with a letter: ``map-0.19`` has none.
+    An ending begins with a letter, so ``map-0.19`` has none.
 
     Raises
     ------
     ValueError
-        If the ending is not one of the legal ones.
+        If the ending is not legal.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -
 def name_files(
     output: Path | None, endings: Collection[str], default: Sequence[str], stem: Path | None = None
 ) -> dict[str, Path]:
-    """Return the output files by ending, as `split_ending` does; without --output those of a stem, or none."""
+    """Return the output files by ending, named after --output, or else after the stem; none without both."""
     if output is not None:
         stem, default = split_ending(output, endings, default)
     return {} if stem is None else {ending: add_ending(stem, ending) for ending in default}
@@ -70,7 +70,7 @@ def reserve_output(output: Path | None) -> Iterator[None]:
     ValueError
         If its folder does not exist.
     BlockingIOError
-        If another process is writing it; one sentence that names the process.
+        If another process is writing the output. The message names the process.
     """
     if output is None:
         yield
@@ -103,7 +103,7 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
 
 
 def _write(path: Path, content: bytes) -> None:
-    # A temporary file is in the same folder, because replacing is atomic only within one file system.
+    # The temporary file is in the same folder, because replacing is atomic only within one file system.
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with part.open("xb") as file:

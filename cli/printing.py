@@ -1,4 +1,4 @@
-"""Results on stdout: tables and sentences, or JSON."""
+"""Print results on stdout: tables and sentences, or JSON."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from rich.table import Table as RichTable
 
 from cli.option_marks import Of
 
-# Wider than any table, so that nothing is cut; a terminal wraps the lines.
+# In characters. No table is wider, so that nothing is cut; a terminal wraps the lines.
 _WIDTH = 10_000
 
 
 @dataclass(frozen=True)
 class Table:
-    """Table: names of columns, and cells by row. All columns but the first are right-aligned."""
+    """A table of texts, with names of columns. All columns except the first are right-aligned."""
 
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -60,7 +60,7 @@ AsJson = Annotated[bool, typer.Option("--json"), Of(print_result)]
 
 
 def list_rows(columns: Mapping[str, np.ndarray]) -> list[dict[str, Any]]:
-    """Return a table as one dictionary for each of its rows."""
+    """Return one dictionary for each row of a table."""
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return [dict(zip(columns, row, strict=True)) for row in rows]
 

@@ -1,4 +1,4 @@
-"""Errors of the operating system as sentences: the path, the problem and what to do."""
+"""Write errors of the operating system as sentences: the path, the problem and what to do."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ADVICE = {
 
 
 def describe_system_error(error: OSError) -> str:
-    """Return a sentence without a full stop, or the text of the error if it has no error number."""
+    """Return a sentence without a full stop, or the text of an error without an error number."""
     if error.errno is None or error.strerror is None:
         return str(error)
     advice = _ADVICE.get(error.errno)

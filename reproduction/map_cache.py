@@ -1,4 +1,4 @@
-"""Cache of the maps and analyses that figures and tables need; each is computed once, when it is first used."""
+"""Cache the maps and analyses that figures and tables need. Each is computed once, at its first use."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from reproduction.quality import Quality
 
 
 class MapCache:
-    """Complete maps of one quality, stored without the state of their orbits, and analyses of these maps.
+    """Complete maps of one quality, without the states of their orbits, and analyses of these maps.
 
     All methods raise `concurrent.futures.CancelledError` when the execution is cancelled.
 
@@ -56,11 +56,11 @@ class MapCache:
         self._kept: dict[Hashable, Any] = {}
 
     def map(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
-        """Return a map of a case of `engine.CASES`; other parameters are as in `engine.MapSpec`."""
+        """Return a map of a case of `engine.CASES`. Other parameters are those of `engine.MapSpec`."""
         return self._stored(self._spec(case, plane, energy, window))
 
     def curves(self, case: str, plane: Slice) -> Sweep:
-        """Return shares at the energies of `curve_energies`, and the largest energy error; new maps are not stored."""
+        """Return shares at the energies of `curve_energies`, and the largest energy error. New maps are not stored."""
         return self._once(("curves", case, plane), lambda: self._sweep(case, plane))
 
     def regularity(self, frame: EscapeMap) -> RegularityMap:
@@ -81,7 +81,7 @@ class MapCache:
         return self._once(("exponent", spec), lambda: compute_uncertainty_exponent(spec, work=work, execution=self.execution))
 
     def _once[Found](self, key: Hashable, compute: Callable[[], Found]) -> Found:
-        """Return the value that is stored under a key; the first call computes it."""
+        """Return the value stored under a key. The first call computes the value."""
         if key not in self._kept:
             self._kept[key] = compute()
         found: Found = self._kept[key]
@@ -96,7 +96,7 @@ class MapCache:
         )
 
     def _sweep(self, case: str, plane: Slice) -> Sweep:
-        """A sweep that uses the stored maps."""
+        """Compute a sweep that uses the stored maps."""
         energies, side, t_max = curve_energies(case, self.quality.curve_points), self.quality.resolution, self.quality.t_max
         spec = SweepSpec(CASES[case], plane, energies, (side, side), t_max=t_max, measures=("shares", "accuracy"))
         return compute_sweep(

@@ -1,4 +1,4 @@
-"""Members of the reproduction (the figures and the tables) and their files."""
+"""Choose members of the reproduction (the figures and the tables) and make their files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reproduction.numbers.comparisons import compare_all
 from reproduction.tables.report import write_report, write_table
 
 TABLES = "tables"
-"""Name of the member that is not a figure."""
+"""Name of the only member that is not a figure."""
 
 CAPTIONS = {
     **{name: entry.caption for name, entry in FIGURES.items()},
@@ -20,7 +20,7 @@ CAPTIONS = {
 
 
 def choose_members(names: Sequence[str]) -> list[str]:
-    """Select members by name, each once and in order, or all members if there are no names.
+    """Select members by name, each once and in order; without names, select all members.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def choose_members(names: Sequence[str]) -> list[str]:
 
 
 def make_files(name: str, cache: MapCache) -> dict[str, str | bytes]:
-    """Return the content of the files of a member, by file name; this may take minutes.
+    """Return the content of the files of a member, by file name. This may take minutes.
 
     Raises
     ------

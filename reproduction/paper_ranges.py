@@ -1,4 +1,4 @@
-"""Energies of the curves and figures of the paper."""
+"""The energies of the curves and figures of the paper."""
 
 from __future__ import annotations
 
@@ -11,29 +11,32 @@ from reproduction.analyses.published_fits import PAPER_FITS
 CHANNEL_ENERGIES = {"I": 0.15, "II": 0.2, "III": 0.3}
 """Energies of the figures that show an orbit through each exit."""
 
-STICKY_CASE, STICKY_ENERGY = "III", 0.26
-"""Case and energy of the paper's regular, chaotic and super-sticky orbits, on (x, px)."""
+STICKY_CASE = "III"
+"""Case of the paper's regular, chaotic and super-sticky orbits, on (x, px)."""
 
-# The energies are rounded, because maps are looked up by energy: equal energies must be equal bit for bit.
+STICKY_ENERGY = 0.26
+"""Energy of these orbits."""
+
+# Decimals of energies. Maps are looked up by energy, so equal energies must be equal to the bit.
 _DECIMALS = 6
 
 
 def nine_energies(case: str) -> tuple[float, ...]:
-    """Energies of the paper's maps."""
+    """Return the energies of the paper's maps."""
     return PAPER_ENERGIES[case].marked
 
 
 def three_energies(case: str) -> tuple[float, ...]:
-    """The first, the middle and the last of the nine energies: long, medium and short escape times."""
+    """Return the first, the middle and the last of the nine energies: long, medium and short escape times."""
     return nine_energies(case)[::4]
 
 
 def curve_energies(case: str, count: int) -> tuple[float, ...]:
-    """`count` evenly spaced energies, from the paper's lowest map to the end of its curves."""
+    """Return `count` evenly spaced energies, from the paper's lowest map to the end of its curves."""
     energies = np.linspace(nine_energies(case)[0], PAPER_FITS[case].highest_energy, count)
     return tuple(energies.round(_DECIMALS).tolist())
 
 
 def plane_energies(case: str) -> tuple[float, float]:
-    """Lowest and highest h of the (x, h) plane."""
+    """Return the lowest and highest h of the (x, h) plane."""
     return CASES[case].escape_energy, PAPER_ENERGIES[case].high

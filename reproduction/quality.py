@@ -1,4 +1,4 @@
-"""Quality of the reproduction: as in the paper, or a quick preview."""
+"""The qualities of a reproduction: as in the paper, or a quick preview."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class Quality:
     name
         Name on the command line.
     resolution
-        Columns and rows of every map. The number is even: an odd number puts a column of starts on the symmetry line x = 0 of
-        III, where orbits on the y axis never escape.
+        Columns and rows of every map. An odd number of columns would put starts of III on the symmetry line x = 0, where orbits
+        never escape.
     t_max
         Integration time of orbits, dimensionless.
     curve_points
@@ -25,10 +25,10 @@ class Quality:
     search_resolution, search_t_max
         Columns and rows of the map of III whose chaotic bounded orbits are continued, and the end time of the continuation.
     classified_resolution
-        Columns and rows of the maps of I and II whose chaotic bounded orbits are continued; a classification takes ten times as
-        long as a map.
+        Columns and rows of the maps of I and II whose chaotic bounded orbits are continued. Classifying these orbits takes ten
+        times as long as the map.
     exponent_work
-        Limit of the work for each uncertainty exponent: `work` of `engine.compute_uncertainty_exponent`.
+        Limit of the work for each uncertainty exponent, the `work` of `engine.compute_uncertainty_exponent`.
     """
 
     name: str

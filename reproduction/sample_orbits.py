@@ -1,4 +1,4 @@
-"""Selection of one orbit through each exit of a map."""
+"""Select one orbit through each exit of a map."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from engine import EscapeMap
 
 SHOWN_CROSSINGS = 3
-"""Minimal number of upward crossings of y = 0 of a selected orbit."""
+"""Smallest number of upward crossings of y = 0 of a selected orbit."""
 
 
 def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float, float]]:
@@ -21,8 +21,8 @@ def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float,
     Returns
     -------
     dict
-        (x, y, px, py) of an orbit by exit: the one with the fewest crossings, but at least `SHOWN_CROSSINGS`, or the one with the
-        most crossings if all have fewer. Of several, the first to escape is chosen, then the lowest and leftmost pixel.
+        (x, y, px, py) by exit, of the orbit with the fewest crossings, but at least `SHOWN_CROSSINGS`, or with the most crossings
+        if all have fewer. Of several, the first to escape is chosen, and of these the lowest and leftmost pixel.
     """
     found: dict[int, tuple[float, float, float, float]] = {}
     for channel in range(1, frame.spec.potential.channels + 1):

@@ -42,7 +42,7 @@ settings.load_profile("fixed")
 
 
 class OneBrowser(LoadScopeScheduling):
-    """The tests of a file run in one process, and so do all that open the page in Chromium: they share a server."""
+    """Runs the tests of a file in one process, and all tests that open the page in Chromium, which share a server."""
 
     def _split_scope(self, nodeid: str) -> str:
         return "tests/browser" if nodeid.startswith("tests/browser/") else nodeid.partition("::")[0]
@@ -54,13 +54,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> OneBrowser:
 
 
 def pytest_collection_finish() -> None:
-    """Spare garbage collections the imported modules, which stay until the end."""
+    """Exclude imported modules, which stay until the end, from garbage collections."""
     gc.freeze()
 
 
 @pytest.fixture(autouse=True)
 def _unlimited_compiled_code() -> Iterator[None]:
-    """The limit of a server state that a test makes is not that of the tests after it, and what they compile does not count."""
+    """After each test remove the limit of compiled code that its server state has set, and do not count its code."""
     yield
     compiled_operations.most = None
     compiled_operations.reserve(compiled_operations.codes)

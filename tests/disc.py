@@ -10,5 +10,5 @@ LABELS = ["exit 1", "exit 2", "collision with a disc"]
 
 
 def disc_map() -> EscapeMap:
-    """A map on which all three outcomes occur."""
+    """Return a map on which all three outcomes occur."""
     return compute_map(MapSpec(DISC, Plane.X_PX, 0.19, (40, 40), t_max=300.0))

@@ -11,7 +11,7 @@ _TEXT = (Path(__file__).parents[1] / "docs" / "extending.md").read_text(encoding
 
 
 def run_example(heading: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The names that the Python under a heading defines, beside those that are given."""
+    """Return the names that the Python under a heading defines, beside those that are given."""
     section = _TEXT.split(f"\n## {heading}\n")[1].split("\n## ")[0]
     names = dict(given)
     exec("\n".join(re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)), names)

@@ -1,4 +1,4 @@
-"""A thread pool that drops one call."""
+"""Provide a thread pool that drops one call."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 
 class ForgetfulPool(ThreadPoolExecutor):
-    """Drops the call after `good_calls`, as a cluster does whose scheduler restarts, or on `cancel`, which it sets then."""
+    """Drops the call after `good_calls`, as a cluster does whose scheduler restarts, or on `cancel`, which it then sets."""
 
     def __init__(self, good_calls: int, cancel: threading.Event | None = None) -> None:
         super().__init__(2)

@@ -1,4 +1,4 @@
-"""Child processes that start in milliseconds: forks of one process that has imported the engine and the command line."""
+"""Start child processes in milliseconds, as forks of one process that has imported the engine and the command line."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def run(folder: Path, function: Callable[..., Any], *arguments: Any) -> Finished
 
 @functools.cache
 def fork_context() -> ForkServerContext:
-    """The context of the children, for locks that they share."""
+    """Return the context of the children, for locks that they share."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["cli.main", "engine", "pytest"])
     return context

@@ -1,4 +1,4 @@
-"""Run scripts for Node.js, which stand beside the tests of app/browser."""
+"""Run the scripts for Node.js beside the tests of app/browser."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is
 
 
 def run_node(script: str, data: dict[str, Any], folder: Path) -> Any:
-    """What a script prints as JSON, given data as JSON, with the kernels if it has the module of a system.
+    """Return what a script prints as JSON, given data as JSON, with the kernels if it has the module of a system.
 
     Bytes become files in `folder` and their paths.
     """

@@ -1,4 +1,4 @@
-"""The WebSocket of a page without a browser."""
+"""Open the WebSocket of a page without a browser."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Channel:
             raise RuntimeError("the page has no token")
         request = HTTPRequest(re.sub("^http", "ws", address) + "/ws", **options)
         socket = await websocket_connect(request, subprotocols=["bokeh", token[1]])
-        # As in browsers.
+        # Options as in browsers.
         socket.protocol.set_nodelay(True)
         return cls(address, socket)
 
@@ -71,7 +71,7 @@ class Channel:
         self.patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": data})
 
     async def messages(self) -> AsyncIterator[tuple[str, str]]:
-        """Kind and content of each message from the server until the socket closes; binary buffers are skipped."""
+        """Yield the kind and content of each message from the server until the socket closes; binary buffers are skipped."""
         try:
             while True:
                 header, _, content = [await self.part() for _ in range(3)]
@@ -83,7 +83,7 @@ class Channel:
             return
 
     async def part(self) -> Any:
-        """The next part of a message."""
+        """Return the next part of a message."""
         # A closed socket gives None once, then no further message.
         part = await self._socket.read_message()
         if part is None:

@@ -1,4 +1,4 @@
-"""A small result of each kind, computed once."""
+"""Compute a small result of each kind once."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ RESULTS = tuple(_MAKERS)
 
 @functools.cache
 def result_of(name: str) -> Result:
-    """The result of a name."""
+    """Return the result of a name."""
     result = _MAKERS[name]()
     assert result is not None
     return result

@@ -29,7 +29,9 @@ SKIPPED = {"name": "numba", "skip_reason": "not found"}
     ],
     ids=["sound", "one not audited", "a vulnerability", "none audited", "no answer"],
 )
-def test_exit_code(packages: list[Any] | None, code: int, said: str, tmp_path: Path) -> None:
+def test_the_audit_fails_if_it_finds_a_vulnerability_or_audits_nothing(
+    packages: list[Any] | None, code: int, said: str, tmp_path: Path
+) -> None:
     output = "" if packages is None else json.dumps({"dependencies": packages})
     program = tmp_path / "pip-audit"
     program.write_text(f"#!{sys.executable}\nprint({output!r})\n")

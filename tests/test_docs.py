@@ -1,4 +1,4 @@
-"""The documentation: docstrings of all public names, valid links, and existing files and names."""
+"""The documents have docstrings for all public names, valid links, and existing files and names."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def test_pictures_of_the_documents_use_names_that_exist() -> None:
 
 @pytest.fixture(scope="module")
 def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page with the terms and that of chaos, without those that they link to."""
+    """A site of two pages, that with the terms and that on chaos, without the pages that they link to."""
     folder = tmp_path_factory.mktemp("site")
     pages = "include_patterns=docs/page.md,docs/chaos.md"
     subprocess.run(

@@ -40,7 +40,7 @@ def output(folder: Path) -> str:
 
 
 def numbers(output: str, pattern: str) -> list[float]:
-    """The numbers in a line of the output, at the places marked # in the pattern."""
+    """Return the numbers in a line of the output, at the places marked # in the pattern."""
     line = re.search(re.escape(pattern).replace(r"\#", f"({NUMBER})"), output)
     assert line, pattern
     return [float(number) for number in line.groups()]

@@ -1,4 +1,4 @@
-"""Names in backticks, in docstrings of public names and in documents, are those of something that exists."""
+"""Names in backticks, in docstrings of public names and in documents, exist."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ FOREIGN = re.compile(
 
 
 def members(name: str, thing: Any) -> Iterator[tuple[str, Any]]:
-    """A public name and, of a class, its public functions and properties."""
+    """Yield a public name and, of a class, its public functions and properties."""
     yield name, thing
     inner = {"inner_names", *getattr(thing, "inner_names", ())}
     for attribute, member in vars(thing).items() if inspect.isclass(thing) else ():
@@ -43,7 +43,7 @@ def members(name: str, thing: Any) -> Iterator[tuple[str, Any]]:
 
 
 def attributes(thing: Any) -> set[str]:
-    """The attributes of a thing and, if it can be called, its parameters."""
+    """Return the attributes of a thing and, if it can be called, its parameters."""
     fields = getattr(thing, "__dataclass_fields__", {})
     own = object.__dir__(thing) if not inspect.isclass(thing) else [name for base in thing.__mro__ for name in vars(base)]
     call = thing if inspect.isfunction(thing) else getattr(thing, "__init__", None)
@@ -70,7 +70,7 @@ def test_docstrings_name_what_a_user_can_find(name: str) -> None:
 
 @cache
 def words_of_the_source() -> set[str]:
-    """All names and short texts of the programs, and the names of the files."""
+    """Return all names and short texts of the programs, and the names of the files."""
     listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
     words = {part for file in listed for part in (*Path(file).parts, Path(file).stem)}
     for file in listed:

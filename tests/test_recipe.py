@@ -13,12 +13,12 @@ import yaml
 ROOT = Path(__file__).parents[1]
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 RECIPE: dict[str, Any] = yaml.safe_load((ROOT / "packaging" / "recipe.yaml").read_text(encoding="utf-8"))
-# Packages that conda knows by another name.
+# Packages with another name in conda.
 NAMES = {"matplotlib-base": "matplotlib"}
 
 
 def required(part: str) -> set[str]:
-    """The requirements of a part of the recipe, as pyproject.toml writes them."""
+    """Return the requirements of a part of the recipe, as pyproject.toml writes them."""
     pairs = (re.split(r"\s+", line, maxsplit=1) for line in RECIPE["requirements"][part])
     return {NAMES.get(name, name) + "".join(version) for name, *version in pairs}
 

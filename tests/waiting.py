@@ -1,4 +1,4 @@
-"""Waiting for other threads and processes: the longest time, and waiting for a condition that no event reports."""
+"""Wait for other threads and processes, and for conditions that no event reports."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The commands, one module each: the module's docstring is the help, and the parameters of its function `run` are the options."""
+"""The commands, one module each. The docstring is the help, and the parameters of the function `run` are the options."""

@@ -35,7 +35,7 @@ from plots.texts.exports import curves_csv, dataset_bytes
 AGAINST_HELP = f"h, or a parameter: {', '.join(WELL_PARAMETERS)} or a letter of the formula."
 MEASURE_HELP = f"{', '.join(CURVES)}; all by default. Can be repeated."
 
-# Columns that are written to files and JSON only.
+# Columns for files and JSON, not for the printed table.
 _ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
 
 
@@ -83,7 +83,7 @@ def run(
 
 
 def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
-    """Return the content of the output file with this ending."""
+    """Return the content of the output file with an ending."""
     if ending == "nc":
         return dataset_bytes(curves.dataset)
     if ending == "csv":

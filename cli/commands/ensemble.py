@@ -51,7 +51,7 @@ from plots.printed.figure_style import FigureStyle
 from plots.texts.exports import dataset_bytes, write_csv
 
 MOST_PATHS = 20_000
-"""Largest number of orbits in a movie, or in a file of paths."""
+"""Largest number of orbits in a movie or a file of paths."""
 
 
 @with_options
@@ -117,7 +117,7 @@ def _draw_starts(
     window: GivenWindow | None,
     entering: bool,
 ) -> tuple[np.ndarray | None, np.ndarray]:
-    """Return the entrances, if orbits enter, and the (count, 4) states; ValueError for options that exclude each other."""
+    """Return the entrances, if orbits enter, and the states, (count, 4); ValueError for options that exclude each other."""
     if not entering:
         return None, sample_starts(potential, energy, count, plane=plane, window=window, seed=seed)
     if plane is not None or window is not None:
@@ -126,7 +126,7 @@ def _draw_starts(
 
 
 def _table(starts: np.ndarray, outcomes: Outcomes) -> str:
-    """Return a line for each orbit: its start at full precision, fate, escape time and crossings."""
+    """Return a line for each orbit: start at full precision, fate, escape time and crossings."""
     ends = (column.tolist() for column in (outcomes.fate, outcomes.escape_time, outcomes.crossings))
     rows = ((*start, *end) for start, *end in zip(starts.tolist(), *ends, strict=True))
     return write_csv(("x", "y", "px", "py", "fate", "escape_time", "crossings"), rows)
@@ -159,7 +159,7 @@ def _print(
 
 
 def _matching_table(matching: ExitMatching) -> Table:
-    """Return a row for each entrance: the share of each end with its interval."""
+    """Return a table with a row for each entrance: the share of each end with its interval."""
     low, high = matching.share_intervals
     numbers = zip(matching.shares.tolist(), low.tolist(), high.tolist(), strict=True)
     cells = [[f"{share:.3f} ({a:.3f} … {b:.3f})" for share, a, b in zip(*row, strict=True)] for row in numbers]

@@ -82,7 +82,7 @@ def _print(
         )
         for orbit, share in zip(orbits, through, strict=True)
     ]
-    # In a rotating frame orbits do not turn back: the points are the start and the point half a period later.
+    # In a rotating frame orbits have no turning points: the start and the point half a period later are printed instead.
     point = ("turning point (x, y)",) * 2 if flux is not None else ("point (x, y)", "half a period later")
     table = Table(("channel", "period", "flux", *point), rows)
     of_all = ({}, []) if flux is None else (flux.numbers(), [flux.describe()])
@@ -90,6 +90,6 @@ def _print(
 
 
 def _ends(orbit: LyapunovOrbit) -> list[list[float]]:
-    """Return x, y at the start and half a period later."""
+    """Return (x, y) at the start and half a period later."""
     middle = orbit.x.size // 2
     return [[float(orbit.x[k]), float(orbit.y[k])] for k in (0, middle)]

@@ -44,7 +44,7 @@ from plots.printed.figure_style import FigureFormat, FigureStyle
 from plots.texts.exports import file_stem, netcdf_bytes
 
 FIRST_PICTURES = ("basins", "times", "crossings")
-"""Pictures drawn by default; the pictures of requested layers follow."""
+"""Pictures drawn by default, before those of requested layers."""
 
 PICTURE_HELP = f"Picture to draw: {', '.join(TITLES)}; can be repeated; by default {', '.join(FIRST_PICTURES)}."
 
@@ -109,7 +109,7 @@ def run(
     with reserve_output(stem):
         with place.run() as context:
             frame, found = compute_map_with_layers(spec, wanted, context)
-        # After the cluster is closed, because with a Dask client xarray uses locks that in-memory files do not support.
+        # The cluster is closed before, because with a Dask client xarray uses locks that in-memory files do not support.
         with Place().run() as context:
             context.start_stage("writing")
             contents = _contents(stem, formats or endings, frame, found, drawing)
@@ -120,7 +120,7 @@ def run(
 def _contents(
     stem: Path, endings: Sequence[str], frame: EscapeMap, analyses: MapAnalyses, drawing: Drawing
 ) -> dict[Path, Content]:
-    """Return the content of each output file: the map in some formats, and results that are tables as CSV."""
+    """Return the content of each output file: the map in some formats, and tables as CSV."""
     files: dict[Path, Content] = {}
     for ending in endings:
         if ending == "nc":

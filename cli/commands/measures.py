@@ -26,10 +26,10 @@ from cli.printing import AsJson, print_result
 from engine import MEASURES, MapSpec, Result
 from engine.sweeps.points import measure_map
 
-TOLD = {name: measure for name, measure in MEASURES.items() if measure.sentence is not None}
-"""The measures of the command by name."""
+DESCRIBED = {name: measure for name, measure in MEASURES.items() if measure.sentence is not None}
+"""The measures that this command can describe in a sentence, by name."""
 
-MEASURE_HELP = f"{', '.join(TOLD)}; all by default. Can be repeated."
+MEASURE_HELP = f"{', '.join(DESCRIBED)}; all by default. Can be repeated."
 
 
 @with_options
@@ -45,30 +45,30 @@ def run(
     names = _choose(measure, exponent)
     with place.run() as context:
         frame = compute_whole_map(spec, context, "map")
-        found = {name: measure_map(frame, name, execution=context.start_stage(TOLD[name].title.lower())) for name in names}
+        found = {name: measure_map(frame, name, execution=context.start_stage(DESCRIBED[name].title.lower())) for name in names}
     sentences = {name: _tell(name, result) for name, result in found.items()}
     answer = {name: {"sentence": sentences[name], **_numbers(result)} for name, result in found.items()}
     print_result(as_json, {"request": frame.provenance(), **answer}, *sentences.values())
 
 
 def _choose(chosen: Sequence[str] | None, slow: bool) -> list[str]:
-    """Return the names of the measures in the order of the table."""
-    names = check_measures(chosen, TOLD) or list(TOLD)
-    return [name for name in names if slow or not TOLD[name].slow]
+    """Return the names of the chosen measures, in the order of the table."""
+    names = check_measures(chosen, DESCRIBED) or list(DESCRIBED)
+    return [name for name in names if slow or not DESCRIBED[name].slow]
 
 
 def _tell(name: str, result: Any) -> str:
-    sentence = TOLD[name].sentence
-    return f"{TOLD[name].title}: not defined for this map." if result is None or sentence is None else sentence(result)
+    sentence = DESCRIBED[name].sentence
+    return f"{DESCRIBED[name].title}: not defined for this map." if result is None or sentence is None else sentence(result)
 
 
 def _numbers(result: Result | None) -> dict[str, Any]:
-    """Return the numbers of a result, and its short arrays."""
+    """Return the numbers and short arrays of a result."""
     return {} if result is None else {**_plain(result), **result.numbers()}
 
 
 def _plain(value: Any) -> Any:
-    """Return the fields that a result shows, including those of the results that it contains."""
+    """Replace results by their shown fields, also inside other results."""
     if not is_dataclass(value) or isinstance(value, type):
         return value
     return {field.name: _plain(getattr(value, field.name)) for field in fields(value) if field.repr}

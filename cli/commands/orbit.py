@@ -85,7 +85,7 @@ def run(
 def _find_start(
     potential: Potential, plane: Slice, energy: float | None, start: tuple[float, float] | None, state: State | None
 ) -> State:
-    """Return x, y, px, py of a start, given as a state or as a point of a plane; ValueError if it is forbidden."""
+    """Return x, y, px, py of a start, given as a state or as a point of a plane; ValueError for a forbidden start."""
     if (start is None) == (state is None):
         raise ValueError("start: give either --start X ORDINATE on a plane, or --state X Y PX PY")
     if state is not None:

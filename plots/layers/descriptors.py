@@ -1,4 +1,4 @@
-"""The layer of Lagrangian descriptors; its picture shows where neighbouring orbits separate."""
+"""The layer of Lagrangian descriptors. Its picture shows where neighbouring orbits separate."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from plots.layers.picture import ColourScale, Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, pixel_codes
 from plots.pictures.palette import Entry, Palette
 
-# Classes of equal width, as many as there are codes left, and the shares of the pixels below and above them.
+# Number of classes of equal width: uint8 codes that other pixels do not use.
 _CLASSES = 240
+# Share of the pixels below the first class, and above the last.
 _LEFT_OUT = 0.01
 
 DURATION = Setting(
@@ -67,7 +68,7 @@ def _job(spec: MapSpec, settings: Settings) -> Job[DescriptorMap]:
 
 
 def _limits(found: DescriptorMap) -> tuple[float, float]:
-    """The ends of the scale; few pixels have values beyond them."""
+    """Return the ends of the scale; few pixels have values beyond them."""
     known = found.descriptor[np.isfinite(found.descriptor)]
     if not known.size:
         return 0.0, 1.0

@@ -1,4 +1,4 @@
-"""The pictures that show a map alone, and those that compare it with another view."""
+"""Pictures that show a map alone, and pictures that compare the map with another view."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def _crossing_legend(shown: ShownMap) -> Legend:
 
 
 def _other_legend(shown: ShownMap) -> Legend:
-    """The outcomes of the other view, and its title."""
+    """Return the outcomes of the other view, and its title."""
     if shown.other is None:
         return Legend(sentence="…")
     return Legend(shown.palette.legend_entries(shown.other.outcomes), is_short=True, sentence=shown.other.title)
 
 
 def _difference_legend(shown: ShownMap) -> Legend:
-    """The classes of pixels, or the reason why the views cannot be compared."""
+    """Return the classes of pixels, or the reason why the views cannot be compared."""
     if shown.other is not None and shown.other.axes != shown.spec.plane.axis_symbols:
         return Legend(sentence="Other axes: pixels cannot be compared.")
     return Legend(shown.palette.difference_entries)

@@ -1,7 +1,7 @@
-"""A layer over the pictures of a map: an analysis, and how its result is shown.
+"""Define a layer over the pictures of a map: an analysis, and how its result is shown.
 
-A layer is one entry, a module of this package that `plots.layers.table` lists. Switches, legends, texts of pixels, progress,
-figures, files, links and the options of the command line follow from it.
+A layer is one entry in a module of this package, listed in `plots.layers.table`. Switches, legends, texts of pixels, progress,
+figures, files, links and options of the command line follow from the entry.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from plots.layers.picture import Picture
 from plots.pictures.palette import PALETTES, Entry, Palette
 
 Settings = Mapping[str, Any]
-"""Values of the settings of layers, by name; a setting that is missing has its default."""
+"""Values of the settings of layers, by name. Missing settings have their defaults."""
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,13 @@ class Code:
     colours: tuple[str, ...]
 
     def entry(self, palette: Palette) -> Entry:
-        """The entry of a legend."""
+        """Return the entry of a legend."""
         place = list(PALETTES.values()).index(palette)
         return Entry(self.label, self.colours[place % len(self.colours)])
 
 
 def occurring_entries(codes: Sequence[Code], values: np.ndarray, palette: Palette) -> list[Entry]:
-    """The entries of the codes among values of any shape."""
+    """Return the entries of the codes among values of any shape."""
     return [code.entry(palette) for code in codes if np.any(values == code.code)]
 
 
@@ -82,18 +82,18 @@ class Setting:
     help: str = ""
 
     def value_in(self, settings: Settings) -> Any:
-        """The value of this setting among those of all settings."""
+        """Return the value of this setting among those of all settings."""
         return settings.get(self.name, self.default)
 
 
 @dataclass(frozen=True)
 class Count:
-    """The whole number that switches a layer on at the command line; 0 is off.
+    """The whole number that switches a layer on at the command line, where 0 is off.
 
     Attributes
     ----------
     metavar
-        Word for what is counted, shown in the help.
+        Word in the help for the counted things.
     most
         Largest number.
     """
@@ -156,7 +156,7 @@ class Pixels:
         return (self.column, *numbers, *words)
 
     def columns(self, result: Any, frame: EscapeMap | None) -> dict[str, list[Any]]:
-        """The columns of a result on its map, or without one."""
+        """Return the columns of a result on its map, or without one."""
         numbers: dict[str, list[Any]] = {} if self.values is None else {self.value_column: [self.values(result)]}
         words = {} if self.own_sentences is None else {self.word_column: [list(self.own_sentences(result))]}
         return {self.column: [self.codes(result, frame)], **numbers, **words}
@@ -208,7 +208,7 @@ class Over:
 
 
 def own_spec(result: Any) -> MapSpec:
-    """Return the map of a result that has a value for each of its pixels."""
+    """Return the request of the map of a result with a value for each pixel."""
     spec: MapSpec = result.spec
     return spec
 
@@ -254,9 +254,9 @@ class Layer:
     settings
         Choices of how the layer is computed or drawn.
     select
-        Selects the part of a result that is drawn.
+        Returns the part of a result that is drawn.
     spec_of
-        The map over which the result is drawn alone.
+        Returns the request of the map on which a result is drawn alone.
     pixels
         Pixel codes of the layer; None if it has none.
     picture

@@ -14,12 +14,15 @@ from engine.trajectories.stable_manifolds import MOST_IMAGES, ManifoldArc
 from plots.layers.layer import Count, Layer, Over, Setting, Settings, Stroke
 from plots.pictures.palette import Entry, Mark, Palette
 
-# Number of images that the page computes: later images are less than a pixel apart.
+# Number of images that the page computes. Later images are less than a pixel apart.
 _IMAGES = 3
 
-# Strokes of the first, the second and all later images: later images lie closer together.
-_WIDTHS, _ALPHAS = (1.6, 1.0, 0.6), (1.0, 0.9, 0.6)
-_RIM = 0.8
+# Widths of the first, the second and all later images, in pixels. Later images lie closer together.
+_WIDTHS = (1.6, 1.0, 0.6)
+# Opacities of these images.
+_ALPHAS = (1.0, 0.9, 0.6)
+# Width of the halo on each side of a line, in pixels.
+_HALO_RIM = 0.8
 
 IMAGE = Setting(
     name="images",
@@ -28,14 +31,14 @@ IMAGE = Setting(
     choices={**{str(image): image for image in range(1, _IMAGES + 1)}, "all": 0},
     default=0,
 )
-"""The image that is drawn; 0 for all."""
+"""The number of the drawn image; 0 for all images."""
 
 
 def manifold_strokes(manifolds: StableManifolds) -> list[Stroke]:
-    """The manifolds from back to front.
+    """Return the manifolds from back to front.
 
-    Earlier images are in front of later ones, and only the first has a halo. Of one image, shorter curves are in front: a closed
-    curve that bounds a basin stays visible although the spirals of other channels wind around it within a pixel.
+    Earlier images are in front of later images, and only the first has a halo. Within an image, shorter curves are in front, so
+    that a closed curve around a basin stays visible although spirals of other channels wind around the curve within a pixel.
     """
     groups: dict[tuple[int, int], list[ManifoldArc]] = {}
     for arc in manifolds.arcs:
@@ -45,7 +48,7 @@ def manifold_strokes(manifolds: StableManifolds) -> list[Stroke]:
 
 
 def select_image(manifolds: StableManifolds, image: int) -> StableManifolds:
-    """The arcs of one image, or of all images for 0."""
+    """Return the arcs of one image, or of all images for 0."""
     if image == 0:
         return manifolds
     return replace(manifolds, arcs=tuple(arc for arc in manifolds.arcs if arc.image == image))
@@ -53,7 +56,7 @@ def select_image(manifolds: StableManifolds, image: int) -> StableManifolds:
 
 def _stroke(channel: int, image: int, arcs: list[ManifoldArc]) -> Stroke:
     place = min(image, len(_WIDTHS)) - 1
-    halo_width = _WIDTHS[place] + 2.0 * _RIM if image == 1 else 0.0
+    halo_width = _WIDTHS[place] + 2.0 * _HALO_RIM if image == 1 else 0.0
     lines = tuple(np.column_stack([arc.x, arc.px]) for arc in arcs)
     return Stroke(channel, lines, _WIDTHS[place], halo_width, _ALPHAS[place])
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MapAnalyses(Mapping[str, Any]):
-    """Complete results of layers, by name; layers that were not requested or are not finished are missing."""
+    """Complete results of layers, by name. Layers that were not requested or are not finished are missing."""
 
     results: Mapping[str, Any] = field(default_factory=dict)
 
@@ -33,7 +33,7 @@ class MapAnalyses(Mapping[str, Any]):
         return MapAnalyses(others if result is None else {**others, name: result})
 
     def describe(self) -> list[str]:
-        """A sentence for each result."""
+        """Return a sentence for each result."""
         return [result.describe() for result in self.values()]
 
     def add_to(self, dataset: xr.Dataset) -> xr.Dataset:

@@ -19,7 +19,7 @@ LAYER_COLUMNS = tuple(name for layer in LAYERS.values() if layer.pixels is not N
 
 
 def layer_columns(frame: EscapeMap, names: Collection[str]) -> dict[str, list[Any]]:
-    """Columns of all layers: those of the named layers as far as a map determines them, the others with a single pixel."""
+    """Return the columns of all layers: of named layers as far as a map determines them, of others with a single pixel."""
     images, _ = frame.thinned()
     pixels = (layer.pixels for layer in LAYERS.values() if layer.name in names)
     known = {one.column: [one.first_codes(images)] for one in pixels if one is not None and one.first_codes is not None}
@@ -27,7 +27,7 @@ def layer_columns(frame: EscapeMap, names: Collection[str]) -> dict[str, list[An
 
 
 def result_columns(name: str, frame: EscapeMap, result: Any) -> dict[str, list[Any]]:
-    """The columns of the result of a layer on its map; none if the layer has no pixels."""
+    """Return the columns of the result of a layer on its map; none if the layer has no pixels."""
     pixels = LAYERS[name].pixels
     return {} if pixels is None else pixels.columns(result, frame)
 
@@ -35,7 +35,7 @@ def result_columns(name: str, frame: EscapeMap, result: Any) -> dict[str, list[A
 def picture_pixels(
     frame: EscapeMap, picture: str, palette: Palette, analyses: Mapping[str, Any] = NO_ANALYSES, times: TimeScale | None = None
 ) -> np.ndarray:
-    """Pixels of a picture without axes and curves.
+    """Return the pixels of a picture without axes and curves.
 
     Parameters
     ----------

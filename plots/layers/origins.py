@@ -1,4 +1,4 @@
-"""The layer of origins: its picture shows the exit by which each orbit came in and the exit by which it leaves."""
+"""The layer of origins. Its picture shows the exits by which each orbit entered and leaves."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from plots.layers.picture import ColourTable, Legend, Picture, ShownMap
 from plots.pictures.image_columns import FIRST_CLASS, at_places, end_numbers, pixel_codes
 from plots.pictures.palette import PAPER, Entry, Palette, end_places, mixed, short_label
 
-# By origin, 1 to 13: share of white (positive) or black (negative) mixed into the colour of the exit.
+# For each origin from 1 to 13, the share of white (positive) or black (negative) mixed into the colour of the exit.
 _TONES = (0.6, 0.0, -0.4, -0.65, 0.35, -0.2, 0.78, -0.8, 0.48, -0.52, 0.2, -0.3, 0.7)
 # For orbits that never entered: share of the colour of bounded orbits in the mixture.
 _BOUNDED = 0.65
 
 
 def _count_ends() -> int:
-    """The number of origins: one for each end, and one for orbits that never entered."""
+    """Return the number of origins: one for each end, and one for orbits that never entered."""
     return len(PAPER.ends) + 1
 
 
 def passage_colour(palette: Palette, origin: int, fate: int) -> str:
-    """Colour of orbits by the numbers of their ends, from 1, or 0 for none: the fate sets the hue, the origin the tone."""
+    """Return the colour for an origin and a fate, numbered from 1, or 0 for none. The fate sets the hue, the origin the tone."""
     colour = palette.ends[fate - 1] if fate else palette.bounded
     if origin == 0:
         return mixed(colour, palette.bounded, _BOUNDED)
@@ -38,7 +38,7 @@ def passage_colour(palette: Palette, origin: int, fate: int) -> str:
 
 
 def _colours(palette: Palette) -> list[str]:
-    """Colours by origin, beginning with none, and then by fate."""
+    """Return the colours of fates that are not ends, and then by origin and fate, both beginning with 0."""
     passages = (passage_colour(palette, origin, fate) for origin in range(_count_ends()) for fate in range(_count_ends()))
     return [*palette.outcome_colours, *passages]
 
@@ -59,7 +59,7 @@ def _refusal(spec: MapSpec) -> str:
 
 def _codes(origins: OriginFateMap, frame: EscapeMap | None) -> np.ndarray:
     origin, fate = (end_numbers(codes, origins.spec.outcomes) for codes in (origins.origin, origins.fate))
-    # Pixels whose origin or fate is neither an end nor bounded have the colour of that origin or fate.
+    # If origin or fate is neither an end nor bounded, the pixel has its colour.
     outcome = np.minimum(origins.origin, origins.fate)
     return pixel_codes(outcome, origin * _count_ends() + fate, bounded_too=True)
 
@@ -70,7 +70,7 @@ def _legend(shown: ShownMap) -> Legend:
 
 
 def _entries(palette: Palette, outcomes: Sequence[Outcome]) -> list[Entry]:
-    """The legend as a list."""
+    """Return the legend as a list."""
     places = zip(end_places(outcomes), outcomes, strict=True)
     ends = {0: "inside"} | {place + 1: short_label(end.label) for place, end in places if end.occurs}
     pairs = ((origin, fate) for origin in ends for fate in ends if fate)
@@ -78,7 +78,7 @@ def _entries(palette: Palette, outcomes: Sequence[Outcome]) -> list[Entry]:
 
 
 def _table(palette: Palette, outcomes: Sequence[Outcome]) -> ColourTable:
-    """The legend as a table: for each fate, the origins."""
+    """Return the legend as a table: for each fate, the origins."""
     names = {place + 1: short_label(end.label) for place, end in zip(end_places(outcomes), outcomes, strict=True)}
     names |= {0: "bounded"}
     tones = [[passage_colour(palette, origin, fate) for origin in names] for fate in names]
@@ -116,4 +116,4 @@ ORIGINS = Layer(
     ),
     variables=("origin",),
 )
-"""The exits by which orbits come in and leave."""
+"""The exits by which orbits enter and leave."""

@@ -1,4 +1,4 @@
-"""A picture of a map: its pixel codes, their colours, its legend and its help text."""
+"""Define a picture of a map: pixel codes, colours, legend and help text."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from plots.pictures.time_scale import TimeScale, fitted_scale
 
 @dataclass(frozen=True)
 class ColourScale:
-    """A scale of numbers; the colours at its ends stand for all smaller and all larger ones.
+    """A scale of numbers. The colours at its ends stand for all smaller and all larger numbers.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class ColourScale:
 
 @dataclass(frozen=True)
 class ColourTable:
-    """Colours of orbits: their end sets the hue, their origin the tone.
+    """Colours of orbits. The end of an orbit sets the hue, the origin the tone.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Legend:
     entries
         Entries of the classes of pixels.
     others
-        Entries of pixels without a class; they are omitted where there is little room, unless the labels are short.
+        Entries of pixels without a class, omitted where there is little room, unless the labels are short.
     is_short
         Whether the labels have short forms.
     scale
@@ -92,7 +92,7 @@ class OtherView:
     title
         Description of the view.
     outcomes
-        What orbits can end at in the view.
+        Outcomes of the view's potential.
     axes
         Symbols of its axes.
     """
@@ -134,16 +134,16 @@ class ShownMap:
 
     @classmethod
     def of(cls, frame: EscapeMap, palette: Palette, results: Mapping[str, Any], times: TimeScale | None = None) -> ShownMap:
-        """A map with the results of its layers; `times` is the scale of the escape times, None for `fitted_scale`."""
+        """Return a map with the results of its layers; `times` is the scale of the escape times, None for `fitted_scale`."""
         fates = frozenset(np.unique(frame.fate).tolist())
         return cls(frame.spec, palette, times or fitted_scale(frame), fates, results=results)
 
     def outcome_entries(self) -> dict[Fate, Entry]:
-        """Entries of the fates that occur on the map and are not ends."""
+        """Return the entries of the map's fates that are not ends."""
         return {fate: entry for fate, entry in reversed(self.palette.outcomes.items()) if fate in self.fates}
 
     def time_scale(self) -> ColourScale:
-        """The scale of the escape times."""
+        """Return the scale of the escape times."""
         return ColourScale(self.times.low, self.times.high, self.palette.escape_time, is_locked=self.is_locked)
 
 
@@ -168,7 +168,7 @@ class Picture:
     has_times
         Whether the escape times are drawn over the codes.
     compares
-        Whether the picture compares the map with another view; such pictures are on the page only.
+        Whether the picture compares the map with another view. Only the page has such pictures.
     """
 
     name: str

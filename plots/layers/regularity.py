@@ -1,4 +1,4 @@
-"""The layer of regular and chaotic bounded orbits, which has its own picture."""
+"""The layer of regular and chaotic bounded orbits, with its own picture."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ CODES = (
 
 
 def entries(palette: Palette) -> list[Entry]:
-    """The entries of the codes."""
+    """Return the entries of the codes."""
     return [code.entry(palette) for code in CODES]
 
 
@@ -60,7 +60,7 @@ def _codes(regularity: RegularityMap, frame: EscapeMap | None) -> np.ndarray:
 
 
 def _codes_by_evidence(images: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Codes from the evidence of the map: orbits on an invariant torus are regular."""
+    """Return the codes from the evidence of the map: orbits on an invariant torus are regular."""
     character = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
     character[images["evidence"] == Evidence.QUASI_PERIODIC] = Regularity.REGULAR
     return pixel_codes(images["fate"], character, bounded_too=True)

@@ -42,11 +42,11 @@ PICTURES = _by_name(
 """The pictures by name."""
 
 TITLES = MappingProxyType({name: picture.title for name, picture in PICTURES.items() if not picture.compares})
-"""Titles of the pictures that figures can show: those of a map alone."""
+"""Titles of the pictures that figures can show: all except comparisons."""
 
 
 def map_legend(picture: str, shown: ShownMap) -> Legend:
-    """The legend of a picture of a map, with the entries of what layers draw over it."""
+    """Return the legend of a picture of a map, with the entries of what layers draw over it."""
     over: list[Entry] = []
     for name, result in shown.results.items():
         marks = LAYERS[name].over_picture(picture)

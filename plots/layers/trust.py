@@ -12,7 +12,7 @@ from plots.layers.layer import Code, Layer, Over, Pixels, Settings, occurring_en
 from plots.pictures.palette import CLEAR, Entry, Mark, Palette
 
 TONES = ("#000000", "#ffffff")
-"""Two colours of doubtful pixels, which alternate as on a chessboard: at least one is visible on any colour."""
+"""Two colours of doubtful pixels, which alternate as on a chessboard. At least one is visible on any colour."""
 
 CODES = (
     Code(Trust.NOT_APPLICABLE, str(Trust.NOT_APPLICABLE), "", ("#ffffff",)),
@@ -32,7 +32,7 @@ def _job(spec: MapSpec, settings: Settings) -> Job[TrustMap]:
 
 
 def _codes(trust: TrustMap, frame: EscapeMap | None) -> np.ndarray:
-    """The codes of `Trust`; every second doubtful pixel has a code of its own."""
+    """Return the codes of `Trust`, with `_LIGHT` for every second doubtful pixel."""
     rows, columns = np.indices(trust.trust.shape)
     is_light = (trust.trust == Trust.DOUBTFUL) & ((rows + columns) % 2 == 1)
     codes: np.ndarray = np.where(is_light, _LIGHT, trust.trust).astype(np.uint8)
@@ -45,7 +45,7 @@ def _colours(palette: Palette) -> list[str]:
 
 
 def _marks() -> list[str]:
-    """Colours over other pictures: only doubtful pixels have colours."""
+    """Return the colours over other pictures, which show only doubtful pixels."""
     colours = [CLEAR] * (_LIGHT + 1)
     colours[Trust.DOUBTFUL], colours[_LIGHT] = TONES
     return colours

@@ -1,4 +1,4 @@
-"""Ticks of axes. Where plain numbers would be too long, they are labelled as distances from one tick."""
+"""Label the ticks of axes; where plain numbers would be too long, as distances from one tick."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 _FEWEST_TICKS = 3
 FINEST_PLAIN_STEP = -4
-"""Smaller tick steps than 10 to this power are labelled as distances from the middle tick: plain labels would overlap."""
+"""Ticks closer than 10 to this power are labelled as distances from the middle tick, because plain labels would overlap."""
 
 
 class Axis(NamedTuple):
@@ -25,7 +25,7 @@ class Offset(NamedTuple):
     exponent: int
 
     def describe(self, name: str) -> str:
-        """The text of the labels: an expression in the variable of the axis."""
+        """Return the text of the labels: an expression in the variable of the axis."""
         distance = f"({name} {'−' if self.base > 0 else '+'} {abs(self.base):f})" if self.base else name
         return f"{distance} / 1e{self.exponent}"
 
@@ -56,7 +56,7 @@ def label_axis(name: str, low: float, high: float) -> Axis:
 
 
 def _step(low: float, high: float) -> Decimal:
-    """Distance between neighbouring ticks."""
+    """Return the distance between neighbouring ticks."""
     most = (high - low) / _FEWEST_TICKS
     exponent = math.floor(math.log10(most))
     return Decimal(next((m for m in (5, 2) if m * 10.0**exponent <= most), 1)).scaleb(exponent)

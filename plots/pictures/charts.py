@@ -1,4 +1,4 @@
-"""Charts of statistics and curves: their limits, and the panels of a sweep, one for the shares and one for each other measure."""
+"""Limits of the charts of statistics and curves. A sweep has a panel for the shares, and one for each other measure."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ CURVE_PANELS = tuple(measure for measure in MEASURES.values() if measure.labels)
 
 
 def is_measured(measure: Measure, curves: Sweep) -> bool:
-    """Whether a sweep contains a measure."""
+    """Return whether a sweep contains a measure."""
     return set(measure.labels) <= set(curves.dataset)
 
 
 def find_numbers(measure: Measure, curves: Sweep) -> np.ndarray:
-    """All numbers of a panel without NaN, including the ends of error bars."""
+    """Return all numbers of a panel without NaN, including the ends of error bars."""
     values = np.concatenate([np.concatenate([curves[name], *curves.interval(name)]) for name in measure.labels])
     return values[np.isfinite(values)]

@@ -1,4 +1,4 @@
-"""Histories of an orbit reduced for drawing: the curve where it is resolved, elsewhere its envelope and its mean."""
+"""Reduce histories of an orbit for drawing: to the curve where pixels resolve it, elsewhere to its envelope and mean."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _BINS = 300
 """Number of intervals of a history, of equal length in log t: about one for each pixel of a plot."""
 
 _MOST_TURNS = 2
-"""An interval with more minima and maxima than this is drawn as an envelope."""
+"""Intervals with more minima and maxima are drawn as an envelope."""
 
 _MOST_SAMPLES = 16
-"""Number of samples of the curve that are drawn in an interval."""
+"""Largest number of samples of the curve that are drawn in an interval."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +27,7 @@ class History:
     Attributes
     ----------
     line
-        (t, value), each (n,): the curve, or its mean where it oscillates too fast to be drawn.
+        (t, value), each (n,): the curve, or the mean where the curve oscillates too fast to be drawn.
     band
         (t, low, high), each (m,): the envelope where `line` is the mean; empty if `line` is the curve everywhere.
     """
@@ -48,7 +48,7 @@ class History:
 
 
 def find_decades(low: float, high: float) -> tuple[float, float]:
-    """Return the ends of a logarithmic axis: the power of ten below `low`, and a little above `high`."""
+    """Return the ends of a logarithmic axis: the power of ten below `low`, and a number a little above `high`."""
     return 10.0 ** math.floor(math.log10(low)), 1.3 * high
 
 
@@ -60,7 +60,7 @@ def reduce_history(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> H
     t, values
         (n,) times, increasing and above 0, and values.
     logarithmic
-        Whether the axis of the values is logarithmic: the mean is then the geometric one, and the values must be positive.
+        Whether the axis of the values is logarithmic. If so, values must be positive, and means are geometric.
     """
     if t.size <= _BINS:
         return History((t, values), (t[:0], values[:0], values[:0]))
@@ -75,13 +75,13 @@ def reduce_history(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> H
 
 
 def _turns(values: np.ndarray) -> np.ndarray:
-    """Return (n,) whether a value is a local minimum or maximum."""
+    """Return whether each value is a local minimum or maximum, of shape (n,)."""
     rises = np.diff(values) > 0.0
     return np.concatenate([[False], rises[1:] != rises[:-1], [False]])
 
 
 def _visible_samples(edges: np.ndarray, end: int) -> np.ndarray:
-    """Indices of samples before `end`, evenly spaced in each interval, and the last one."""
+    """Return the indices of samples before `end`, evenly spaced in each interval, including the last sample."""
     counts = np.diff(np.append(edges, end))
     place = np.arange(end) - np.repeat(edges, counts)
     stride = np.repeat(np.ceil(counts / _MOST_SAMPLES).astype(np.intp), counts)
@@ -89,7 +89,7 @@ def _visible_samples(edges: np.ndarray, end: int) -> np.ndarray:
 
 
 def _envelope(t: np.ndarray, values: np.ndarray, edges: np.ndarray, *, logarithmic: bool) -> tuple[np.ndarray, ...]:
-    """Time, minimum, maximum and mean in each interval. The first time is the start of the history, the last one its end."""
+    """Return time, minimum, maximum and mean in each interval. The first and last time are the ends of the history."""
     if not edges.size:
         return (t[:0],) * 4
     ends = np.append(edges[1:], t.size)

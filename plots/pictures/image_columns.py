@@ -1,4 +1,4 @@
-"""Columns of the Bokeh data source that all pictures of a map share."""
+"""Make the columns of the Bokeh data source that all pictures of a map share."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _DRAWN = ("fate", "crossing_class", "crossings", "escape_time")
 
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 FIRST_CLASS = len(OUTCOMES)
-"""The first pixel code of a class; the fates that are not ends have the codes before it."""
+"""The first pixel code of a class. Lower codes are those of fates that are not ends."""
 
 _UNDECIDED = _OUTCOME_CODES[Fate.NOT_COMPUTED]
 _WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
@@ -26,9 +26,9 @@ _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 
 
 def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
-    """One image per column, in the smallest integer types, and the position of the images in the plane.
+    """Return one image per column, in the smallest integer types, and the position of the images in the plane.
 
-    Coarse frames have coarse images. The column of differences is one pixel: it needs another map, see `difference_column`.
+    Coarse frames have coarse images. The column of differences is one pixel, because it needs another map (`difference_column`).
     """
     images, window = frame.thinned()
     fate, crossings = images["fate"], images["crossings"]
@@ -52,19 +52,19 @@ def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
 
 
 def fate_codes(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
-    """uint8 codes of the colours `Palette.fate_colours` for fates of any shape."""
+    """Return the uint8 codes of `Palette.fate_colours` for fates of any shape."""
     return pixel_codes(fate, end_numbers(fate, outcomes) - 1)
 
 
 def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], sides: tuple[int, int]) -> dict[str, list[Any]]:
-    """Columns of an unfinished frame over those of an earlier map: pixels of the earlier map stay until finer ones are computed.
+    """Return the columns of an unfinished frame over those of an earlier map, whose pixels stay until finer ones are computed.
 
     Parameters
     ----------
     columns, earlier
         Columns of `map_columns`; their windows may differ.
     (columns, rows) of the finished map, the largest size of the images; smaller images have the finer pixels of both maps.
-        (columns, rows) of the finished map, which the images do not exceed; else they have the finer pixels of both.
+        (columns, rows) of the finished map, the largest size of the images; smaller images have the finer pixels of both maps.
     """
     if columns["complete"][0]:
         return columns
@@ -82,13 +82,13 @@ def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], side
 
 
 def _pixel_sides(columns: dict[str, list[Any]]) -> tuple[float, float]:
-    """Width and height of the pixels of a map's columns."""
+    """Return the width and height of the pixels of a map's columns."""
     rows, across = columns["fate"][0].shape
     return columns["dw"][0] / across, columns["dh"][0] / rows
 
 
 def _pixels_at(columns: dict[str, list[Any]], x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Indices (rows, columns) of the pixels at x (columns,) and y (rows,), and whether these points lie in the images."""
+    """Return row and column indices of the pixels at x (columns,) and y (rows,), and whether these points lie in the images."""
     rows, across = columns["fate"][0].shape
     column = np.floor((x - columns["x"][0]) / columns["dw"][0] * across).astype(int)
     row = np.floor((y - columns["y"][0]) / columns["dh"][0] * rows).astype(int)
@@ -97,7 +97,7 @@ def _pixels_at(columns: dict[str, list[Any]], x: np.ndarray, y: np.ndarray) -> t
 
 
 def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]) -> dict[str, list[Any]]:
-    """Column of the pixels whose orbits have another outcome in another view of a plane with the same axes.
+    """Return the column of pixels whose orbits have another outcome in another view of a plane with the same axes.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]
 
 
 def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Codes of `DIFFERENCES` for two arrays of pixel codes of fates. A pixel without an orbit in both keeps its code."""
+    """Return codes of `DIFFERENCES` for two arrays of pixel codes of fates. A pixel without an orbit in both keeps its code."""
     lack_one, lack_other = np.isin(one, _WITHOUT_ORBIT), np.isin(other, _WITHOUT_ORBIT)
     classes = np.where(lack_one != lack_other, 2, np.where(one != other, 1, 0))
     codes = np.where(lack_one & lack_other, one, FIRST_CLASS + classes)
@@ -121,12 +121,12 @@ def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def end_words(outcomes: Sequence[Outcome]) -> list[str]:
-    """What orbits of each of `Palette.ends` do; empty for those that the potential does not have."""
+    """Return what orbits of each of `Palette.ends` do; empty for ends that the potential does not have."""
     return at_places(outcomes, [outcome.present for outcome in outcomes])
 
 
 def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
-    """Words for each outcome, at its place among `Palette.ends`."""
+    """Return words for each outcome, at its place among `Palette.ends`."""
     placed = [""] * len(PAPER.ends)
     for place, word in zip(end_places(outcomes), words, strict=True):
         placed[place] = word
@@ -134,7 +134,7 @@ def at_places(outcomes: Sequence[Outcome], words: Sequence[str]) -> list[str]:
 
 
 def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """Return how pixels of a potential with these outcomes become codes, for programs that make the columns elsewhere.
+    """Return how pixels of a potential with these outcomes become codes, for programs elsewhere that make the columns.
 
     The result contains the fates that are not ends, the first class, the places and words of the ends, the classes of crossings,
     the code of pixels that are not decided, and for each code the codes of differences from all codes.
@@ -152,14 +152,14 @@ def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
 
 
 def end_numbers(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
-    """Number of the end of each fate from 1 on, 1 for the first of `Palette.ends`; 0 for the others."""
+    """Return the number of the end of each fate, 1 for the first of `Palette.ends`; 0 for fates that are not ends."""
     numbers = np.array([0, *(place + 1 for place in end_places(outcomes))])
     found: np.ndarray = numbers[np.maximum(fate, 0)]
     return found
 
 
 def pixel_codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
-    """Pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
+    """Return pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
     codes = (FIRST_CLASS + classes).astype(np.min_scalar_type(FIRST_CLASS + int(classes.max(initial=0))))
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):

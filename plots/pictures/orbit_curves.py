@@ -15,16 +15,19 @@ from plots.pictures.histories import History
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 
 MOST_LINE_POINTS = 20_000
-"""Paths with more points than this are drawn as density images."""
+"""Longer paths are drawn as density images."""
 
 TRAIL = 25.0
-"""Length of the trail behind the moving point in time, about four periods of the well."""
+"""Duration of the trail behind the moving point, in units of time: about four periods of the well."""
 
 # Twice the number of pixels of the plot, for high-density screens.
 _SHADED_PIXELS = 600
+# Smallest opacity of visited pixels in a density image, 0 to 255.
 _FAINTEST = 50
-# Half the side of the window of a path: in units of the path's reach, and at most this many distances of the farthest saddle.
-_AROUND_PATH, _FARTHEST_SHOWN = 1.1, 10.0
+# Half the side of the window of a path, in units of the path's reach.
+_AROUND_PATH = 1.1
+# Limit of half the side, in distances of the farthest saddle.
+_FARTHEST_SHOWN = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +63,7 @@ class OrbitCurves:
         return self.orbit.x[self.part], self.orbit.y[self.part]
 
     def shaded(self, colour: str) -> np.ndarray:
-        """RGBA image of the visits, (n, n) uint32."""
+        """Return the RGBA image of the visits, (n, n) uint32."""
         assert self.visits is not None
         red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
         ink = np.array([red, green, blue, 0], np.uint8).view(np.uint32)
@@ -70,7 +73,7 @@ class OrbitCurves:
 def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: bool = True) -> OrbitCurves:
     """Compute the curves of an orbit. This is slow: call it once per orbit and outside the session's lock.
 
-    with_visits: whether a long path has a density image, which needs the extra ``page``.
+    `with_visits`: whether a long path gets a density image, which needs the extra ``page``.
     """
     window = _path_window(potential, orbit) if orbit.exits_unknown else find_well_window(potential, orbit.energy)
     everything = slice(None)
@@ -80,7 +83,7 @@ def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: boo
 
 
 def find_well_window(potential: Potential, energy: float) -> Window:
-    """Window of the interior, or of the whole well below the minimum of the well, where an orbit can only be outside."""
+    """Return the window of the interior, or of the whole well below the minimum of the well, where all orbits are outside."""
     try:
         return default_window(potential, SPACE, energy)
     except ValueError:
@@ -90,7 +93,7 @@ def find_well_window(potential: Potential, energy: float) -> Window:
 
 
 def _path_window(potential: Potential, orbit: Orbit) -> Window:
-    """A square around the origin and the nearby path, for an orbit without known exits, which may leave any well."""
+    """Return a square around the origin and the nearby path, for an orbit without known exits, which may go far away."""
     reach = float(max(np.abs(orbit.x).max(), np.abs(orbit.y).max()))
     half = min(_AROUND_PATH * reach, _FARTHEST_SHOWN * float(np.hypot(*potential.saddles.T).max()))
     return Window(-half, half, -half, half)
@@ -117,12 +120,12 @@ def _histories(orbit: Orbit, part: slice) -> dict[str, History]:
 
 
 def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
-    """(x, y, px, py) of the start of an orbit."""
+    """Return the start of an orbit, (x, y, px, py)."""
     return float(orbit.x[0]), float(orbit.y[0]), float(orbit.px[0]), float(orbit.py[0])
 
 
 def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
-    """Density image of a long path; None for a short one. ModuleNotFoundError without the extra ``page``."""
+    """Return the density image of a long path; None for a short one. ModuleNotFoundError without the extra ``page``."""
     x, y = orbit.x[part], orbit.y[part]
     if x.size <= MOST_LINE_POINTS:
         return None
@@ -150,7 +153,7 @@ class Moment:
 
 
 def moment(orbit: Orbit, t: float) -> Moment:
-    """Trail of an orbit at a time: at times before the orbit its first sample, after it the trail at its end."""
+    """Return the trail of an orbit at a time. Before the orbit it is the first sample, after the orbit the trail at the end."""
     last = max(int(np.searchsorted(orbit.t, t, side="right")) - 1, 0)
     first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
     trail = slice(first, last + 1)

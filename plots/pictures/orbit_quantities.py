@@ -1,4 +1,4 @@
-"""The quantities of an orbit that are drawn against time: SALI, the Lyapunov exponent and R²."""
+"""Define the quantities of an orbit that are drawn against time: SALI, the Lyapunov exponent and R²."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class OrbitQuantity:
     limits
         Returns the ends of the axis for a history of at least one sample.
     least
-        Lower end of a logarithmic axis, where smaller values are drawn; None for a linear axis.
+        Lower end of a logarithmic axis. Smaller values are drawn there. None for a linear axis.
     threshold
         Value to be marked; None if there is none.
     ticks
@@ -56,7 +56,7 @@ class OrbitQuantity:
         return self.least is not None
 
     def history(self, orbit: Orbit, part: slice) -> History:
-        """The quantity over some samples of an orbit, without the one at t = 0."""
+        """Return the quantity over some samples of an orbit, without the sample at t = 0."""
         later = slice(max(part.start or 0, int(orbit.t[0] == 0.0)), part.stop)
         values = self.values(orbit)[later]
         if self.least is not None:
@@ -65,13 +65,13 @@ class OrbitQuantity:
 
 
 def _sali_limits(histories: Sequence[History]) -> tuple[float, float]:
-    """At least five powers of ten, so that a regular orbit's curve looks as level as it is."""
+    """Return limits at least five powers of ten apart, so that the curve of a regular orbit looks level."""
     lowest = min(float(history.line[1].min()) for history in histories)
     return min(1e-4, max(_LEAST_SALI, find_decades(lowest, _LARGEST_SALI)[0])), _LARGEST_SALI
 
 
 def _exponent_limits(histories: Sequence[History]) -> tuple[float, float]:
-    """Limits that begin at the power of ten below the last values."""
+    """Return limits that begin at the power of ten below the last values."""
     lowest = min(float(history.line[1][-1]) for history in histories)
     return find_decades(lowest, _LARGEST_EXPONENT)
 

@@ -1,4 +1,4 @@
-"""Colours of the page and their meaning: the palette of the paper and a colour-blind safe one.
+"""Colours of the page and their meaning: the palette of the paper and a palette safe for colour-blind readers.
 
 A colour has one meaning: outcomes, crossing classes, escape times, orbits and curves share no colour with each other or with the
 layers, whose colours are in their entries in `plots.layers`.
@@ -29,7 +29,7 @@ class Mark(Enum):
 
 @dataclass(frozen=True)
 class Entry:
-    """Entry of a legend; a chessboard has two colours."""
+    """An entry of a legend. A chessboard has two colours."""
 
     label: str
     colour: str
@@ -44,7 +44,7 @@ OUTCOMES: dict[Fate, str] = {
     Fate.FORBIDDEN: "forbidden: no such orbit",
     Fate.BOUNDED: "bounded",
 }
-"""Fates that are not ends, in the order of the pixel codes of all images; ends or classes follow."""
+"""Fates that are not ends, in the order of the pixel codes of all images. Codes of ends or classes follow."""
 
 CROSSING_CLASSES: tuple[tuple[int, str], ...] = ((0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (11, "> 10"))
 """(fewest crossings, label) of each class."""
@@ -58,7 +58,7 @@ DIFFERENCES: tuple[tuple[str, str], ...] = (
 
 
 def end_places(outcomes: Sequence[Outcome]) -> list[int]:
-    """The place of each outcome in `Palette.ends`, the same in all systems; outcomes beyond the last place of a kind share it."""
+    """Return the place of each outcome in `Palette.ends`, the same in all systems. Outcomes beyond the last place share it."""
     counts = {key: len(PAPER.of_kinds[key]) for key in KINDS}
     firsts = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
     return [firsts[each.kind.key] + min(each.number, counts[each.kind.key]) - 1 for each in outcomes]
@@ -93,7 +93,7 @@ class Palette:
     classes
         Colours of `CROSSING_CLASSES`, from light to dark.
     times
-        Colours of escape times, from fast to slow, at even distances of a scale; empty for the scale cividis.
+        Colours of escape times, from fast to slow, evenly spaced on a scale; empty for the scale cividis.
     orbits
         Colours of the chosen orbits, in order.
     """
@@ -142,18 +142,18 @@ class Palette:
         return [Entry(label, colour) for (_, label), colour in zip(CROSSING_CLASSES, self.classes, strict=True)]
 
     def entry(self, fate: int, outcomes: Sequence[Outcome]) -> Entry:
-        """Label and colour of a fate. `outcomes` are those of the potential; without them all ends are channels."""
+        """Return the label and colour of a fate. `outcomes` are those of the potential; without them all ends are channels."""
         if fate < 1:
             return self.outcomes[Fate(fate)]
         outcome = outcome_of(fate, outcomes)
         return Entry(outcome.label, self.ends[end_places([outcome])[0]])
 
     def end_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
-        """Labels and colours of a potential's outcomes."""
+        """Return the labels and colours of a potential's outcomes."""
         return [self.entry(fate, outcomes) for fate in range(1, len(outcomes) + 1)]
 
     def legend_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
-        """Labels and colours of the outcomes that occur."""
+        """Return the labels and colours of the outcomes that occur."""
         return [entry for entry, outcome in zip(self.end_entries(outcomes), outcomes, strict=True) if outcome.occurs]
 
     @cached_property
@@ -189,7 +189,7 @@ class Palette:
 
 
 def short_label(label: str) -> str:
-    """The short form of a label: the number of an exit, or the part before a colon."""
+    """Return the short form of a label: the number of an exit, or the part before a colon."""
     return label.removeprefix("exit ").partition(":")[0]
 
 
@@ -199,7 +199,7 @@ def rgba(colours: Sequence[str]) -> np.ndarray:
 
 
 def mixed(colour: str, other: str, share: float) -> str:
-    """Linear interpolation between two colours ``#rrggbb``."""
+    """Interpolate linearly between two colours ``#rrggbb``."""
     pairs = zip(bytes.fromhex(colour[1:]), bytes.fromhex(other[1:]), strict=True)
     return "#" + "".join(f"{round(one + share * (two - one)):02x}" for one, two in pairs)
 
@@ -216,7 +216,7 @@ PAPER = Palette(
     times=("#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"),
     orbits=("#c30066", "#6987e7", "#43bea5", "#fa8f63", "#4b6d00"),
 )
-"""Channels 1 to 4 green, red, blue, orange; crossings light to dark blue; fast escapes light red, slow ones dark."""
+"""Channels 1 to 4 are green, red, blue and orange, crossings light to dark blue, escapes light red (fast) to dark red (slow)."""
 
 COLOUR_BLIND_SAFE = Palette(
     name="colour-blind safe",
@@ -230,13 +230,13 @@ COLOUR_BLIND_SAFE = Palette(
     times=(),
     orbits=("#af2593", "#00c700", "#8e5700", "#99a7f0", "#2b6e60"),
 )
-"""Colours of Okabe and Ito for channels; crossings light to dark violet; times from cividis."""
+"""Channels have colours of Okabe and Ito, crossings are light to dark violet, and times are from cividis."""
 
 PALETTES = {"paper": PAPER, "safe": COLOUR_BLIND_SAFE}
 """Palettes by their names in links."""
 
 MOST_CHANNELS = len(PAPER.channels)
-"""Number of exit channels with a colour of their own."""
+"""Number of exit channels with individual colours."""
 
 
 @dataclass(frozen=True)
@@ -260,8 +260,11 @@ DARK = LineColours(
     text="#f0f0f0",
 )  # fmt: skip
 
-MEASURED, SET_ASIDE = "#4c8dc4", "#b9c3cf"
-"""Colours of measured points, and of points that a fit leaves out."""
+MEASURED = "#4c8dc4"
+"""Colour of measured points."""
+
+SET_ASIDE = "#b9c3cf"
+"""Colour of measured points that are excluded from a fit."""
 
 LAW_COLOURS = {"exponential": "#d1495b", "power law": "#b58900"}
 """Colours of fitted decay laws."""

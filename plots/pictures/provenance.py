@@ -9,7 +9,7 @@ from engine.foundations.wording import format_number
 
 
 def provenance_line(frame: EscapeMap) -> str:
-    """Provenance of a map in one line: potential with rotation and ends, h, plane, window, resolution, t_max and version."""
+    """Describe a map in one line: potential with rotation and ends, h, plane, window, resolution, t_max and version."""
     spec, plane, window = frame.spec, frame.spec.plane, frame.spec.find_window()
     name, (columns, rows) = spec.potential.name, spec.resolution
     energy = [] if spec.common_energy is None else [f"h = {spec.common_energy!r}"]
@@ -30,12 +30,12 @@ def provenance_line(frame: EscapeMap) -> str:
 
 
 def _system_facts(potential: Potential) -> list[str]:
-    """The parts of a system other than V, in words."""
+    """Return the parts of a system other than V, in words."""
     facts = [f"Ω = {format_number(potential.rotation)}"] if potential.rotation else []
     return [*facts, *(end.geometry for end in potential.ends)]
 
 
 def _write_ends(low: float, high: float) -> str:
-    """Both ends of an axis, with enough digits to resolve a ten-thousandth of its length."""
+    """Write both ends of an axis, with enough digits to resolve a ten-thousandth of its length."""
     digits = 4 + math.ceil(math.log10(max(1.0, abs(low), abs(high)) / (high - low)))
     return " to ".join(format_number(end, max(digits, 6)) for end in (low, high))

@@ -1,4 +1,4 @@
-"""The logarithmic colour scale of escape times."""
+"""Choose the logarithmic colour scale of escape times."""
 
 from __future__ import annotations
 
@@ -12,16 +12,19 @@ from engine import EscapeMap, Fate
 
 # Shares of the escape times below and above the scale.
 _LEFT_OUT = 0.01
-# Lower limit of a fitted scale: an orbit that starts at an exit escapes at once.
+# Lower limit of a fitted scale, in units of time: an orbit that starts at an exit escapes at once.
 _LEAST = 0.1
 # Scales at least this long, in powers of ten, end at round numbers, so that they seldom change from map to map.
 _LONG = 1.0
-_ROUND, _FINE = (1.0, 2.0, 5.0, 10.0), tuple(tenth / 10.0 for tenth in range(10, 101))
+# Ends of long scales, times a power of ten.
+_ROUND = (1.0, 2.0, 5.0, 10.0)
+# Ends of short scales, times a power of ten.
+_FINE = tuple(tenth / 10.0 for tenth in range(10, 101))
 
 
 @dataclass(frozen=True)
 class TimeScale:
-    """A scale of escape times; the colours at its ends stand for all shorter and all longer times.
+    """A scale of escape times. The colours at its ends stand for all shorter and all longer times.
 
     Parameters
     ----------
@@ -42,7 +45,7 @@ class TimeScale:
             raise ValueError(f"low={self.low}, high={self.high}: must be positive and finite, low below high")
 
     def classes(self, times: np.ndarray, count: int) -> np.ndarray:
-        """Return indices (n,) of the colours, out of `count`, for times (n,)."""
+        """Return the indices (n,) of the colours, out of `count`, for times (n,)."""
         share = np.log(np.clip(times, self.low, self.high) / self.low) / math.log(self.high / self.low)
         index: np.ndarray = np.minimum((share * count).astype(int), count - 1)
         return index
@@ -53,9 +56,9 @@ WITHOUT_ESCAPES = TimeScale(1.0, 100.0)
 
 
 def fitted_scale(frame: EscapeMap) -> TimeScale:
-    """The scale from the 1st to the 99th percentile of a map's escape times.
+    """Return the scale from the 1st to the 99th percentile of a map's escape times.
 
-    Its ends are rounded outward: to 1, 2 or 5 · 10^k, or to two digits if the percentiles differ by less than a factor of ten.
+    The ends are rounded outward: to 1, 2 or 5 · 10^k, or to two digits if they differ by less than a factor of ten.
     """
     times = frame.escape_time[frame.fate > Fate.BOUNDED]
     if times.size == 0:
@@ -67,7 +70,7 @@ def fitted_scale(frame: EscapeMap) -> TimeScale:
 
 
 def common_scale(frames: Iterable[EscapeMap]) -> TimeScale:
-    """The shortest scale that contains those of several maps."""
+    """Return the shortest scale that contains the fitted scales of several maps."""
     scales = [fitted_scale(frame) for frame in frames]
     return TimeScale(min(scale.low for scale in scales), max(scale.high for scale in scales))
 

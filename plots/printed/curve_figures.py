@@ -1,4 +1,4 @@
-"""Curves against energy and time drawn with Matplotlib: shares, decay laws, and single lines."""
+"""Draw curves against energy and time with Matplotlib: shares, decay laws, and single lines."""
 
 from __future__ import annotations
 
@@ -19,15 +19,17 @@ from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
 from plots.printed.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 
-# Equal curves, such as the shares of mirror-image channels, coincide: the second one is dashed.
+# Equal curves, such as the shares of mirror-image channels, coincide. The second is dashed, so that both are visible.
 _DASHED = (0, (4.0, 3.0))
 _SAMPLES = 300
-# Height of the figure of curves, in units of its width: with two columns and with one.
-_HEIGHT, _HEIGHT_OF_COLUMN = 1.2, 4.5
-# If more than this share remains, the curve is in the upper half of its panel.
+# Height of the figure of curves with two columns, in units of its width.
+_HEIGHT = 1.2
+# Height with one column.
+_HEIGHT_OF_COLUMN = 4.5
+# Share of remaining starts above which the curve is in the upper half of its panel.
 _MOST_STAY = 0.4
 _SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}
-# Curves with more points have no markers.
+# Largest number of points of a curve with markers.
 _MOST_MARKERS = 60
 _DASHES = {"exponential": "--", "power law": "-."}
 
@@ -108,7 +110,7 @@ def draw_escape_times(axes: Axes, statistics: EscapeStatistics, style: FigureSty
 def draw_shares(
     axes: Axes, energies: np.ndarray, shares: np.ndarray, outcomes: Sequence[Outcome], style: FigureStyle = SCREEN
 ) -> None:
-    """Draw percentages (m, outcomes + 1), of bounded starts and of each outcome, against energy (m,)."""
+    """Draw percentages of bounded starts and of each outcome, of shape (m, outcomes + 1), against energies, of shape (m,)."""
     for code, share in enumerate(shares.T):
         if code == Fate.BOUNDED:
             line: dict[str, Any] = {"color": PAPER.bounded, "linewidth": 2.2, "label": PAPER.outcomes[Fate.BOUNDED].label}
@@ -124,7 +126,7 @@ def draw_shares(
 
 
 def draw_decay_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
-    """Draw the share of starts that have not escaped against time until t_max, with its fits."""
+    """Draw the share of starts that have not escaped, with its fits, against time until t_max."""
     times = np.concatenate([[1.0], laws.times[laws.times > 1.0], [t_max]])
     steps = np.concatenate([[1.0], laws.survival[laws.times > 1.0], laws.survival[-1:] if laws.times.size else [1.0]])
     positive = steps > 0.0
@@ -152,13 +154,13 @@ def _draw_law(axes: Axes, fit: LawFit, *, preferred: bool) -> None:
 
 
 def _mathtext(number: float) -> str:
-    """Number to three digits, with a power of ten if it is small or large."""
+    """Write a number to three digits, with a power of ten if the number is small or large."""
     digits, _, power = f"{number:.2e}".partition("e")
     return f"{number:.3g}" if abs(int(power)) < 3 else rf"{digits} \times 10^{{{int(power)}}}"
 
 
 def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, across: str, up: str, *, logarithmic: str = "") -> None:
-    """Draw one measured curve; `logarithmic` contains the letters of the axes with a logarithmic scale."""
+    """Draw one measured curve. `logarithmic` contains the letters of the logarithmic axes, such as "xy"."""
     axes.plot(x, y, color=MEASURED, linewidth=1.4, marker="o" if x.size <= _MOST_MARKERS else "", markersize=3.0)
     if "x" in logarithmic:
         axes.set_xscale("log")

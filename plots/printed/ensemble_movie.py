@@ -1,4 +1,4 @@
-"""Movies of many orbits that leave the well, beside the share of orbits that are still inside."""
+"""Make movies of many orbits that leave the well, with a chart of the share inside."""
 
 from __future__ import annotations
 
@@ -31,8 +31,11 @@ from plots.printed.potential_figure import draw_well
 FRAMES_PER_SECOND = 25
 """Frames per second of all movies."""
 
+# Height of the figure in units of its width.
 _HEIGHT = 0.55
-_PARTICLE = 3.0
+# Area of a particle in square points.
+_PARTICLE_AREA = 3.0
+# Lower end of the axis of shares, in units of the share of one orbit.
 _LEAST_SHARE = 0.5
 _MIXED_DASHES = (0, (4, 3))
 
@@ -113,7 +116,7 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
     show_window(well, window, "x", "y", style, equal=True)
     count = well.set_title(" ", loc="left", fontsize=style.font_size, color=LIGHT.text)
     colours = [palette.entry(max(fate, Fate.BOUNDED), orbits.outcomes).colour for fate in orbits.fate.tolist()]
-    particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE, c=colours, linewidths=0, zorder=3)
+    particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE_AREA, c=colours, linewidths=0, zorder=3)
     survival = _draw_chart(chart, potential, orbits, style)
     set_font(figure)
     # One layout is enough, because the axes do not move between frames.
@@ -123,7 +126,7 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
 
 
 def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: FigureStyle) -> Line2D:
-    """Draw the axes of the share inside and the law of mixed motion; return the line that `_show` extends."""
+    """Draw the chart of the share inside, with the law of mixed motion; return the line that `_show` extends."""
     last, least = float(orbits.t[0, -1]), _LEAST_SHARE / len(orbits.fate)
     times = np.linspace(0.0, last, 200)
     rate = compute_flux(potential, float(orbits.energy[0])).decay_rate
@@ -142,7 +145,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
 
 
 def _show(stage: _Stage, orbits: SampledOrbits, place: int) -> None:
-    """Show the orbits at the time with this index."""
+    """Show the orbits at the time with the index `place`."""
     window, t = stage.window, float(orbits.t[0, place])
     across = (orbits.x[:, place] - window.x_low) / (window.x_high - window.x_low)
     up = (orbits.y[:, place] - window.ordinate_low) / (window.ordinate_high - window.ordinate_low)

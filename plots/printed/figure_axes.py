@@ -1,4 +1,4 @@
-"""Shared style of all figures: text sizes, axes, panel titles, legends and reproducible files.
+"""Apply the style of all figures: text sizes, axes, panel titles, legends and reproducible files.
 
 Figures use Matplotlib's object-oriented API. Matplotlib is not thread-safe: threads draw and save under `RENDER_LOCK`.
 """
@@ -29,13 +29,13 @@ from plots.pictures.palette import LIGHT, PATCH_EDGE, Entry, Mark
 from plots.printed.figure_style import CM_PER_INCH, POINTS_PER_INCH, SCREEN, FigureFormat, FigureStyle
 
 RENDER_LOCK = threading.Lock()
-"""Held by a thread while it draws and saves a figure."""
+"""A thread holds this lock while it draws and saves a figure."""
 
 MOST_PIXELS = 20_000_000
-"""Largest number of pixels of a PNG file: four maps 16 cm wide at 600 pixels per inch. Drawing takes up to 50 bytes per pixel."""
+"""Largest number of pixels of a PNG file: four maps 16 cm wide at 600 pixels per inch. Drawing needs up to 50 bytes per pixel."""
 
-# Fonts that Matplotlib contains: STIX has Greek letters, fractions and mathematical symbols; the second font has the superscripts
-# that STIX lacks.
+# Fonts that Matplotlib contains. STIX has Greek letters, fractions and mathematical symbols, DejaVu Serif the superscripts that
+# STIX lacks.
 _FAMILY, _MATHS = ["STIXGeneral", "DejaVu Serif", "serif"], "stix"
 _FILE_OPTIONS: Any = {
     # Text in SVG files stays text. Programs without the STIX fonts show it in another font of about the same width.
@@ -45,9 +45,11 @@ _FILE_OPTIONS: Any = {
     # Elements have the same names in every file.
     "svg.hashsalt": "escape-explorer",
 }
+# Width of the lines of frames and ticks, in points.
 _FRAME = 0.7
-_MOST_TICKS = 5
-# Approximate number of letters in a line of text, times its font size, per width.
+# Largest number of intervals between ticks on a linear axis.
+_MOST_TICK_INTERVALS = 5
+# Approximate number of letters in a line of text as wide as its font size.
 _LETTERS_PER_EM = 2.0
 # Largest number of columns of a legend below a panel.
 _MOST_COLUMNS = 6
@@ -59,7 +61,7 @@ Corner = Literal["upper left", "upper right", "lower left", "lower right", "cent
 
 
 def new_figure(style: FigureStyle, height: float, title: str = "", *, equal: bool = False) -> Figure:
-    """Return an empty figure, `height` cm high; `equal` packs panels that have equal scales on both axes."""
+    """Return an empty figure, `height` cm high. `equal` packs panels that have the same scale on both axes."""
     layout = ConstrainedLayoutEngine(h_pad=_GAP, w_pad=_GAP, compress=equal)
     figure = Figure(figsize=(style.inches, height / CM_PER_INCH), dpi=style.dpi, layout=layout)
     if style.titles and title:
@@ -68,7 +70,7 @@ def new_figure(style: FigureStyle, height: float, title: str = "", *, equal: boo
 
 
 def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: float | None = None) -> None:
-    """Write lines below all panels, wrapped to the width of the figure; `size` is the font size in points."""
+    """Write lines below all panels, wrapped to the width of the figure. `size` is the font size in points."""
     size = size or style.small_size
     letters = int(_LETTERS_PER_EM * style.inches * POINTS_PER_INCH / size)
     text = "\n".join(fill(line, letters, break_on_hyphens=False) for line in lines)
@@ -76,7 +78,7 @@ def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: 
 
 
 def fit_height(figure: Figure) -> None:
-    """Fit the height of a figure to its panels and the lines below them, whose sizes follow from the width of the figure."""
+    """Fit the height of a figure to its panels and the lines below, whose sizes follow from the width of the figure."""
     figure.draw_without_rendering()
     panels = Bbox.union([box for axes in figure.axes if (box := axes.get_tightbbox()) is not None])
     lines = sum(text.get_window_extent().height for text in figure.texts)
@@ -91,7 +93,7 @@ def label_axes(axes: Axes, across: str, up: str, style: FigureStyle = SCREEN) ->
 
 
 def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -> None:
-    """Style axes: a thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid."""
+    """Give axes a thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid."""
     axes.tick_params(direction="out", labelsize=style.small_size, width=_FRAME, length=3.0, which="major")
     axes.tick_params(direction="out", width=0.6 * _FRAME, length=1.8, which="minor")
     for spine in axes.spines.values():
@@ -100,7 +102,7 @@ def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -
         if scale == "log":
             axis.set_minor_formatter(NullFormatter())
         else:
-            axis.set_major_locator(MaxNLocator(_MOST_TICKS, steps=[1, 2, 5, 10]))
+            axis.set_major_locator(MaxNLocator(_MOST_TICK_INTERVALS, steps=[1, 2, 5, 10]))
     if grid:
         axes.grid(alpha=0.25, linewidth=0.5)
 
@@ -112,13 +114,13 @@ def name_panel(axes: Axes, words: str, style: FigureStyle = SCREEN) -> None:
 
 
 def name_panels(panels: Iterable[Axes], words: Sequence[str]) -> None:
-    """Title panels (a), (b), …"""
+    """Title panels with (a), (b), … and their words."""
     for letter, axes, word in zip("abcdefghi", panels, words, strict=False):
         name_panel(axes, f"({letter}) {word}")
 
 
 def legend_handles(entries: Iterable[Entry]) -> list[Artist]:
-    """Handles of the entries of a legend."""
+    """Return Matplotlib's handles of the entries of a legend."""
     return [_HANDLES[entry.mark](entry) for entry in entries]
 
 
@@ -138,13 +140,13 @@ _HANDLES = {Mark.PATCH: _patch, Mark.LINE: _line, Mark.CHESSBOARD: _chessboard}
 
 
 def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureStyle = SCREEN, columns: int | None = None) -> None:
-    """Add one legend for the whole figure, below all panels; by default in one row."""
+    """Add one legend for the whole figure, below all panels, by default in one row."""
     columns = columns or len(handles)
     _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, **_legend_style(style)))
 
 
 def below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
-    """Coordinates in shares of a panel, moved down by `depth` and to the left by `left` points."""
+    """Return coordinates in shares of a panel, moved down by `depth` and to the left by `left` points."""
     move = ScaledTranslation(-left / POINTS_PER_INCH, -depth / POINTS_PER_INCH, figure_of(axes).dpi_scale_trans)
     return axes.transAxes + move
 
@@ -159,9 +161,9 @@ def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, 
     handles
         Handles of the legend entries.
     place
-        Position of the upper left corner: distances to the left of and below the lower left corner of the panel, in points.
+        Upper left corner of the legend: distances left of and below the lower left corner of the panel, in points.
     width
-        Available width in points; longer entries are wrapped.
+        Available width in points. Longer entries are wrapped.
     style
         Style of the figure.
     """
@@ -183,7 +185,7 @@ def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, 
 
 
 def size_in_points(axes: Axes) -> tuple[float, float]:
-    """Width and height of a panel."""
+    """Return the width and height of a panel."""
     box, scale = axes.get_window_extent(), POINTS_PER_INCH / figure_of(axes).dpi
     return float(box.width * scale), float(box.height * scale)
 
@@ -215,7 +217,7 @@ def _colour_text(legend: Legend) -> None:
 
 
 def set_font(figure: Figure) -> None:
-    """Set one font family on every text of a figure; Matplotlib's rcParams would change it for the whole process."""
+    """Set one font family on every text of a figure. Matplotlib's rcParams would set the family for the whole process."""
     for axes in figure.axes:
         axes.tick_params(labelfontfamily=_FAMILY, which="both")
     for text in figure.findobj(Text):
@@ -224,12 +226,12 @@ def set_font(figure: Figure) -> None:
 
 
 def software() -> str:
-    """Name and version of this program, for the metadata of files."""
+    """Return name and version of this program, for the metadata of files."""
     return f"escape-explorer {metadata.version('escape-explorer')}"
 
 
 def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) -> bytes:
-    """Save a figure to bytes; equal figures give equal bytes.
+    """Return the file of a figure. Equal figures have equal bytes.
 
     Parameters
     ----------
@@ -251,7 +253,7 @@ def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) 
     file = BytesIO()
     with rc_context(_FILE_OPTIONS):
         figure.savefig(file, format=format, dpi=figure.dpi, metadata=_metadata(format, facts))
-    # Keep the layout for the next file.
+    # The layout stays for the next file.
     figure.set_layout_engine("none")
     return file.getvalue()
 
@@ -265,7 +267,7 @@ def _check_pixels(figure: Figure) -> None:
 
 
 def _metadata(format: FigureFormat, facts: Mapping[str, str]) -> dict[str, str | None]:
-    """Return the facts in the metadata fields that a format has, without the date."""
+    """Return the facts in the metadata fields of a format, without the date."""
     sentence = ", ".join(f"{name}: {value}" for name, value in facts.items())
     match format:
         case FigureFormat.PNG:

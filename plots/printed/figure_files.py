@@ -1,4 +1,4 @@
-"""Files of figures as PNG, SVG or PDF. Matplotlib is slow to import and is loaded with the first file."""
+"""Make files of figures as PNG, SVG or PDF. The first file loads Matplotlib, which is slow to import."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def map_figure_bytes(
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> bytes:
-    """Return the file of some pictures of a map, with the map's provenance in its metadata.
+    """Return the file of some pictures of a map, with the map's provenance in the metadata.
 
     For parameters and exceptions see `plots.printed.map_figure.draw_map_figure` and `plots.printed.figure_axes.save_figure`.
     """
@@ -49,7 +49,7 @@ def orbits_figure_bytes(
     format: FigureFormat,
     style: FigureStyle,
 ) -> bytes:
-    """Return the file of `plots.printed.orbit_figure.draw_orbits_figure`, with the starts and the verdicts in its metadata."""
+    """Return the file of `plots.printed.orbit_figure.draw_orbits_figure`, with starts and verdicts in the metadata."""
     from plots.printed.orbit_figure import draw_orbits_figure
 
     facts = {"potential": potential.name}

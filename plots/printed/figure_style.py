@@ -1,4 +1,4 @@
-"""Size, fonts and formats of figures."""
+"""Define size, fonts and formats of figures."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 LEGAL = {"width": (4.0, 100.0, "cm"), "dpi": (50.0, 1200.0, "pixels per inch"), "font_size": (4.0, 30.0, "points")}
-"""Smallest and largest value of each number of a style, and its unit."""
+"""Smallest value, largest value and unit of each number of a style."""
 
 CM_PER_INCH = 2.54
 POINTS_PER_INCH = 72.0
@@ -23,7 +23,7 @@ class FigureFormat(StrEnum):
 
 @dataclass(frozen=True)
 class FigureStyle:
-    """Style of a figure; the default suits the full width of a page of a paper.
+    """Style of a figure. The default suits the full width of a page of a paper.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class FigureStyle:
     font_size
         Font size of axis labels in points, 4 to 30; all other font sizes are in proportion.
     titles
-        Whether panels have titles, and the figure has its title and provenance.
+        Whether panels have titles, and the figure has a title and provenance.
 
     Raises
     ------
@@ -78,13 +78,13 @@ class FigureStyle:
         return self.font_size * 3.0 / 4.0
 
     def columns(self, panels: int) -> int:
-        """Number of columns in which square panels are arranged, so that each is wide enough for its legend."""
+        """Return the number of columns of square panels, each wide enough for its legend."""
         most = max(1, int(self.inches * POINTS_PER_INCH // (_LEAST_PANEL * self.font_size)))
         rows = math.ceil(panels / most)
         return math.ceil(panels / rows)
 
 
-# Least width of a panel with its labels, in units of the font size.
+# Smallest width of a panel with its labels, in units of the font size.
 _LEAST_PANEL = 16.0
 
 SCREEN = FigureStyle(width=29.0, dpi=180.0, font_size=12.0)

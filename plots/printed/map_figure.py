@@ -1,7 +1,7 @@
-"""Maps drawn with Matplotlib: pixels, limiting curve, exits, curves of layers, marks of starts, legend and provenance.
+"""Draw maps with Matplotlib: pixels, limiting curve, exits, curves of layers, marks of starts, legend and provenance.
 
-Maps are drawn in shares of the window that their axes show, from 0 to 1: in plane coordinates, the transform to pixels would lose
-all digits in a deep zoom.
+Maps are drawn in shares of the window that their axes show, from 0 to 1, because in a deep zoom the transform from plane
+coordinates to pixels would lose all digits.
 """
 
 from __future__ import annotations
@@ -55,20 +55,25 @@ from plots.printed.figure_axes import (
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
 
-# In units of the font size: distances from a map down to the text below its axis label, from a colour bar down to the text below
-# its labels, and from a map left to its legend.
-_BELOW_AXIS, _BELOW_BAR, _LEFT_OF_AXIS = 3.7, 3.4, 3.0
+# Distance from a map to the text below its axis label, in units of the font size.
+_BELOW_AXIS = 3.7
+# Distance from a colour bar to the text below its labels, in units of the font size.
+_BELOW_BAR = 3.4
+# Distance from a map to the left edge of its legend, in units of the font size.
+_LEFT_OF_AXIS = 3.0
 # Height of a colour bar, as a share of the side of its map.
 _BAR_HEIGHT = 0.04
-# Initial height of a row of maps with its legends, before it is fitted, in units of the width of a map with its labels.
+# Initial height of a row of maps with legends, before the height is fitted, in units of the width of a map with labels.
 _ROW_HEIGHT = 2.0
 # Width of a legend, as a share of the width of a map with its labels.
 _LEGEND_WIDTH = 0.9
-# Approximate number of letters of a title per width of one font size.
+# Approximate number of letters of a title as wide as its font size.
 _LETTERS_PER_EM = 2.6
-# Width of a letter of a tick label, and the space between labels, in units of the font size.
-_LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
-# Least distance between ticks of a colour bar, as a share of its length.
+# Width of a letter of a tick label, in units of the font size.
+_LETTER_WIDTH = 0.5
+# Space between tick labels, in units of the font size.
+_BETWEEN_LABELS = 1.0
+# Smallest distance between ticks of a colour bar, as a share of its length.
 _BETWEEN_TICKS = 0.15
 _EXIT_DASHES = (0, (2.0, 1.5))
 # Width of the curves of layers in a file, relative to the width on the page.
@@ -76,7 +81,7 @@ _LINE_SCALE = 0.6
 _HALO_ORDER = 1.5
 # Curves are cut at this distance outside the window, as a share of the window.
 _RIM = 0.02
-# Numbers of starts within this distance of the right and upper edge of the picture, as a share of it, are written inward.
+# The number of a start is written inward within this distance of the right and upper edge of the picture, as a share of its side.
 _EDGE = 0.06
 
 
@@ -90,7 +95,7 @@ def draw_map_figure(
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> Figure:
-    """Draw pictures of a map in rows, each with title, axes, curves and legend, and the provenance below them.
+    """Draw pictures of a map in rows, each with title, axes, curves and legend, and the provenance below all pictures.
 
     Parameters
     ----------
@@ -120,7 +125,7 @@ def draw_map_figure(
     columns = style.columns(len(pictures))
     rows = math.ceil(len(pictures) / columns)
     figure = new_figure(style, rows * _ROW_HEIGHT * style.width / columns, equal=True)
-    # Texts are measured at low resolution, because Matplotlib allocates all pixels of the figure to measure one text.
+    # Texts are measured at low resolution, because Matplotlib allocates all pixels of the figure to measure a text.
     figure.set_dpi(POINTS_PER_INCH)
     grid = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
     for axes in grid[len(pictures) :]:
@@ -148,7 +153,7 @@ def draw_picture(
     times: TimeScale | None = None,
     style: FigureStyle = SCREEN,
 ) -> None:
-    """Draw title, pixels, curves and axes of one of `TITLES`; `times` is as in `draw_map_figure`."""
+    """Draw title, pixels, curves and axes of one of `TITLES`. `times` is the scale of the escape times."""
     spec, window = frame.spec, frame.spec.find_window()
     draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
@@ -171,7 +176,7 @@ def _explain_picture(
     width: float,
     style: FigureStyle,
 ) -> None:
-    """Draw colour bar and legend below a map, whose column is `width` inches wide."""
+    """Draw colour bar and legend below a map in a column `width` inches wide."""
     depth = _BELOW_AXIS * style.font_size
     legend = map_legend(picture, ShownMap.of(frame, palette, analyses, times))
     if legend.scale is not None:
@@ -200,9 +205,9 @@ def draw_limits(
     shown: Window,
     channel_colours: Sequence[str] | None = None,
 ) -> None:
-    """Draw the limiting curve of a slice and, on (x, y), the Lyapunov orbits, where they are known.
+    """Draw the limiting curve of a slice and, on (x, y), the known Lyapunov orbits.
 
-    The orbits have the colours of their channels; without colours they are black and dashed.
+    The orbits have the colours of their channels, or without colours are black and dashed.
     """
     limit: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
     draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit)
@@ -231,14 +236,14 @@ def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown: Window, palette: 
 def draw_curve(
     axes: Axes, pieces: Iterable[np.ndarray], shown: Window, label: str = "", *, halo: bool = False, **style: Any
 ) -> None:
-    """Draw a curve that consists of pieces; nothing is drawn if no piece is in view.
+    """Draw a curve that consists of pieces, as far as the window shows it.
 
     Parameters
     ----------
     axes
         Axes that show `shown`.
     pieces
-        Pieces, each (n, 2) points of the plane; pieces of a single point are skipped.
+        Pieces, each (n, 2) points of the plane. Pieces of a single point are skipped.
     shown
         Window of the axes.
     label
@@ -263,7 +268,7 @@ def draw_curve(
 def mark_starts(
     axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown: Window, style: FigureStyle = SCREEN
 ) -> None:
-    """Mark starts (x, ordinate) with numbered crosses in the colours of their orbits; starts outside are counted, not drawn."""
+    """Mark starts (x, ordinate) with numbered crosses in the colours of their orbits. Starts outside are counted, not drawn."""
     scale = style.font_size / SCREEN.font_size
     for number, start in enumerate(starts, 1):
         x, y = _shares(shown, np.array(start))
@@ -283,7 +288,7 @@ def mark_starts(
 
 
 def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
-    """Set limits, ticks and names of axes that show a window; `equal` gives both axes the same scale."""
+    """Set limits, ticks and names of axes that show a window. `equal` gives both axes the same scale."""
     style_axes(axes, style)
     x, y = label_axis(across, shown.x_low, shown.x_high), label_axis(up, shown.ordinate_low, shown.ordinate_high)
     axes.set_xticks(*zip(*_spaced(x.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
@@ -296,13 +301,13 @@ def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureSt
 
 
 def _spaced(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
-    """Select every k-th tick so that the labels do not touch in a width, which is in units of their font size."""
+    """Select every k-th tick so that the labels do not touch. `width` is in units of their font size."""
     needed = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
     return ticks[:: max(1, math.ceil(needed / width))]
 
 
 def add_colour_bar(figure: Figure, scale: ColourScale, style: FigureStyle = SCREEN, **place: Any) -> Colorbar:
-    """Add the colour bar of a scale; `place` is passed to `matplotlib.figure.Figure.colorbar`."""
+    """Add the colour bar of a scale, with `place` passed to `matplotlib.figure.Figure.colorbar`."""
     norm = LogNorm(scale.low, scale.high) if scale.is_logarithmic else Normalize(scale.low, scale.high)
     bar = figure.colorbar(ScalarMappable(norm, ListedColormap(list(scale.colours))), **place)
     ticks = [scale.low, *_inner_ticks(scale), scale.high]
@@ -315,7 +320,7 @@ def add_colour_bar(figure: Figure, scale: ColourScale, style: FigureStyle = SCRE
 
 
 def _inner_ticks(scale: ColourScale) -> list[float]:
-    """Powers of ten between the ends of a logarithmic scale, not too close to them; for a linear scale its middle."""
+    """Return the powers of ten inside a logarithmic scale, not too close to its ends, or the middle of a linear scale."""
     if not scale.is_logarithmic:
         return [float(f"{0.5 * (scale.low + scale.high):.3g}")]
     powers = [10.0**k for k in range(math.ceil(math.log10(scale.low)), math.floor(math.log10(scale.high)) + 1)]

@@ -1,4 +1,4 @@
-"""An orbit drawn with Matplotlib: its path between the exits, SALI and R² against time."""
+"""Draw an orbit with Matplotlib: its path between the exits, and SALI and R² against time."""
 
 from __future__ import annotations
 
@@ -29,8 +29,11 @@ from plots.printed.figure_style import SCREEN, FigureStyle
 from plots.printed.map_figure import draw_curve, draw_limits, draw_pixels, show_window
 from plots.printed.potential_figure import draw_well
 
-# Height of the figure with two columns and with one, in units of its width.
-_HEIGHT, _HEIGHT_OF_COLUMN = 0.58, 1.9
+# Height of the figure with two columns, in units of its width.
+_HEIGHT = 0.58
+# Height with one column.
+_HEIGHT_OF_COLUMN = 1.9
+# Lower end of the axis of time, in units of time.
 _EARLIEST_TIME = 0.01
 _PATH = "path"
 # The Lyapunov exponent repeats what SALI shows.
@@ -40,7 +43,7 @@ _PRINTED = {quantity.name: quantity for quantity in ORBIT_QUANTITIES if quantity
 def draw_orbits_figure(
     potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, verdicts: Sequence[str], style: FigureStyle
 ) -> Figure:
-    """Draw paths, SALI and R² of orbits in the colours of their numbers, with their verdicts below.
+    """Draw paths, SALI and R² of orbits in the colours of their numbers, with the verdicts below.
 
     Raises
     ------
@@ -71,7 +74,7 @@ def draw_orbits_figure(
 def draw_well_figure(
     potential: Potential, energy: float, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle
 ) -> Figure:
-    """Draw the well at an energy with its equipotentials and exits, and the paths of orbits in it."""
+    """Draw the well at an energy with equipotentials, exits, and the paths of orbits."""
     window = find_well_window(potential, energy)
     figure = new_figure(style, style.width, f"The well at h = {energy:.6g}")
     axes = figure.subplots()
@@ -90,7 +93,7 @@ def _energies(orbits: Sequence[OrbitCurves]) -> list[str]:
 def draw_path(
     axes: Axes, potential: Potential, orbits: Sequence[OrbitCurves], palette: Palette, style: FigureStyle = SCREEN
 ) -> None:
-    """Draw paths as lines, or long ones shaded by their density, with the exits at the highest energy of the orbits."""
+    """Draw paths as lines, or long paths shaded by density, with the exits at the highest energy of the orbits."""
     widest = max(orbits, key=lambda curves: curves.orbit.energy)
     window = widest.window
     _draw_paths(axes, orbits, window, palette)

@@ -1,4 +1,4 @@
-"""A potential drawn with Matplotlib: its equipotentials, with the one at the escape energy in red."""
+"""Draw the equipotentials of a potential with Matplotlib, in red at the escape energy."""
 
 from __future__ import annotations
 

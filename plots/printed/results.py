@@ -1,4 +1,4 @@
-"""Pictures of results of the engine: on Matplotlib axes, as HTML for notebooks, and as HoloViews elements."""
+"""Draw results of the engine on Matplotlib axes, as HTML for notebooks, and as HoloViews elements."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
 # Position of the legend of a map in shares of the axes: the middle, below the label of the horizontal axis.
 _BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
-# Values below 10⁻¹⁶ are drawn there on logarithmic axes, which cannot show 0.
+# On logarithmic axes, which cannot show 0, smaller values are drawn at 10⁻¹⁶.
 _MOST_DECADES = 16
 
 
@@ -60,7 +60,7 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper
 
 
 def to_html(result: Result) -> str:
-    """Return the HTML that notebooks show: a picture if there is one, a sentence that describes the result, and its numbers."""
+    """Return the HTML that notebooks show: a picture if there is one, a sentence on the result, and the numbers of the result."""
     describe = getattr(result, "describe", None)
     shown = result.shown_numbers().items()
     rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in shown)
@@ -123,7 +123,7 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
 
 
 def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> None:
-    """Draw the result of a layer without the map below it."""
+    """Draw the result of a layer without the map."""
     spec = layer.spec_of(result)
     window = spec.find_window()
     panel = _panel(axes, window)
@@ -140,7 +140,7 @@ def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> N
 
 
 def _panel(axes: Axes, window: Window) -> Axes:
-    """Add axes behind `axes` for drawings in shares of a window; `axes` has the coordinates of the window."""
+    """Add axes for drawings in shares of a window behind `axes`, which have the coordinates of the window."""
     panel = axes.inset_axes((0.0, 0.0, 1.0, 1.0), zorder=-1.0)
     axes.set_xlim(window.x_low, window.x_high)
     axes.set_ylim(window.ordinate_low, window.ordinate_high)

@@ -1,4 +1,4 @@
-"""Limits of the potentials that the page can show."""
+"""Check whether the page can show a potential."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from plots.pictures.palette import PAPER
 
 
 def refusal(found: PotentialReview) -> str | None:
-    """Reason why the page cannot show a potential; None if it can."""
+    """Return the reason why the page cannot show a potential; None if it can."""
     if found.refusal is not None:
         return found.refusal
     potential = found.potential

@@ -1,4 +1,4 @@
-"""Files of results: maps and other datasets as NetCDF, orbits as CSV, and a Python script that reproduces them."""
+"""Write results as files: maps and other datasets as NetCDF, orbits as CSV, and a Python script that reproduces both."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ def dataset_bytes(dataset: xr.Dataset, encoding: Mapping[Any, Any] | None = None
 
 
 def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Sequence[OrbitVerdict] = ()) -> str:
-    """Return a CSV table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent, r2, at full precision.
+    """Return a CSV table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent and r2 at full precision.
 
-    Comment lines (#) at the top contain the start, energy and verdict of each orbit, and which of its samples are listed.
+    Comment lines (#) at the top contain start, energy and verdict of each orbit, and tell which samples are listed.
 
     Parameters
     ----------
     orbits
         The orbits; an empty sequence gives an empty table.
     most_rows
-        Largest number of rows, at least 1 per orbit; of longer orbits every k-th sample is listed.
+        Largest number of rows, at least 1 per orbit. Of longer orbits every k-th sample is listed.
     verdicts
         One per orbit; by default those of `engine.judge_orbit` without Birkhoff digits.
 
@@ -68,7 +68,7 @@ def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Se
 
 
 def write_csv(names: Iterable[str], rows: Iterable[Sequence[object]], comments: Iterable[str] = ()) -> str:
-    """Return a CSV table with the names of its columns, numbers at full precision, below comment lines (#)."""
+    """Return a CSV table with names of columns and numbers at full precision, below comment lines (#)."""
     lines = [*(f"# {comment}" for comment in comments), ",".join(names), *(",".join(map(repr, row)) for row in rows)]
     return "\n".join(lines) + "\n"
 
@@ -140,7 +140,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
 
 
 def _slice_names(plane: Slice) -> list[str]:
-    """Names to import for the expression of a slice."""
+    """Return the names that a script imports for the expression of a slice."""
     if isinstance(plane, Plane):
         return ["Plane"]
     kinds = {type(axis).__name__ for axis in plane.axes} | {"Coordinate", "Slice"}
@@ -148,7 +148,7 @@ def _slice_names(plane: Slice) -> list[str]:
 
 
 def _potential_expression(system: System) -> tuple[str, str]:
-    """Name to import, and the expression of the potential."""
+    """Return the name that a script imports, and the expression of the potential."""
     if system.parameters and not system.entry.is_well:
         return "System", f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
     parameters = ", ".join(f"{name}={value!r}" for name, value in system.well_parameters.items())
@@ -176,7 +176,7 @@ def _numbers(numbers: Sequence[float]) -> str:
 def file_stem(spec: MapSpec, case: str) -> str:
     """Return a file name for a map, without an ending: letters, digits and ``_ . + -`` only.
 
-    It contains the case, the rotation if any, plane, energy, t_max and, unless the map shows the whole plane, the window.
+    The name contains the case, any rotation, plane, energy, t_max and, unless the map shows the whole plane, the window.
     """
     energy = repr(spec.energy).strip("()").replace(", ", "-")
     rotation = f"-rotation{spec.potential.rotation:g}" if spec.potential.rotation else ""
@@ -189,7 +189,7 @@ def file_stem(spec: MapSpec, case: str) -> str:
 
 
 def curves_csv(curves: Sweep) -> str:
-    """Return a CSV table of a sweep: a row per energy or parameter value, a column per share of an outcome and other measure."""
+    """Return a CSV table of a sweep, with a row for each energy or parameter value and a column for each number of a measure."""
     columns = curves.columns()
     comments = (_version(), *(f"{name}: {value}" for name, value in curves.dataset.attrs.items()))
     return write_csv(columns, zip(*(column.tolist() for column in columns.values()), strict=True), comments)

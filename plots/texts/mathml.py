@@ -1,4 +1,4 @@
-"""Formulas of a system as MathML, derived from its potential."""
+"""Write the formulas of a system as MathML, derived from its potential."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def equations(potential: Potential) -> str:
 
 
 def potential_formula(potential: Potential) -> str:
-    """V(x, y) = … as text with one MathML element for each term: browsers do not break long MathML elements."""
+    """Return V(x, y) = … as text with one MathML element for each term, because browsers do not break long MathML elements."""
     first, *others = _signed_terms(potential.form)
     # By default a sign at the start of an element is spaced as a unary sign.
     terms = [first, *(term.replace("<mo>", "<mo form='infix'>", 1) for term in others)]
@@ -48,7 +48,7 @@ def _potential(potential: Potential) -> str:
 
 
 def potential_symbol(potential: Potential) -> str:
-    """V, or Φ for the effective potential of a rotating frame."""
+    """Return V, or Φ for the effective potential of a rotating frame."""
     return "Φ" if potential.rotation else "V"
 
 
@@ -57,7 +57,7 @@ def _at_point(potential: Potential) -> str:
 
 
 def _hamiltonian(potential: Potential) -> dict[str, list[str]]:
-    """H in momenta; omitted in a rotating frame, where the Jacobi integral in velocities is enough."""
+    """Return H in momenta, or nothing in a rotating frame, where the Jacobi integral in velocities is enough."""
     if potential.rotation:
         return {}
     squares = _momentum_squared("x"), _momentum_squared("y")
@@ -65,7 +65,7 @@ def _hamiltonian(potential: Potential) -> dict[str, list[str]]:
 
 
 def _exits(potential: Potential) -> dict[str, list[str]]:
-    """Escape energy, and saddles in the order of the channels; empty if there are no channels."""
+    """Return the escape energy, and the saddles in the order of the channels; empty without channels."""
     if not potential.channels:
         return {}
     escape_energy = f"<msub>{var('h')}<mtext>esc</mtext></msub>" + op("=") + number(potential.escape_energy)
@@ -75,7 +75,7 @@ def _exits(potential: Potential) -> dict[str, list[str]]:
 
 
 def _motion(axis: str, potential: Potential) -> str:
-    """Mass times acceleration = −∂V/∂axis, with the derivative written out, and the Coriolis term in a rotating frame."""
+    """Return mass times acceleration = −∂V/∂axis, with the derivative written out, and the Coriolis term in a rotating frame."""
     force = potential.form.force("xy".index(axis))
     partial = f"<mfrac>{row(op('∂') + var(potential_symbol(potential)))}{row(op('∂') + var(axis))}</mfrac>"
     mass = "" if potential.mass == 1.0 else number(potential.mass)
@@ -84,7 +84,7 @@ def _motion(axis: str, potential: Potential) -> str:
 
 
 def _coriolis(axis: str, potential: Potential) -> str:
-    """2mΩẏ or −2mΩẋ; empty in a frame that does not rotate."""
+    """Return 2mΩẏ or −2mΩẋ; empty in a frame that does not rotate."""
     if not potential.rotation:
         return ""
     rate = number(2.0 * potential.mass * abs(potential.rotation))
@@ -93,18 +93,18 @@ def _coriolis(axis: str, potential: Potential) -> str:
 
 
 def _energy(potential: Potential, factor: float, first: str, second: str) -> str:
-    """factor (first + second) + V(x, y)."""
+    """Return factor (first + second) + V(x, y)."""
     squares = op("(") + first + op("+") + second + op(")")
     return (number(factor) if factor != 1.0 else "") + squares + op("+") + _at_point(potential)
 
 
 def _sum(form: Form) -> str:
-    """A formula with its terms in order."""
+    """Return a formula with its terms in order."""
     return row("".join(_signed_terms(form)))
 
 
 def _signed_terms(form: Form) -> list[str]:
-    """The terms with their signs; the first has no plus sign."""
+    """Return the terms with their signs; the first has no plus sign."""
     definition = form.definition
     expression = definition if isinstance(definition, Expression) else from_terms({(i, j): c for i, j, c in definition})
     first, *others = signed_parts(expression)
@@ -117,12 +117,12 @@ def _math(formula: str) -> str:
 
 
 def _spoken(formula: str) -> str:
-    """A formula in words, escaped for attributes."""
+    """Return a formula in words, escaped for attributes."""
     return escape(_words(ElementTree.fromstring(f"<math>{formula}</math>")))
 
 
 def _words(node: ElementTree.Element) -> str:
-    """Text of a formula for screen readers."""
+    """Return the text of a formula for screen readers."""
     parts = [_words(child) for child in node]
     if node.tag == "mfrac":
         return "/".join(parts) if all(part.isdecimal() for part in parts) else " over ".join(parts)

@@ -1,4 +1,4 @@
-"""Parts of formulas as MathML."""
+"""Write parts of formulas as MathML."""
 
 from __future__ import annotations
 
@@ -6,14 +6,17 @@ from math import isqrt
 
 from engine.expressions.text import short_fraction
 
-# Numbers this close to a short fraction or to its square root are shown as such.
+# Numbers this close to a short fraction, or to the square root of a short fraction, are written as such.
 _ROUNDING = 1e-10
-COORDINATE_DIGITS, COEFFICIENT_DIGITS = 4, 12
-"""Significant digits of decimal numbers."""
+COORDINATE_DIGITS = 4
+"""Significant digits of coordinates that are decimal numbers."""
+
+COEFFICIENT_DIGITS = 12
+"""Significant digits of coefficients that are decimal numbers."""
 
 
 def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
-    """A number as a fraction, the square root of a fraction, or a decimal number."""
+    """Return a number as a fraction, the square root of a fraction, or a decimal number."""
     if value < 0.0:
         return row(op("−") + number(-value, shown))
     for power in (1, 2):
@@ -25,7 +28,7 @@ def number(value: float, shown: int = COORDINATE_DIGITS) -> str:
 
 
 def _root(number: int) -> str:
-    """Square root of an integer, with square factors taken out."""
+    """Return the square root of an integer, with square factors taken out."""
     outside = max(k for k in range(1, isqrt(number) + 1) if number % k**2 == 0)
     inside = number // outside**2
     if inside == 1:
@@ -35,17 +38,17 @@ def _root(number: int) -> str:
 
 
 def var(name: str) -> str:
-    """A variable."""
+    """Return a variable."""
     return f"<mi>{name}</mi>"
 
 
 def op(sign: str) -> str:
-    """An operator."""
+    """Return an operator."""
     return f"<mo>{sign}</mo>"
 
 
 def digits(written: int | str) -> str:
-    """A number as text for screen readers."""
+    """Return a number as text for screen readers."""
     return f"<mn>{written}</mn>"
 
 
@@ -55,5 +58,5 @@ def row(formula: str) -> str:
 
 
 def raised(base: str, power: int) -> str:
-    """A base raised to a power of at least 0; empty for the power 0."""
+    """Return a base raised to a power of at least 0; empty for the power 0."""
     return "" if power == 0 else base if power == 1 else f"<msup>{base}{digits(power)}</msup>"

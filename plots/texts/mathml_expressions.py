@@ -1,4 +1,4 @@
-"""Expressions as MathML: fractions for negative powers, √ for square roots."""
+"""Write expressions as MathML, with fractions for negative powers and √ for square roots."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from plots.texts.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, 
 
 
 def signed_parts(expression: Expression) -> list[str]:
-    """The terms of a sum, each preceded by its sign."""
+    """Return the terms of a sum, each preceded by its sign."""
     whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
     parts = [_signed(c, part) for part, c in whole.terms]
     if whole.constant or not parts:
@@ -27,7 +27,7 @@ def _signed(coefficient: float, part: Expression) -> str:
 
 
 def _place(base: Expression) -> int:
-    """Sort key of a factor: coordinates come first, functions last."""
+    """Return the sort key of a factor. Coordinates come first, functions last."""
     return 0 if isinstance(base, CoordinateNode) else 2 if isinstance(base, Function) else 1
 
 

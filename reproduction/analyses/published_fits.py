@@ -1,4 +1,4 @@
-"""Curves fitted by Zotos (2014) to the share of escapes against energy."""
+"""The curves that Zotos (2014) fitted to the share of escapes against energy."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from engine.foundations.wording import format_number
 
 @dataclass(frozen=True)
 class HyperbolicTangent:
-    """½[1 + tanh(a h − b)], a share that rises from 0 to 1 around h = b/a; a and b are dimensionless."""
+    """The share ½[1 + tanh(a h − b)], which rises from 0 to 1 around h = b/a. a and b are dimensionless."""
 
     a: float
     b: float
 
     def __call__(self, h: Any) -> Any:
-        """Share at energies h, an array of any shape."""
+        """Return the share at energies h, an array of any shape."""
         return 0.5 * (1.0 + np.tanh(self.a * np.asarray(h, dtype=float) - self.b))
 
     @property
@@ -36,12 +36,12 @@ class HyperbolicTangent:
 
 @dataclass(frozen=True)
 class Polynomial:
-    """c0 + c1 h + c2 h² + …, a share only within the range of the data; coefficients, lowest power first, are dimensionless."""
+    """The share c0 + c1 h + c2 h² + …, valid in the range of the data. Coefficients (lowest power first) are dimensionless."""
 
     coefficients: tuple[float, ...]
 
     def __call__(self, h: Any) -> Any:
-        """Share at energies h, an array of any shape."""
+        """Return the share at energies h, an array of any shape."""
         return np.polynomial.polynomial.polyval(np.asarray(h, dtype=float), self.coefficients)
 
     @property
@@ -77,7 +77,7 @@ class PaperFits:
     direct
         Fit of Nde/N0, the share of direct escapes.
     lowest_energy, highest_energy
-        Energy range of the fits, which begins at the escape energy; dimensionless.
+        Energy range of the fits, which begins at the escape energy. Dimensionless.
     """
 
     escaped: HyperbolicTangent
@@ -99,5 +99,5 @@ _SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def _format_term(value: float) -> str:
-    """A number after its sign as an operator, such as "+ 2.5"."""
+    """Write a number as an operator and an operand, such as "+ 2.5"."""
     return f"{'−' if value < 0.0 else '+'} {format_number(abs(value))}"

@@ -1,4 +1,4 @@
-"""Fits of the forms of Zotos (2014) to shares of escapes against energy, with intervals, and deviations of curves from shares."""
+"""Fit the forms of Zotos (2014) to shares of escapes against energy, with intervals, and measure deviations from shares."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from reproduction.analyses.published_fits import HyperbolicTangent, Polynomial, 
 _CONFIDENCE = 0.95
 # Shares are limited to this distance from 0 and 1 for the initial guess, where the inverse of the curve diverges.
 _SATURATED = 0.01
-# Fewest shares strictly between 0 and 1 that determine the slope of the curve.
+# Smallest number of shares strictly between 0 and 1 that determine the slope of the curve.
 _MIN_UNSATURATED = 3
 # Tolerance of the least-squares solver, at the level of rounding.
 _TOLERANCE = 1e-14
-# An energy with a leverage above this determines a parameter alone and has no residual.
+# An energy with a larger leverage determines a parameter alone and has no residual.
 _MAX_LEVERAGE = 1.0 - 1e-9
 
 
@@ -41,7 +41,7 @@ class Deviation:
     rms: float
 
     def describe(self) -> str:
-        """The deviation as part of a sentence."""
+        """Return the deviation as part of a sentence."""
         if np.isnan(self.largest):
             return "at no defined distance from the data"
         side = "above" if self.largest >= 0.0 else "below"
@@ -58,9 +58,9 @@ class ShareFit:
     Attributes
     ----------
     curve
-        The fitted curve; its parameters are NaN if the data do not determine them.
+        The fitted curve, with NaN for parameters that the data do not determine.
     intervals
-        Lower and upper end of the 95 % interval of each parameter, by name; infinite if a single energy determines it.
+        Lower and upper end of the 95 % interval of each parameter, by name; infinite if a single energy determines the parameter.
     deviation
         Deviation of the curve from the data.
     """
@@ -78,14 +78,14 @@ class ShareFit:
 def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
     """Fit Ne/N0 = ½[1 + tanh(a h − b)], the form of Zotos (2014), by least squares with equal weights.
 
-    The intervals are not binomial: counts of starts on a grid scatter less than random draws, and the deviation of the data from
-    the curve is systematic, since the form is only a convention and islands appear and vanish with h. Larger maps would not
-    reduce it. An interval states how much a parameter would change for other energies drawn at random from the same range with
-    the same density: the sandwich covariance of White (1980, Econometrica 48, 817), with residuals divided by one minus their
-    leverage (HC3; MacKinnon & White 1985, J. Econometrics 29, 305), and Student's t. In trials the intervals held the true
-    parameters in 92 % or more of the cases where the form was true, and those of the best curve through all energies in 80 to
-    94 % where it was not and 25 energies were random. They always held for evenly spaced energies, which scatter much less. For
-    a different density of energies the best curve differs and can lie outside the interval.
+    The intervals are not binomial. Counts of starts on a grid scatter less than random draws, and the data deviate from the curve
+    systematically, because the form is only a convention and islands appear and vanish with h. Larger maps would not reduce this
+    deviation. An interval states how much a parameter would change for other energies, drawn at random from the same range with
+    the same density. It uses the sandwich covariance of White (1980, Econometrica 48, 817), with residuals divided by one minus
+    their leverage (HC3; MacKinnon & White 1985, J. Econometrics 29, 305), and Student's t. In trials in which the form was true,
+    at least 92 % of the intervals contained the true parameters. In trials with another form and 25 random energies, 80 to 94 %
+    contained the parameters of the best curve through all energies, and with evenly spaced energies, which scatter much less,
+    all did. For another density of energies the best curve differs, and can lie outside the interval.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
 def fit_direct_shares(h: np.ndarray, shares: np.ndarray, degree: int) -> ShareFit:
     """Fit Nde/N0 = c0 + c1 h + … by least squares, as Zotos (2014) does with degree 3 (I, II) and 2 (III).
 
-    Weights and intervals are those of `fit_escape_shares`; `degree` + 3 or more energies are needed. Outside the data the
+    Weights and intervals are those of `fit_escape_shares`. At least `degree` + 3 energies are needed. Outside the data the
     polynomial can leave the range 0 to 1.
     """
     coefficients, half_widths = _fit(lambda polynomial: polynomial, shares, degree, h, shares)
@@ -126,9 +126,9 @@ def measure_deviation(curve: Callable[[Any], Any], h: np.ndarray, shares: np.nda
 def _fit(
     curve: Callable[[np.ndarray], np.ndarray], guess: np.ndarray, degree: int, h: np.ndarray, shares: np.ndarray
 ) -> tuple[list[float], np.ndarray]:
-    """Fit `curve` of a polynomial in h to shares; return coefficients, lowest power first, and half widths of their intervals.
+    """Fit `curve` of a polynomial in h to shares; return the coefficients, lowest power first, and their intervals' half widths.
 
-    The fit begins with the polynomial closest to `guess` (m,).
+    The fit begins with the polynomial closest to `guess`, of shape (m,).
     """
     powers = np.vander(h, degree + 1, increasing=True)
     found = optimize.least_squares(
@@ -139,7 +139,7 @@ def _fit(
 
 
 def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray) -> np.ndarray:
-    """Return (p,) half widths of the intervals of the parameters with Jacobian J (m, p).
+    """Return the half widths of the intervals of p parameters, given the Jacobian J of shape (m, p).
 
     Their covariance is the sandwich (JᵀJ)⁻¹ Jᵀ diag(r² / (1 − leverage)²) J (JᵀJ)⁻¹.
     """

@@ -1,7 +1,7 @@
-"""Super-sticky orbits: chaotic orbits that are still bounded at t_max and escape long after (Zotos 2014, section 4.3).
+"""Search for super-sticky orbits: chaotic orbits that are bounded until t_max and escape long after (Zotos 2014, section 4.3).
 
-They stay near the outermost invariant tori, move through chains of islands and cantori, and escape late or not within any
-practical integration time.
+Super-sticky orbits stay near the outermost invariant tori, move through chains of islands and cantori, and escape late or not
+within any practical integration time.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from engine.results import RegularityMap
 class SuperStickySearch:
     """The chaotic bounded starts of a map, integrated beyond its t_max.
 
-    The starts are ordered row by row. If the map is mirror symmetric, both starts of a mirror pair are listed, but only one is
-    integrated: the other escapes at the same time through the opposite exit.
+    The starts are ordered row by row. Of two mirror images in a symmetric map both are listed, but only one is integrated: the
+    other escapes at the same time through the opposite exit.
 
     Attributes
     ----------
     spec
         The map's request.
     bounded
-        Number of starts that are bounded until the map's t_max, regular ones included.
+        Number of regular and chaotic starts that are bounded until the map's t_max.
     x, ordinate
         (n,) coordinates of the starts on the plane.
     states
         (n, 4) x, y, px, py of the starts.
     fate, escape_time, crossings
-        (n,) as in `engine.results.Outcomes`, counted from the start; `Fate.BOUNDED` for orbits that do not escape by `t_max`.
+        (n,) as in `engine.results.Outcomes`, since the start; `Fate.BOUNDED` for orbits that do not escape by `t_max`.
     images
         Number of starts per integrated orbit: 2 for a mirror symmetric map, else 1.
     t_max
@@ -59,7 +59,7 @@ class SuperStickySearch:
 
     @property
     def escapers(self) -> np.ndarray:
-        """(m,) array indices of the orbits that escape, in order of escape time."""
+        """Array indices of the escaping orbits, of shape (m,), by escape time."""
         escaped = np.flatnonzero(self.fate >= 1)
         in_order: np.ndarray = escaped[np.argsort(self.escape_time[escaped], kind="stable")]
         return in_order
@@ -88,7 +88,7 @@ class SuperStickySearch:
 def find_super_sticky_orbits(
     escape_map: EscapeMap, regularity: RegularityMap, t_max: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> SuperStickySearch:
-    """Integrate the chaotic bounded orbits of a map until they escape or a much longer t_max.
+    """Integrate the chaotic bounded orbits of a map until they escape, or until a much longer t_max.
 
     Parameters
     ----------
@@ -103,8 +103,8 @@ def find_super_sticky_orbits(
 
     Returns
     -------
-    `SuperStickySearch`, bit-identical for every executor. After such long times rounding errors have grown to order 1: rounding
-    determines which orbit escapes when, but not how many escape.
+    `SuperStickySearch`, identical to the bit for every executor. After such long times rounding errors have grown to order 1, so
+    that rounding determines which orbit escapes when, but not how many escape.
 
     Raises
     ------

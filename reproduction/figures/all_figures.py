@@ -1,4 +1,4 @@
-"""Figures of the paper by name, with captions and drawing functions."""
+"""List the figures of the paper by name, with captions and drawing functions."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class FigureEntry:
     caption
         Caption.
     draw
-        Draws the figure with maps of a cache; may take minutes.
+        Draws the figure with maps of a cache, which may take minutes.
     """
 
     name: str
@@ -39,7 +39,7 @@ class FigureEntry:
     draw: Callable[[MapCache], Figure]
 
     def files(self, cache: MapCache) -> dict[str, bytes]:
-        """Draw the figure; return the content of its files by file name, with caption and quality in their metadata."""
+        """Draw the figure; return the content of its files by file name, with caption and quality in the metadata."""
         figure, quality = self.draw(cache), cache.quality
         keywords = f"{quality.name} quality, {quality.resolution} x {quality.resolution} starts, t_max {quality.t_max:g}"
         facts = {"Title": self.name, "Description": self.caption, "Comment": keywords}

@@ -1,4 +1,4 @@
-"""Maps of a case at nine energies side by side, and its (x, h) plane."""
+"""Draw maps of a case at nine energies side by side, and the (x, h) plane of the case."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ def draw_map_panel(
 ) -> None:
     """Draw a map with its limiting curve and exits.
 
-    Starts outside are white like forbidden ones, so that panels with different windows look alike. In the picture of regular and
-    chaotic orbits, escaping starts are white as well.
+    Starts outside are white like forbidden starts, so that panels with different windows look alike. In the picture of regular
+    and chaotic orbits, escaping starts are also white.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def draw_map_panel(
     shown
         Window of the panel.
     times
-        Upper end of the scale of escape times; None for that of the map.
+        Upper end of the scale of escape times; None for the map's own.
     analyses
         Regularity of bounded orbits, if the picture shows it.
     equal
@@ -104,7 +104,7 @@ def draw_map_panel(
 
 
 def _common_window(frames: Sequence[EscapeMap]) -> Window:
-    """Smallest window that contains those of several maps."""
+    """Return the smallest window that contains the windows of several maps."""
     edges = np.array(
         [[w.x_low, w.x_high, w.ordinate_low, w.ordinate_high] for w in (frame.spec.find_window() for frame in frames)]
     )

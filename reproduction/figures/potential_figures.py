@@ -1,4 +1,4 @@
-"""The potential: equipotentials, exits with Lyapunov orbits, and an orbit through each exit."""
+"""Draw a potential: equipotentials, exits with Lyapunov orbits, and an orbit through each exit."""
 
 from __future__ import annotations
 

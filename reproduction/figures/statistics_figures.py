@@ -1,4 +1,4 @@
-"""Statistics of the paper: shares against energy, escapes by number of crossings, and starts that remain after a time."""
+"""Draw the statistics of the paper: shares against energy, escapes by number of crossings, and remaining starts against time."""
 
 from __future__ import annotations
 
@@ -23,18 +23,20 @@ from reproduction.notation import plane_label
 from reproduction.paper_ranges import nine_energies, three_energies
 
 MOST_CROSSINGS = 40
-"""Upper end of the axis of crossings; few orbits escape later."""
+"""Upper end of the axis of crossings. Few orbits escape after more crossings."""
 
 FEWEST_REMAINING = 50
-"""p_n is drawn if at least this many starts remain; with fewer it depends on the grid."""
+"""Smallest number of remaining starts for which p_n is drawn. With fewer, p_n depends on the grid."""
 
-# Part of the colour scale of escape times that contrasts with white and black.
-_LIGHTEST, _DARKEST = 50, 255
+# First index of the part of the colour scale of escape times that contrasts with white.
+_LIGHTEST = 50
+# Last index of this part.
+_DARKEST = 255
 _SAMPLES = 400
 
 
 def draw_statistics(case: str, cache: MapCache) -> Figure:
-    """Draw Ne/N0 and Nde/N0 against h with the paper's fits and new ones, and dN_n/N0 and p_n against n."""
+    """Draw Ne/N0 and Nde/N0 against h, with the paper's fits and new fits, and dN_n/N0 and p_n against n."""
     figure = new_figure(SCREEN, 21.8, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
     table = cache.curves(case, Plane.X_PX)
@@ -63,7 +65,7 @@ def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: ShareCurve,
 
 
 def _draw_crossings(shares: Axes, chances: Axes, statistics: Mapping[float, EscapeStatistics]) -> None:
-    """Draw both panels against n, one line per energy; lower energies are darker."""
+    """Draw both panels against n, with one line per energy, darker for lower energies."""
     places = np.linspace(_DARKEST, _LIGHTEST, len(statistics)).astype(int)
     for (energy, counted), place in zip(statistics.items(), places, strict=True):
         style: dict[str, Any] = {"color": PAPER.escape_time[place], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
@@ -97,7 +99,7 @@ def draw_percentages(case: str, cache: MapCache) -> Figure:
 
 
 def draw_survival(case: str, cache: MapCache) -> Figure:
-    """Draw one panel per energy, on (x, px)."""
+    """Draw the share of remaining starts on (x, px) against time, in one panel per energy."""
     energies = three_energies(case)
     figure = new_figure(
         replace(SCREEN, width=32.0), 11.7, f"Case {case}, {plane_label(Plane.X_PX)} plane: share of the starts not yet escaped"

@@ -1,4 +1,4 @@
-"""Case III near its escape energy: regular and chaotic bounded orbits, and a super-sticky orbit."""
+"""Draw case III near its escape energy: regular and chaotic bounded orbits, and a super-sticky orbit."""
 
 from __future__ import annotations
 
@@ -30,15 +30,16 @@ from reproduction.notation import plane_label
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 
 LONGEST_DRAWN = 4e6
-"""Latest escape time of a drawn orbit; integration takes a second per 1e5 time units."""
+"""Latest escape time of a drawn orbit. Integration takes a second per 1e5 time units."""
 
-# Number of time intervals in each panel for which the minimum and the maximum of R² are drawn, and of samples in each. R²
-# oscillates with a period of about π, so the samples of an interval cover all its phases.
-_INTERVALS, _SAMPLES = 1000, 1000
-# Last part of the time before the escape that the second panel shows, as a share.
+# Number of time intervals in each panel for which minimum and maximum of R² are drawn.
+_INTERVALS = 1000
+# Number of samples in each interval. R² oscillates with a period of about π, so the samples cover all phases.
+_SAMPLES = 1000
+# Share of the time before the escape that the second panel shows.
 _LAST = 0.01
 _TIME_UNIT = 1e5
-# Upper end of the axis of R² in units of its value at the exits; it leaves room for the legend.
+# Upper end of the axis of R², in units of R² at the exits, with room for the legend.
 _ABOVE = 1.4
 
 
@@ -55,7 +56,7 @@ def draw_characters(cache: MapCache) -> Figure:
 
 
 def draw_super_sticky(cache: MapCache) -> Figure:
-    """Draw R²(t) of an orbit that escapes long after the paper's 1e5 time units: the whole orbit, and its end."""
+    """Draw R²(t) of an orbit that escapes long after the paper's 1e5 time units: over the whole orbit, and at its end."""
     search = cache.super_sticky()
     place = find_shown(search)
     figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, place)}")
@@ -75,7 +76,7 @@ def draw_super_sticky(cache: MapCache) -> Figure:
 
 
 def find_shown(search: SuperStickySearch) -> int | None:
-    """Index of the orbit to draw: the last that escapes by `LONGEST_DRAWN`, else the first that escapes; None if none escapes."""
+    """Return the index of the last orbit that escapes by `LONGEST_DRAWN`, else of the first escaping orbit; None without any."""
     escapers = search.escapers
     if not escapers.size:
         return None
@@ -84,7 +85,7 @@ def find_shown(search: SuperStickySearch) -> int | None:
 
 
 def _sample_r2(search: SuperStickySearch, place: int, begin: float, cache: MapCache) -> np.ndarray:
-    """(intervals, samples) R² of an orbit from a time until its escape."""
+    """Return R² of an orbit from a time until the escape, of shape (intervals, samples)."""
     times = np.linspace(begin, search.escape_time[place], _INTERVALS * _SAMPLES)
     orbits = sample_orbits(search.spec.potential, search.states[place : place + 1], times, execution=cache.execution)
     r2: np.ndarray = (orbits.x**2 + orbits.y**2).reshape(_INTERVALS, _SAMPLES)
@@ -110,14 +111,14 @@ def _draw_departure(axes: Axes, r2: np.ndarray, end: float) -> None:
 
 
 def _draw_band(axes: Axes, r2: np.ndarray, begin: float, end: float) -> None:
-    """Minimum and maximum of R² in each interval."""
+    """Draw the minimum and maximum of R² in each interval."""
     ends = np.linspace(begin, end, len(r2) + 1)
     least, greatest = (np.append(side, side[-1]) for side in (r2.min(axis=1), r2.max(axis=1)))
     axes.fill_between(ends, least, greatest, step="post", color=MEASURED, linewidth=0.2)
 
 
 def _draw_exits(axes: Axes, search: SuperStickySearch) -> None:
-    """Range of R² on the Lyapunov orbits."""
+    """Draw the range of R² on the Lyapunov orbits."""
     assert search.spec.common_energy is not None
     orbits = find_lyapunov_orbits(search.spec.potential, search.spec.common_energy)
     distances = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in orbits])

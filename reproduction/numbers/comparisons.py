@@ -1,4 +1,4 @@
-"""Comparison of the numbers stated in the paper with computed ones.
+"""Compare the numbers stated in the paper with computed numbers.
 
 `compare_all(cache, search)` returns a `Comparison` for each of `STATED_NUMBERS`; `search` is `cache.super_sticky()`.
 """
@@ -19,25 +19,25 @@ from reproduction.numbers.stated_numbers import STATED_NUMBERS, Quantity, Relati
 from reproduction.numbers.unknown_windows import FittedWindow, fit_window
 
 POINTS = 2.0
-"""Shares agree if they differ by at most this, in percentage points."""
+"""Largest difference of shares that agree, in percentage points."""
 
 PERCENT = 2.0
-"""Other numbers agree if they differ by at most this, in percent."""
+"""Largest difference of other numbers that agree, in percent."""
 
 _FITTED = (Quantity.ESCAPED_BY, Quantity.BOUNDED)
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """One number of the paper and the computed one.
+    """A number of the paper and its computed values.
 
     Attributes
     ----------
     stated
         The number in the paper.
     computed
-        Computed values in the same unit, one per energy. Shares are relative to the starts inside. For Lyapunov orbits, the
-        smallest and the largest R². NaN if there is no value.
+        Computed values in the unit of the paper, one per energy; of Lyapunov orbits, the smallest and the largest R². Shares are
+        relative to the starts inside. NaN if there is no value.
     windows
         For each energy the window that best explains the stated shares; empty if the number needs no window.
     counted
@@ -54,12 +54,12 @@ class Comparison:
 
     @property
     def difference(self) -> float:
-        """Largest difference computed − stated (for `RISES_TO`, the last one); 0 if a stated bound holds, NaN without a value."""
+        """Largest difference computed − stated (the last for `RISES_TO`); 0 if a stated bound holds, NaN without a value."""
         return _furthest(self.stated, self.computed)
 
     @property
     def counted_difference(self) -> float:
-        """Largest difference with starts outside counted; NaN if the number needs no window."""
+        """Largest difference when starts outside count; NaN if the number needs no window."""
         return _furthest(self.stated, self.counted)
 
     @property
@@ -69,14 +69,14 @@ class Comparison:
 
     @property
     def agrees_when_counted(self) -> bool:
-        """Whether the difference is within these limits with starts outside counted."""
+        """Whether the difference is within these limits when starts outside count."""
         return _small(self.stated, self.counted_difference)
 
 
 def compare_all(
     cache: MapCache, search: SuperStickySearch, numbers: tuple[StatedNumber, ...] = STATED_NUMBERS
 ) -> tuple[Comparison, ...]:
-    """Compute all numbers that the paper states.
+    """Compare all numbers that the paper states with computed numbers.
 
     Parameters
     ----------
@@ -97,21 +97,21 @@ def compare_all(
 
 
 def _compare(number: StatedNumber, measures: Measures, windows: _Windows) -> Comparison:
-    """Compare one number; the reason for a difference is computed only if there is one."""
+    """Compare one number. The reason is computed only if there is a difference."""
     fitted = tuple(windows.fit(number, energy) for energy in number.energies) if number.needs_window else ()
     row = Comparison(number, measures.values(number), fitted, tuple(_count(number, window) for window in fitted))
     return row if row.agrees else replace(row, reason=explain(measures, number))
 
 
 def _count(number: StatedNumber, window: FittedWindow) -> float:
-    """Return a share with starts outside counted."""
+    """Return a share in a window, with starts outside counted."""
     if number.quantity is Quantity.IN_BASINS:
         return share_in_basins(window.counted, count_outside=True)
     return window.share(counted_codes(number))
 
 
 class _Windows:
-    """Return the windows that explain the shares stated for each map."""
+    """Fits, for each map, the window that explains the stated shares."""
 
     def __init__(self, cache: MapCache, numbers: tuple[StatedNumber, ...]) -> None:
         self.cache = cache
@@ -119,7 +119,7 @@ class _Windows:
         self.windows: dict[tuple[str, Plane, float], FittedWindow] = {}
 
     def fit(self, number: StatedNumber, energy: float) -> FittedWindow:
-        """Return the window that explains all shares of exits and of bounded starts stated for one map."""
+        """Return the window that explains all shares of exits and bounded starts stated for one map."""
         assert number.plane is not None
         key = (number.case, number.plane, energy)
         if key not in self.windows:

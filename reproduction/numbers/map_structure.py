@@ -1,4 +1,4 @@
-"""Structure of the basins on a map: starts inside basins, starts next to all basins, escape times near islands and exits."""
+"""Measure the structure of basins: starts inside basins, starts next to all basins, escape times near islands and exits."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ import numpy as np
 from engine import EscapeMap, Fate, compute_wada_test
 
 BOUNDARY_PIXELS = 2
-"""A start on a boundary counts as next to all basins if no boundary of a basin is farther away than this, in pixels."""
+"""Largest distance, in pixels, from the boundary of each basin to a start that counts as next to all basins."""
 
 # A start and its eight neighbours.
 _NEIGHBOURHOOD = (3, 3)
 
 
 def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
-    """Percentage of the starts that escape through the same exit as their eight neighbours.
+    """Return the percentage of the starts that escape through the same exit as their eight neighbours.
 
     Parameters
     ----------
     frame
         A complete map.
     count_outside
-        Whether starts outside count as escaped through the exit beyond which they lie. Otherwise they count neither as starts nor
-        as neighbours.
+        Whether starts outside count as escaped through the exit beyond which they lie. Otherwise they are neither starts nor
+        neighbours.
     """
     from scipy import ndimage
 
@@ -34,7 +34,7 @@ def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
 
 
 def share_next_to_all_basins(frame: EscapeMap) -> float:
-    """Percentage of the starts on a basin boundary within `BOUNDARY_PIXELS` of the boundary of each basin; 100 for Wada basins.
+    """Return the percentage of starts on a basin boundary within `BOUNDARY_PIXELS` of all boundaries; 100 for Wada basins.
 
     The value is 0 if the basins do not touch, and NaN for fewer than three basins.
     """
@@ -45,7 +45,7 @@ def share_next_to_all_basins(frame: EscapeMap) -> float:
 
 
 def orders_of_escape_times(frame: EscapeMap) -> float:
-    """log10 of the ratio of median escape times: of neighbours of bounded starts to neighbours of starts outside.
+    """Return log10 of the ratio of median escape times: of neighbours of bounded starts to neighbours of starts outside.
 
     The value is NaN if there are no such neighbours.
 
@@ -59,7 +59,7 @@ def orders_of_escape_times(frame: EscapeMap) -> float:
 
 
 def _median_time_next_to(frame: EscapeMap, fate: Fate) -> float:
-    """Median escape time of the neighbours of the starts with a fate."""
+    """Return the median escape time of the neighbours of the starts with a fate."""
     from scipy import ndimage
 
     near = ndimage.binary_dilation(frame.fate == fate, np.ones(_NEIGHBOURHOOD))

@@ -1,4 +1,4 @@
-"""Computed values of the quantities for which the paper states numbers: `Measures(cache, search).values(number)`."""
+"""Compute the quantities for which the paper states numbers, with `Measures(cache, search).values(number)`."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 from reproduction.paper_ranges import STICKY_CASE, plane_energies
 
 ACCURATE = 1e-11
-"""Relative energy error of most orbits of the paper."""
+"""Largest relative energy error of most orbits of the paper."""
 
 
 class Measures:
-    """Maps and searches from which the numbers are computed.
+    """Computes numbers from maps and searches.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Measures:
         self.cache, self.search = cache, search
 
     def values(self, number: StatedNumber) -> tuple[float, ...]:
-        """Return the computed values in the unit of the stated one, as in `Comparison.computed`."""
+        """Return the computed values in the unit of the stated value, as in `Comparison.computed`."""
         return _MEASURES[number.quantity](self, number)
 
     def maps(self, number: StatedNumber) -> list[EscapeMap]:
@@ -70,7 +70,7 @@ Measure = Callable[[Measures, StatedNumber], tuple[float, ...]]
 
 
 def _of_each_map(measure: Callable[[EscapeMap], float]) -> Measure:
-    """Return the values of a measure of one map."""
+    """Return the function that measures each map of a number."""
     return lambda measures, number: tuple(measure(frame) for frame in measures.maps(number))
 
 

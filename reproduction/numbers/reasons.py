@@ -1,4 +1,4 @@
-"""Reasons for differences from the paper, with computed values."""
+"""Explain differences from the paper with computed values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 
 
 def explain(measures: Measures, number: StatedNumber) -> str:
-    """Return the remark of a number with its fields filled in; each field is a name of `FACTS`."""
+    """Return the remark of a number with its fields, which are names of `FACTS`, filled in."""
     names = [name for _, name, _, _ in Formatter().parse(number.remark) if name]
     return number.remark.format(**{name: FACTS[name](measures, number) for name in names})
 

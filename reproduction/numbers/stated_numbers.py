@@ -1,4 +1,4 @@
-"""Numbers on escapes stated in Zotos (2014), Nonlinear Dynamics, doi 10.1007/s11071-014-1524-9."""
+"""The numbers on escapes that Zotos (2014) states, Nonlinear Dynamics, doi 10.1007/s11071-014-1524-9."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reproduction.paper_ranges import nine_energies
 
 
 class Quantity(Enum):
-    """A measured quantity; the value is its name in the report."""
+    """A measured quantity. The value is its name in the report."""
 
     ESCAPED_BY = "escape through"
     BOUNDED = "bounded"
@@ -33,7 +33,7 @@ class Quantity(Enum):
 
 
 class Relation(Enum):
-    """The relation to the stated value; the value is the word in the paper."""
+    """The relation of a quantity to the stated value. The value is the word in the paper."""
 
     EXACTLY = ""
     ABOUT = "about"
@@ -62,9 +62,9 @@ class StatedNumber:
     case
         Key of `engine.CASES`.
     plane
-        Plane of the starts; None if the number depends on no plane.
+        Plane of the starts; None if the number does not depend on a plane.
     energies
-        Energies of the computed values; several for a stated range. On (x, h), the lowest and highest h of the plane.
+        Energies of the computed values, several for a stated range. On (x, h), the lowest and highest h of the plane.
     at
         Energy or range, as stated.
     quantity
@@ -76,7 +76,7 @@ class StatedNumber:
     counting
         Starts to which a share is relative.
     remark
-        Reason for a difference, if any; fields are names of `reproduction.numbers.reasons.FACTS`, filled with computed values.
+        Reason for any difference, with fields named in `reproduction.numbers.reasons.FACTS` for computed values.
     derivation
         How the value follows from the text; empty if the text states it.
     """
@@ -144,9 +144,9 @@ _OUTNUMBERED = "more escape than are bounded"
 _TENS = "tens of thousands for most"
 _WADA = "definition of Wada basins"
 
-# The energies around the stated turning point.
+# Energies around the stated turning point.
 _TURN = tuple(round(0.15 + 0.0025 * step, 4) for step in range(17))
-# The energies from the first map to the end of the paper's curves.
+# Energies from the first map to the end of the paper's curves.
 _EXPONENTS = (*nine_energies("I")[::2], 0.4, 0.5)
 # All energies of the maps except the last, at which no orbit is bounded.
 _ISLANDS = nine_energies("III")[:-1]

@@ -1,4 +1,4 @@
-"""Estimate of the windows that the paper does not state.
+"""Estimate the windows that the paper does not state.
 
 Starts outside count as immediate escapes through the exit beyond which they lie, so their number depends on the window.
 `fit_window` finds the square centred on the origin that best explains the stated percentages.
@@ -15,14 +15,14 @@ from engine import EscapeMap, Fate, MapSpec, Window, compute_map
 from reproduction.map_cache import MapCache
 
 LARGEST_HALF_SIDE = 3.0
-"""Largest half side of the windows that are tried, about three times the half side of the interior."""
+"""Largest half side of a tried window, about three times that of the interior."""
 
 STEP = 0.05
 """Step between the half sides of windows."""
 
-# Resolution for shares of areas to a few tenths of a percentage point.
+# Pixels per side that determine shares of areas to a few tenths of a percentage point.
 _SIDE = 400
-# Integration time close to 0: only the positions of starts are needed.
+# Integration time close to 0, because only the positions of starts are needed.
 _INSTANT = 1e-9
 
 
@@ -33,11 +33,11 @@ class FittedWindow:
     Attributes
     ----------
     window
-        The window; a square centred on the origin, or one with another right edge.
+        A square centred on the origin, or such a square with another right edge.
     outside_share
-        Share of the starts in the window that are outside.
+        Share of the starts in the window that lie beyond an exit.
     counted
-        The map of the window; its percentages are computed with `count_outside`.
+        The map of the window, whose percentages are computed with `count_outside`.
     """
 
     window: Window
@@ -50,7 +50,7 @@ class FittedWindow:
         return self.window.ordinate_high
 
     def share(self, codes: tuple[int, ...]) -> float:
-        """Percentage of the starts with one of these fates, with starts outside counted."""
+        """Return the percentage of the starts with one of these fates, with starts outside counted."""
         fractions = self.counted.fractions(count_outside=True)
         return 100.0 * sum(fractions[code] for code in codes)
 
@@ -60,8 +60,8 @@ def fit_window(
 ) -> FittedWindow:
     """Find the square with the smallest maximal difference from the stated percentages.
 
-    If no square is good enough, the right edge is fitted as well: in II the interior, and perhaps the paper's figures, extend
-    furthest to the right. With more free parameters, any percentages could be fitted.
+    If no square is good enough, the right edge is also fitted, because in II the interior, and perhaps the paper's figures,
+    extend furthest to the right. With more free parameters, any percentages could be fitted.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def fit_window(
 
 @dataclass(frozen=True, eq=False)
 class _Outside:
-    """Return the number of starts inside, and the exit and position of each start outside, on a fine grid."""
+    """The number of starts inside, and the exit and position of each start outside, on a fine grid."""
 
     inside: int
     channel: np.ndarray
@@ -108,14 +108,14 @@ class _Outside:
         return cls(int(np.count_nonzero(wide.interior)), channel, wide.x[columns], wide.ordinate[rows])
 
     def count(self, window: Window) -> np.ndarray:
-        """Return (exits + 1,) numbers of starts outside in a window by exit; entry 0 is 0."""
+        """Return the numbers of starts outside in a window by exit, of shape (exits + 1,). Entry 0 is 0."""
         contained = (self.x >= window.x_low) & (self.x <= window.x_high) & (np.abs(self.ordinate) <= window.ordinate_high)
         counts: np.ndarray = np.bincount(self.channel[contained], minlength=int(self.channel.max(initial=0)) + 1)
         return counts
 
 
 def _edges(least: float) -> list[float]:
-    """Multiples of `STEP`, from the smallest that contains the interior."""
+    """Return the multiples of `STEP`, beginning with the smallest that contains the interior."""
     steps = np.arange(np.ceil(least / STEP), round(LARGEST_HALF_SIDE / STEP) + 1)
     edges: list[float] = (STEP * steps).round(6).tolist()
     return edges

@@ -1,4 +1,4 @@
-"""Measures of complete maps for the comparison with the papers: shares, escape times by region, exponents of boundaries."""
+"""Measure complete maps for the comparison with the papers: shares, escape times by region, exponents of boundaries."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 from engine import EscapeMap, Fate, compute_uncertainty_exponent
 
 ISLAND_PIXELS = 2
-"""A start counts as next to an island if a bounded start is at most this far away, in pixels."""
+"""Largest distance, in pixels, from a bounded start to a start that counts as next to an island."""
 
 LATE = 0.01
-"""Share of the escaping orbits that count as the last ones."""
+"""Share of the escaping orbits that count as late."""
 
 # Limit of the integration time of the pairs, in time units of the well.
 _WORK = 1e7
@@ -28,7 +28,7 @@ class EndTimes:
     inside
         For starts whose eight neighbours have the same outcome.
     at_boundary
-        For starts next to a start with another outcome, but not next to a bounded one.
+        For starts next to a start with another outcome, but not next to a bounded start.
     """
 
     inside: float
@@ -36,19 +36,19 @@ class EndTimes:
 
 
 def outcome_share(frame: EscapeMap, *codes: int) -> float:
-    """Percentage of the interior starts with one of these fates."""
+    """Return the percentage of the interior starts with one of these fates."""
     fractions = frame.fractions()
     return 100.0 * sum(fractions[code] for code in codes)
 
 
 def bounded_share_beside(frame: EscapeMap, sign: int) -> float:
-    """Percentage of the interior starts with x of this sign, 1 or −1, whose orbits are bounded."""
+    """Return the percentage of the interior starts with x of this sign, 1 or −1, whose orbits are bounded."""
     beside = frame.interior & (sign * frame.x > 0.0)
     return 100.0 * float(np.mean(frame.fate[beside] == Fate.BOUNDED))
 
 
 def end_times(frame: EscapeMap) -> EndTimes:
-    """Median times to the end inside basins and at their boundaries."""
+    """Return the median times to the end inside basins and at their boundaries."""
     from scipy import ndimage
 
     fate, counts, most = frame.fate, frame.interior, len(frame.spec.outcomes)
@@ -60,7 +60,7 @@ def end_times(frame: EscapeMap) -> EndTimes:
 
 
 def share_next_to_islands(frame: EscapeMap, *, late: bool) -> float:
-    """Percentage of the starts that end, or of the last of them, within `ISLAND_PIXELS` of a bounded start."""
+    """Return the percentage of ending starts, or of late ones, that lie within `ISLAND_PIXELS` of a bounded start."""
     from scipy import ndimage
 
     near = ndimage.distance_transform_edt(frame.fate != Fate.BOUNDED) <= ISLAND_PIXELS
@@ -71,5 +71,5 @@ def share_next_to_islands(frame: EscapeMap, *, late: bool) -> float:
 
 
 def boundary_exponent(frame: EscapeMap) -> float:
-    """Uncertainty exponent of the boundaries, 1 for smooth ones; NaN if too few starts are uncertain."""
+    """Return the uncertainty exponent of the boundaries, 1 if they are smooth; NaN if too few starts are uncertain."""
     return compute_uncertainty_exponent(frame.spec, work=_WORK).exponent

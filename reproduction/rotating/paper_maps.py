@@ -1,6 +1,6 @@
-"""Maps of systems in rotating frames, and of systems with bodies, that four papers study.
+"""Choose maps of systems in rotating frames, and of systems with bodies, that papers study.
 
-The papers' planes, windows and grids could not be looked up; this module chooses its own.
+We could not look up the papers' planes, windows and grids.
 """
 
 from __future__ import annotations
@@ -16,14 +16,18 @@ from engine import POTENTIALS, Coordinate, MapSpec, Plane, Potential, Slice, Win
 BODY_RADII = (1e-5, 1e-4, 1e-3, 1e-2)
 """Radii of both bodies of the Copenhagen problem, in units of their distance."""
 
-# Islands around the Moon are small.
-_SIDE, _SIDE_AT_MOON = 150, 300
-# In units of time of the system; orbits around the Moon end soon.
-_T_MAX, _T_MAX_AT_MOON = 1e3, 1e2
+# Pixels per side.
+_SIDE = 150
+# Pixels per side around the Moon, where islands are small.
+_SIDE_AT_MOON = 300
+# In units of time of the system.
+_T_MAX = 1e3
+# In units of time of the system. Orbits around the Moon end soon.
+_T_MAX_AT_MOON = 1e2
 
 _RETROGRADE = Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, -0.5 * np.pi),))
 
-# Four overlapping discs, at a distance from the hills where V < 0.001, stand for the four directions between the hills.
+# Four overlapping discs, far from the hills where V < 0.001, stand for the four directions between the hills.
 _FOUR_HILLS = (
     "x²y² exp(−r²); centre the right (10, 0) 7.08; centre the top (0, 10) 7.08; centre the left (−10, 0) 7.08; "
     "centre the bottom (0, −10) 7.08; escape 20"
@@ -37,7 +41,7 @@ class PaperMap:
     Attributes
     ----------
     name
-        Name that distinguishes it from the other maps of the paper.
+        Name that distinguishes the map from other maps of the paper.
     spec
         Request of the map.
     """
@@ -47,12 +51,12 @@ class PaperMap:
 
 
 def four_hills() -> Potential:
-    """Four hills at (±1, ±1) of height e⁻². The discs to the right, at the top, to the left and at the bottom stand for exits."""
+    """Return four hills at (±1, ±1) of height e⁻². Discs at the right, top, left and bottom stand for exits."""
     return parse_formula(_FOUR_HILLS, "Four hills")
 
 
 def copenhagen(radius: float) -> Potential:
-    """Return the Copenhagen problem with another radius of its bodies, 1e-6 to 1e6 of their distance; ValueError otherwise."""
+    """Return the Copenhagen problem with another radius of the bodies, 1e-6 to 1e6 of their distance; ValueError otherwise."""
     potential = POTENTIALS["Copenhagen"]
     return potential.with_outcomes([replace(body, radius=radius) for body in potential.centres], potential.escape_radius)
 
@@ -93,4 +97,4 @@ PAPER_MAPS: Mapping[str, tuple[PaperMap, ...]] = MappingProxyType(
 """The maps by system."""
 
 LONG_MAP = replace(PAPER_MAPS["Copenhagen problem"][0].spec, resolution=(220, 220), t_max=1e4)
-"""Return a map for the survival decay: the Copenhagen problem with the smallest bodies, with more starts and a longer time."""
+"""A map for the decay of survivors: the Copenhagen problem with the smallest bodies, more starts and a longer time."""

@@ -1,4 +1,7 @@
-"""Numbers of the maps that are compared with papers, a table for each system. Run: python -m reproduction.rotating.tables"""
+"""Print a table for each system, with numbers of the maps that are compared with papers.
+
+Run: python -m reproduction.rotating.tables
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from reproduction.rotating.map_measures import (
 from reproduction.rotating.paper_maps import PAPER_MAPS
 
 Columns = Mapping[str, tuple[Callable[[EscapeMap], float], str]]
-"""Measures and formats of numbers, by heading."""
+"""Measure and format of each column, by heading."""
 
 
 def _share(*codes: int) -> tuple[Callable[[EscapeMap], float], str]:
@@ -77,7 +80,7 @@ COLUMNS: Mapping[str, Columns] = MappingProxyType(
 
 
 def make_table(system: str) -> str:
-    """Return the Markdown table of a system, a key of `PAPER_MAPS`; this takes up to a few minutes."""
+    """Return the Markdown table of a system, a key of `PAPER_MAPS`. This takes up to a few minutes."""
     columns = COLUMNS[system]
     frames = [(paper_map.name, compute_map(paper_map.spec)) for paper_map in PAPER_MAPS[system]]
     rows = [[name, *(_text(measure(frame), form) for measure, form in columns.values())] for name, frame in frames]

@@ -1,4 +1,4 @@
-"""Sections of the report on fits of shares against energy and on decay laws."""
+"""Write the sections of the report on fits of shares against energy and on decay laws."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ holds."""
 
 
 def write_fits(cache: MapCache) -> str:
-    """Return a table of the fitted parameters with their intervals, and the deviations of both curves from the data."""
+    """Return a table of the fitted parameters with intervals, and the deviations of the published and new curves."""
     rows, sentences = [], []
     for case in CASES:
         table, paper = cache.curves(case, Plane.X_PX), PAPER_FITS[case]

@@ -1,4 +1,4 @@
-"""Sections of the report on chaotic bounded orbits, and on those that escape late."""
+"""Write the sections of the report on chaotic bounded orbits and their late escapes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
 from reproduction.paper_ranges import STICKY_CASE, nine_energies
 
-# Number of the latest escapes in the list.
+# Number of late escapes in the list.
 _LISTED = 20
 
 _CHAOTIC = """\
@@ -25,7 +25,7 @@ of escapes does not."""
 
 
 def write_late_escapes(cache: MapCache) -> str:
-    """Return a table of the bounded orbits of I and II: how many are chaotic, and how many of the chaotic ones leave later."""
+    """Return a table of the bounded orbits of I and II: how many are chaotic, and how many of these leave later."""
     cases = [case for case in CASES if case != STICKY_CASE]
     searches = [(case, h, cache.late_escapes(case, h)) for case in cases for h in nine_energies(case)]
     rows = [(case, f"{h:g}", *_describe_late(search)) for case, h, search in searches if search.bounded]
@@ -38,7 +38,7 @@ def write_late_escapes(cache: MapCache) -> str:
 
 
 def _describe_late(search: SuperStickySearch) -> tuple[str, ...]:
-    """Return the cells of one energy."""
+    """Return the cells of the row of one energy."""
     escapers = search.escapers
     last = f"{search.escape_time[escapers[-1]]:.4g}" if escapers.size else "none"
     share = f"{100.0 * search.chaotic_share:.1f} %"
@@ -46,7 +46,7 @@ def _describe_late(search: SuperStickySearch) -> tuple[str, ...]:
 
 
 def write_super_sticky(search: SuperStickySearch) -> str:
-    """Return a summary of the search for super-sticky orbits, and a table of the latest escapes."""
+    """Return a summary of the search for super-sticky orbits, and a table of the last escapes."""
     places = search.escapers[-_LISTED:]
     rows = [
         (

@@ -1,4 +1,4 @@
-"""Report of the numbers of the paper and the computed ones, as Markdown and as CSV."""
+"""Report the numbers of the paper and the computed numbers, as Markdown and as CSV."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _COLUMNS = (
     "case", "plane", "h", "what", "relation", "stated", "unit", "computed", "difference", "needs_window", "agrees",
     "half_side", "right_edge", "outside_share", "counted", "counted_difference", "agrees_when_counted", "derivation", "reason",
 )  # fmt: skip
-# If there are at least this many computed values, they are listed with their energies instead of their range.
+# Smallest number of computed values that are listed with their energies instead of their range.
 _LISTED = 4
 
 
@@ -58,7 +58,7 @@ def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Compari
 
 
 def describe_verdict(rows: Sequence[Comparison]) -> str:
-    """Summarize how many of the stated numbers are reproduced, and list the others."""
+    """Summarize how many of the stated numbers are reproduced, and list the rest."""
     shares = [row for row in rows if row.stated.is_share]
     free, bound = ([row for row in shares if row.stated.needs_window is needs] for needs in (False, True))
     others = [row for row in rows if not row.stated.is_share]
@@ -82,7 +82,7 @@ def describe_verdict(rows: Sequence[Comparison]) -> str:
 
 
 def write_table(rows: Sequence[Comparison]) -> str:
-    """Write the rows as CSV, one line per energy; shares in percent, missing values empty."""
+    """Write the rows as CSV, with one line per energy, shares in percent, and empty cells for missing values."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(_COLUMNS)
@@ -144,7 +144,7 @@ def _page_row(row: Comparison) -> tuple[str, ...]:
 
 
 def _describe_windows(row: Comparison) -> str:
-    """Range of half sides, and of right edges if they differ."""
+    """Describe the range of half sides, and of right edges that differ."""
     windows = [fitted.window for fitted in row.windows]
     square = f"±{_range([window.ordinate_high for window in windows], '{:.2f}')}"
     if all(window.x_high == window.ordinate_high for window in windows):

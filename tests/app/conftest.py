@@ -1,4 +1,4 @@
-"""The state of a server process, for the tests of what uses it."""
+"""Provide the state of a server process."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ from app.runtime.settings import Settings
 
 @pytest.fixture
 def start_state() -> Iterator[Callable[..., ProcessState]]:
-    """Starts the state of this process with some settings; after the test, one without settings."""
+    """Starts the state of this process with some settings, and after the test a state without settings."""
     yield lambda **settings: start_process_state(Settings(**settings))
     start_process_state(Settings())

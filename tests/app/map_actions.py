@@ -18,5 +18,5 @@ _NOTHING = MapActions(
 
 
 def make_maps(**actions: Any) -> MapsView:
-    """Maps on which nothing happens but these actions."""
+    """Return the view of maps that calls these actions."""
     return MapsView(replace(_NOTHING, **actions))

@@ -1,4 +1,4 @@
-"""Program ``python -m app``: what it passes to Panel."""
+"""The program ``python -m app`` passes options to Panel."""
 
 from __future__ import annotations
 

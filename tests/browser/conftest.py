@@ -48,7 +48,7 @@ def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]
         patch.setenv("ESCAPE_EXPLORER_FRAME_ANCESTORS", host)
         address = stack.enter_context(served_app(log))
         yield address
-        # Read before the server stops: Bokeh logs errors of pages that are still connecting then.
+        # The log is read before the server stops, because Bokeh then logs errors of pages that are still connecting.
         text = log.read_text()
     assert "Traceback" not in text, text
 
@@ -90,7 +90,7 @@ def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., Expl
 
 @pytest.fixture(scope="module")
 def open_for_all(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
-    """The same for a page that several tests of a file share, as none of them changes what it shows."""
+    """The same for a page that the tests of a file share, because none changes what the page shows."""
     with _opening(chromium, server) as open_page:
         yield open_page
 
@@ -130,14 +130,14 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
 
 @pytest.fixture(scope="session")
 def opened(chromium: Browser, server: str) -> Iterator[ExplorerPage]:
-    """The page behind `explorer`, with a map that takes little time; a file may open another one."""
+    """The page behind `explorer`, with a map that takes little time. A file may open another page."""
     with _opening(chromium, server) as open_page:
         yield open_page(link=QUICK)
 
 
 @pytest.fixture
 def explorer(opened: ExplorerPage, request: pytest.FixtureRequest) -> Iterator[ExplorerPage]:
-    """A page that a test may change: many tests share it, as it returns to its first view after each."""
+    """A page that a test may change. Many tests share it, and it returns to its first view after each."""
     failed = request.session.testsfailed
     yield opened
     if request.session.testsfailed > failed:

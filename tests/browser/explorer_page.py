@@ -1,4 +1,4 @@
-"""The page in a browser: actions of a user, and what the page shows."""
+"""Act on the page in a browser, and read what it shows."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _RAIL_AND_THUMB = """rail => {
 
 
 class ExplorerPage:
-    """The page of one session, the address that it opens, and the list in which its problems are noted."""
+    """The page of one session, with its address and a list of problems."""
 
     def __init__(self, page: Page, home: str = "", problems: list[str] | None = None) -> None:
         self.page, self._home = page, home
@@ -66,7 +66,7 @@ class ExplorerPage:
         self.wait_until_complete()
 
     def take_problems(self) -> list[str]:
-        """The problems since the last call."""
+        """Return the problems since the last call."""
         taken = [*self._problems]
         self._problems.clear()
         return taken
@@ -96,12 +96,12 @@ class ExplorerPage:
             self.wait_until_done()
 
     def column(self, name: str) -> Any:
-        """A column of the maps' source: an image as an array, or a plain value."""
+        """Return a column of the maps' source: an image as an array, or a plain value."""
         value = self.page.evaluate(_COLUMN, name)
         return np.array(value["values"]).reshape(value["shape"]) if isinstance(value, dict) else value
 
     def model_data(self, name: str) -> dict[str, list[Any]]:
-        """The columns of a source, as lists; none while the source is not on the page."""
+        """Return the columns of a source, as lists; none while the source is not on the page."""
         return self.page.evaluate(_DATA, name)
 
     def wait_for_data(self, name: str, condition: str) -> None:
@@ -140,7 +140,7 @@ class ExplorerPage:
             self.button(f"▾ {title}").wait_for()
 
     def point(self, picture: str, x: float, ordinate: float) -> list[float]:
-        """The position of a point of the plane on the screen."""
+        """Return the position of a point of the plane on the screen."""
         return self.page.evaluate(_POINT, [picture, x, ordinate])
 
     def click(self, picture: str, x: float, ordinate: float) -> None:
@@ -167,7 +167,7 @@ class ExplorerPage:
         return self.page.get_by_text(pattern).first
 
     def radio(self, label: str) -> Locator:
-        """A button of a segmented control."""
+        """Return a button of a segmented control."""
         return self.page.get_by_role("radio", name=label, exact=True)
 
     def pick(self, label: str) -> None:
@@ -202,7 +202,7 @@ class ExplorerPage:
             self.page.mouse.up()
 
     def wait_for_preview(self, energy: float, least: int = 76) -> None:
-        """Wait for pixels of the browser at an energy, at least so many along a side."""
+        """Wait for pixels of the browser at an energy, with at least this number along a side."""
         self.wait_for_data("maps", _PREVIEW.format(energy=energy, least=least))
 
     def start_engine(self) -> None:
@@ -217,10 +217,10 @@ class ExplorerPage:
         self.page.mouse.move(rail["low"] + share * rail["reach"], rail["middle"])
 
     def _rail(self) -> dict[str, float]:
-        """Places on the slider of the energy, on the screen."""
+        """Return places on the slider of the energy, on the screen."""
         return self.page.get_by_role("slider", name="Energy h", exact=True).evaluate(_RAIL_AND_THUMB)
 
     def window_of_pixels(self) -> list[float]:
-        """The window that the pixels cover."""
+        """Return the window that the pixels cover."""
         x, y, width, height = (self.column(name) for name in ("x", "y", "dw", "dh"))
         return [x, x + width, y, y + height]

@@ -63,7 +63,7 @@ class Output:
 
 
 def free_port() -> int:
-    """A port of the loopback interface on which nothing listens."""
+    """Return a port of the loopback interface on which nothing listens."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
@@ -84,7 +84,7 @@ class RunningApp:
         return f"{self.root}/app"
 
     def figure(self, name: str) -> float:
-        """One of the figures that the server counts."""
+        """Return one of the figures that the server counts."""
         with urllib.request.urlopen(f"{self.root}/metrics", timeout=SECONDS) as answer:
             lines = answer.read().decode().splitlines()
         return float(dict(line.rsplit(" ", 1) for line in lines if not line.startswith("#"))[f"escape_explorer_{name}"])
@@ -92,14 +92,14 @@ class RunningApp:
 
 @contextmanager
 def served_app(log: Path) -> Iterator[str]:
-    """The address of the app; its output goes to `log`."""
+    """Yield the address of the app; its output goes to `log`."""
     with running_app(log) as running:
         yield running.address
 
 
 @contextmanager
 def running_app(log: Path, *options: str) -> Iterator[RunningApp]:
-    """The app, served with more options of `panel serve`; its kernels are there when this begins."""
+    """Run the app with more options of `panel serve`; yield when its kernels are compiled."""
     with started_app(log, *PANEL, *options) as running:
         running.output.wait_for(READY)
         yield running
@@ -109,7 +109,7 @@ def running_app(log: Path, *options: str) -> Iterator[RunningApp]:
 def started_app(
     log: Path, *command: str, port: int | None = None, variables: Mapping[str, str] = NO_VARIABLES
 ) -> Iterator[RunningApp]:
-    """A module that serves the app, with its options, port and environment variables; it answers when this begins."""
+    """Run a module that serves the app, with options, a port and environment variables; yield when the server answers."""
     port = free_port() if port is None else port
     options = ["--address", "127.0.0.1", "--port", str(port), "--allow-websocket-origin", f"127.0.0.1:{port}"]
     process = subprocess.Popen(
@@ -123,7 +123,7 @@ def started_app(
     assert process.stdout is not None
     output = Output(process.stdout, log)
     try:
-        # Written when the server listens already.
+        # The server writes this when it already listens.
         output.wait_for("preparing ")
         yield RunningApp(f"http://127.0.0.1:{port}", process, output)
     finally:

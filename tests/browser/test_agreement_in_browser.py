@@ -1,4 +1,4 @@
-"""Address, widgets and view state agree when the server changes widgets in quick succession."""
+"""Address, widgets and view state agree after quick changes of widgets by the server."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_a_widget_keeps_the_last_state_that_the_server_sets(explorer: ExplorerPa
     expect(explorer.button("▶ Play")).to_be_enabled()
 
 
-def test_the_last_choice_is_shown_when_an_older_one_arrives_after_it(explorer: ExplorerPage) -> None:
+def test_the_last_choice_is_shown_even_if_an_older_choice_arrives_later(explorer: ExplorerPage) -> None:
     explorer.radio("III").evaluate(_CHOOSE_BEFORE_AN_OLDER_CHOICE)
     explorer.wait_for_view("case=III")
     expect(explorer.radio("III")).to_be_checked()

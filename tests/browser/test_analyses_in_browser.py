@@ -23,7 +23,7 @@ def opened(open_for_all: OpenExplorer) -> ExplorerPage:
 
 
 def shown_figures(explorer: ExplorerPage) -> set[str]:
-    """Names of the figures that are visible."""
+    """Return names of the figures that are visible."""
     return set(
         explorer.page.evaluate(
             """() => [...Bokeh.index.all_views()].filter(view => view.model.type == "Figure" && view.el.offsetWidth > 0)
@@ -67,7 +67,7 @@ def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplor
     explorer = open_explorer(link="?case=I&h=0.05&t_max=10000&resolution=112&orbits=0.1,0.05")
     table = explorer.page.get_by_label("chaos indicators")
     names = ["SALI", "Lyapunov exponent", "Birkhoff digits of halves", "Birkhoff digits"]
-    # The last row comes from a request of its own.
+    # The last row comes from a separate request.
     expect(table.locator("th")).to_contain_text(names)
     # SALI and the exponent see no chaos; averages that agree as on a torus are regular.
     expect(table.locator("b")).to_have_text(["no sign of chaos", "no sign of chaos", "regular", "regular"])

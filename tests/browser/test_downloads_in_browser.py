@@ -42,7 +42,7 @@ def download_file(explorer: ExplorerPage, label: str) -> tuple[str, bytes]:
     return download.value.suggested_filename, Path(download.value.path()).read_bytes()
 
 
-def test_a_figure_of_all_maps(small: ExplorerPage) -> None:
+def test_a_figure_of_all_maps_can_be_downloaded(small: ExplorerPage) -> None:
     name, data = download_file(small, "Save figure")
     assert name == "escapes-III-x_px-h0.45-t1000.png"
     picture = Image.open(io.BytesIO(data))
@@ -50,7 +50,7 @@ def test_a_figure_of_all_maps(small: ExplorerPage) -> None:
     assert picture.text["potential"] == "III"  # type: ignore[attr-defined]
 
 
-def test_a_figure_as_pdf_of_a_given_width(small: ExplorerPage) -> None:
+def test_a_figure_can_be_downloaded_as_pdf_of_a_given_width(small: ExplorerPage) -> None:
     small.page.get_by_label("What to draw").select_option("Orbits")
     small.page.get_by_role("radiogroup", name="Format").get_by_label("PDF").check()
     width = small.page.get_by_label("Width, cm")
@@ -63,7 +63,7 @@ def test_a_figure_as_pdf_of_a_given_width(small: ExplorerPage) -> None:
     assert float(box[1]) == pytest.approx(8.5 / 2.54 * 72.0, abs=0.01)
 
 
-def test_the_maps_as_netcdf(small: ExplorerPage) -> None:
+def test_the_maps_can_be_downloaded_as_netcdf(small: ExplorerPage) -> None:
     name, data = download_file(small, "Maps (NetCDF)")
     assert name.endswith(".nc")
     expected = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (112, 112), t_max=1e3))
@@ -71,7 +71,7 @@ def test_the_maps_as_netcdf(small: ExplorerPage) -> None:
         np.testing.assert_array_equal(dataset["fate"], expected.fate)
 
 
-def test_a_script_that_computes_the_map(small: ExplorerPage) -> None:
+def test_a_downloaded_script_computes_the_map(small: ExplorerPage) -> None:
     name, data = download_file(small, "Python script")
     assert name.endswith(".py")
     assert "0.45" in data.decode()

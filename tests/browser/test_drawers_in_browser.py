@@ -1,4 +1,4 @@
-"""Drawers over the controls: gallery, sharing and help; at most one is open."""
+"""The drawers of gallery, sharing and help open over the controls, one at a time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def expect_open(explorer: ExplorerPage, drawer: str | None) -> None:
 
 
 def close(explorer: ExplorerPage, drawer: str) -> None:
-    """Close a drawer, and wait until it is off the page: what is pressed in it before is lost."""
+    """Close a drawer, and wait until it is off the page, because earlier clicks in it are lost."""
     explorer.press(drawer)
     expect_open(explorer, None)
 

@@ -1,4 +1,4 @@
-"""One picture in a frame of another page."""
+"""A frame in another page shows one picture."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.conftest import TIMEOUT_MS
 LINK = "?case=III&plane=x_y&h=0.45&t_max=100&resolution=112&embed=basins"
 SIDE = 500
 _IS_COMPLETE = "window.Bokeh?.documents.length && Bokeh.documents[0].get_model_by_name('maps')?.data.complete[0] === true"
-# Names of the pictures that are seen, with their width on the screen.
+# Names of the visible pictures, with their width on the screen.
 _SEEN = """() => Object.fromEntries([...Bokeh.index.all_views()]
     .filter(view => view.model.type == "Figure" && view.el.offsetWidth > 0)
     .map(view => [view.model.name, view.el.offsetWidth]))"""

@@ -1,4 +1,4 @@
-"""The energy, dragged and played: the browser's pixels on the way, the server's map where it ends."""
+"""While the energy is dragged or played, the browser's pixels are shown; where it ends, the server's map."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def exact_energy(explorer: ExplorerPage) -> Locator:
 
 
 def moving_picture(explorer: ExplorerPage) -> Locator:
-    """The canvas over one of the pictures while the energy moves."""
+    """Return the canvas over one of the pictures while the energy moves."""
     return explorer.page.locator("canvas[data-energy]").first
 
 
 def test_pixels_follow_the_slider_without_the_server(explorer: ExplorerPage) -> None:
-    # Until the engine is there.
+    # Wait until the browser has its engine.
     explorer.drag_energy_to(0.3, let_go=False)
     explorer.wait_for_preview(0.22)
     explorer.page.evaluate(WATCH)
@@ -52,7 +52,7 @@ def test_pixels_follow_the_slider_without_the_server(explorer: ExplorerPage) -> 
     explorer.wait_for_view("h=0.46&")
 
 
-def test_at_rest_the_preview_is_that_of_the_map_and_at_release_the_map_comes(explorer: ExplorerPage) -> None:
+def test_the_preview_at_rest_is_that_of_the_map_which_follows_the_release(explorer: ExplorerPage) -> None:
     explorer.drag_energy_to(0.9, let_go=False)
     explorer.wait_for_preview(0.46, least=112)
     window = explorer.window_of_pixels()
@@ -117,7 +117,7 @@ def test_an_energy_typed_right_after_choosing_a_case_is_used_and_shown(explorer:
 def test_an_energy_that_is_being_typed_stays_when_the_case_changes(explorer: ExplorerPage) -> None:
     exact_energy(explorer).press("ControlOrMeta+a")
     exact_energy(explorer).press_sequentially("0.6")
-    # Without taking the focus from the box.
+    # This does not take the focus from the box.
     explorer.radio("III").evaluate("radio => radio.click()")
     explorer.wait_for_view("case=III", "h=0.35&")
     expect(exact_energy(explorer)).to_have_value("0.6")

@@ -1,4 +1,4 @@
-"""The main functions of the page."""
+"""The main functions of the page: energy, case, axes, clicks, zoom and stop."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _AXIS_NAMES = """names => [...Bokeh.index.all_views()].filter(view => names.incl
 
 
 def quick_map(energy: float, **options: object) -> EscapeMap:
-    """The map of the page `explorer` at an energy."""
+    """Return the map of the page `explorer` at an energy."""
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, energy, (112, 112), t_max=100.0, **options))
 
 
 def assert_same_crossings(explorer: ExplorerPage, expected: EscapeMap) -> None:
-    """Compare escaping orbits; the counts of orbits that are bounded on evidence end where it is found."""
+    """Compare crossings of escaping orbits only, because bounded orbits are followed only until evidence is found."""
     escaped = expected.fate >= 1
     np.testing.assert_array_equal(explorer.column("crossings")[escaped], expected.crossings[escaped])
     np.testing.assert_array_equal(np.isfinite(explorer.column("escape_time")), escaped)
@@ -121,7 +121,7 @@ def test_a_start_can_be_typed(explorer: ExplorerPage) -> None:
     expect(explorer.text(f"Escaped through exit {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
 
 
-def test_zooming_one_map_computes_the_region_for_all(explorer: ExplorerPage) -> None:
+def test_zooming_one_map_computes_the_region_for_all_maps(explorer: ExplorerPage) -> None:
     width = explorer.column("dw")
     explorer.turn_wheel("times", 0.4, 0.1, -500)
     explorer.wait_for_view("window=")

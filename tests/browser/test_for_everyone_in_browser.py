@@ -1,4 +1,4 @@
-"""Accessibility: themes, names of widgets, keys, and the first view."""
+"""The page is accessible: it has themes, names of widgets, keys, and a first view with invitations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TITLE_COLOUR = """() => {
 
 
 def luminance(explorer: ExplorerPage) -> float:
-    """Mean of the background's red, green and blue, 0 to 255."""
+    """Return the mean of the background's red, green and blue, 0 to 255."""
     colour = explorer.page.evaluate("() => getComputedStyle(document.body).backgroundColor")
     return sum(map(int, re.findall(r"\d+", colour)[:3])) / 3
 

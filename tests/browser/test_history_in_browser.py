@@ -44,7 +44,7 @@ def test_the_browser_goes_back_over_each_kind_of_action(explorer: ExplorerPage) 
     explorer.wait_for_view(HOME)
 
 
-def test_an_action_can_be_repeated_after_it_was_undone(explorer: ExplorerPage) -> None:
+def test_an_undone_action_can_be_repeated(explorer: ExplorerPage) -> None:
     for _ in range(2):
         explorer.pick("II")
         explorer.wait_for_view("case=II&")

@@ -1,4 +1,4 @@
-"""Where the parts of the page stand on wide, middling and narrow screens, and that nothing idle is shown."""
+"""The parts of the page have their places on wide, medium and narrow screens, and nothing idle is shown."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def figures(explorer: ExplorerPage) -> dict[str, list[float]]:
 
 
 def boxes(explorer: ExplorerPage) -> list[Box]:
-    """Left, top, right and bottom of the pictures on the screen."""
+    """Return left, top, right and bottom of the pictures on the screen."""
     shown = figures(explorer)
     return [tuple(shown[name][:4]) for name in PICTURES]
 
@@ -255,7 +255,7 @@ def test_figures_do_not_overlap(open_explorer: OpenExplorer, width: int, touch: 
 
 
 def assert_apart(explorer: ExplorerPage, names: set[str], width: int) -> None:
-    """Some figures are in view, none overlaps another, and nothing is wider than the screen."""
+    """Check that figures are in view, do not overlap, and are not wider than the screen."""
     # On a phone the map stays while the sheet is scrolled over it.
     explorer.page.evaluate("scrollTo(0, 0)")
     shown = figures(explorer)

@@ -1,4 +1,4 @@
-"""Orbits, several at once: marked, compared, played."""
+"""Several orbits are marked, compared and played."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from playwright.sync_api import expect
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-# What moves on the screen, beginning now.
+# Elements that move on the screen from now on.
 _WATCH_SHIFTS = """() => {
     window.shifts = []
     const place = ({x, y, width, height}) => [x, y, width, height].map(Math.round).join(" ")
@@ -66,7 +66,7 @@ def test_a_time_moves_along_path_sali_and_r2_together(explorer: ExplorerPage) ->
 
 
 def places(explorer: ExplorerPage) -> dict[str, Any]:
-    """Places and sizes of the parts of the inspector, which must all be on the page."""
+    """Return places and sizes of the parts of the inspector, which must all be on the page."""
     found = {part: explorer.page.locator(f".{part}").first.bounding_box() for part in PARTS}
     assert None not in found.values()
     return dict(found)
@@ -88,7 +88,7 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     explorer.page.evaluate(_PAINTED)
     assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
     explorer.press("Find divergent start")
-    # Its line opens with the button, and stays as it is when the search ends.
+    # The line of the message opens with the button, and keeps its height when the search ends.
     expect(explorer.page.locator(".note").first).to_contain_text(re.compile("divergent start is|start that escapes elsewhere"))
     begin = explorer.page.evaluate(_PAINTED)
     expect(explorer.text("The divergent start is")).to_be_visible()
@@ -97,7 +97,7 @@ def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer
     assert explorer.page.evaluate(_SHIFTS, [begin, end_of_histories]) == []
 
 
-def test_messages_end_with_what_they_were_about(explorer: ExplorerPage) -> None:
+def test_messages_disappear_with_their_subject(explorer: ExplorerPage) -> None:
     explorer.open_fold("Type a start")
     explorer.type_number("px", "nothing")
     expect(explorer.text("Type a number into both boxes first.")).to_be_visible()

@@ -1,4 +1,4 @@
-"""A system with two exits and a collision: every place that names fates names the collision."""
+"""In a system with two exits and a collision, every place that names fates names the collision."""
 
 from __future__ import annotations
 

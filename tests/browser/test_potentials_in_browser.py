@@ -1,4 +1,4 @@
-"""The choice of potential."""
+"""A potential is typed, changed by sliders, and refused with a message."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WEAKER = "½(x² + y²) − 0.5xy²"
 
 
 def open_box(explorer: ExplorerPage) -> Locator:
-    """The box of the formula, with its drawer open."""
+    """Return the box of the formula, with its drawer open."""
     explorer.press("Other …")
     box = explorer.page.get_by_label("V(x, y) =")
     expect(box).to_be_visible()
@@ -28,7 +28,7 @@ def open_box(explorer: ExplorerPage) -> Locator:
 
 
 def linked(explorer: ExplorerPage, name: str) -> str | None:
-    """A parameter of the address."""
+    """Return a parameter of the address."""
     return dict(urllib.parse.parse_qsl(urllib.parse.urlsplit(explorer.page.url).query)).get(name)
 
 

@@ -46,7 +46,7 @@ POLL_MS = 100
 PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
 LEGEND, SHARES, VERDICT = ".legend, .legend [title]", "table[aria-label=statistics]", ".verdict"
 
-# What the page shows, and what has to be equal; the first difference, or null. The parts of shadow roots count.
+# Returns the first difference between the page, including shadow roots, and the expected content; null if there is none.
 _DIFFERENCE = """expected => {
     if (window.location.search !== expected.address) return "another address"
     const found = {}, texts = Object.fromEntries(Object.keys(expected.texts).map(place => [place, ""]))
@@ -84,13 +84,13 @@ _DIFFERENCE = """expected => {
     return null
 }"""
 
-# Waits for the step, from whose entry a further one is counted; a new entry ends it.
+# Waits for a step through the history. Further steps are counted from its entry, and a new entry ends the wait.
 _GO = """steps => {
     const target = navigation.entries()[navigation.currentEntry.index + steps]
     if (target?.sameDocument) return navigation.traverseTo(target.key).finished.then(() => null, () => null)
 }"""
 
-# The end of waiting: the page agrees, or its address is another one.
+# The wait ends when the page agrees, or its address changes.
 _AGREEMENT = f"""expected => {{
     const difference = ({_DIFFERENCE})(expected)
     return [null, "another address"].includes(difference) && {{agrees: difference === null}}
@@ -106,7 +106,7 @@ class Shown:
 
 
 def shown_in(state: ViewState) -> Shown:
-    """What the page has to show; a state without a map leaves the last one on the page."""
+    """Return what the page has to show. A state without a map leaves the last map on the page."""
     job = None if state.chosen_start is None else state.orbit_job(state.chosen_start)
     orbit = None if job is None else computed_orbit(job)
     try:
@@ -126,7 +126,7 @@ def computed_orbit(job: Job[Orbit]) -> Orbit:
 
 
 def expected_page(address: str) -> dict[str, Any]:
-    """What the page has to show at an address."""
+    """Return what the page has to show at an address."""
     query = urlsplit(address).query
     state, problems = open_link(dict(parse_qsl(query)))
     assert not problems, problems
@@ -150,14 +150,14 @@ def expected_page(address: str) -> dict[str, Any]:
 
 
 def expected_picture(frame: EscapeMap) -> dict[str, Any]:
-    """Pixels and place of the map."""
+    """Return pixels and place of the map."""
     columns = map_columns(frame)
     place = {name: columns[name][0] for name in ("x", "y", "dw", "dh")}
     return {"fate": columns["fate"][0].ravel().tolist(), "place": place}
 
 
 def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
-    """Parts of the legend, of the table of shares and of the verdict, by the selector of their place."""
+    """Return parts of the legend, of the table of shares and of the verdict, by the selector of their place."""
     texts: dict[str, list[str]] = {}
     if shown.frame is not None:
         channels = [f"exit {k + 1}" for k in range(state.potential.channels)]
@@ -187,7 +187,7 @@ def check_agreement(explorer: ExplorerPage, done: Sequence[str]) -> None:
 
 
 def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Callable[[], Any]]:
-    """What a user does, by name."""
+    """Return the actions of a user, by name."""
     page = explorer.page
 
     def move(steps: int) -> None:

@@ -1,4 +1,4 @@
-"""Statistics of the whole view and of a box."""
+"""Statistics are those of the whole view or of a box."""
 
 from __future__ import annotations
 

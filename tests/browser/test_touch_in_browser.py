@@ -1,4 +1,4 @@
-"""The page under the fingers: one scrolls it, two move and zoom a map."""
+"""One finger scrolls the page; two fingers move and zoom a map."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ def move_fingers(explorer: ExplorerPage, *paths: Path) -> None:
 
 
 def middle_of(explorer: ExplorerPage) -> np.ndarray:
-    """The middle of the picture on the screen."""
+    """Return the middle of the picture on the screen."""
     (x, _), (ordinate, _) = window(explorer)
     return np.array(explorer.point("basins", x, ordinate))
 
 
 def window(explorer: ExplorerPage) -> np.ndarray:
-    """Middle and side of the window on each axis, shape (2, 2)."""
+    """Return the middle and side of the window on each axis, shape (2, 2)."""
     x_low, x_high, low, high = explorer.ranges("basins")
     return np.array([[0.5 * (x_low + x_high), x_high - x_low], [0.5 * (low + high), high - low]])
 
@@ -72,7 +72,7 @@ def test_two_fingers_that_move_the_same_way_move_the_map(explorer: ExplorerPage)
     move_fingers(explorer, ((-50, 0), (-10, -60)), ((50, 0), (90, -60)))
     explorer.wait_for_view("window=")
     np.testing.assert_allclose(window(explorer)[:, 1], before[:, 1], rtol=1e-6)
-    # What was between the fingers still is.
+    # The same region is still between the fingers.
     np.testing.assert_allclose(explorer.point("basins", *before[:, 0]), np.add(middle, (40, -60)), atol=1.0)
     assert explorer.page.evaluate("() => window.scrollY") == 0
 

@@ -1,4 +1,4 @@
-"""Many orbits leave the well in the browser: played, stepped, moved in time, and the same again from the link."""
+"""Many orbits leave the well in the browser. They are played, moved in time, and brought back by the link."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def move_time_to(explorer: ExplorerPage, share: float) -> None:
 _LOADED = "module => performance.getEntriesByType('resource').some(entry => entry.name.endsWith(`/${module}`))"
 
 
-def test_the_player_is_loaded_when_it_is_asked_for_and_the_well_drains(open_explorer: OpenExplorer) -> None:
+def test_the_player_is_loaded_on_request_and_the_well_drains(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{QUICK}&watch=well,1000,1,-2")
     # The engine in the browser is loaded after the first map.
     explorer.page.wait_for_function(_LOADED, arg="main.js")
@@ -49,7 +49,7 @@ def test_the_player_is_loaded_when_it_is_asked_for_and_the_well_drains(open_expl
     expect(play).to_be_visible()
 
 
-def test_as_many_orbits_have_left_as_of_other_starts_in_the_well(open_explorer: OpenExplorer) -> None:
+def test_as_many_orbits_have_left_as_from_other_random_starts(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,5000,1,-2")
     expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
     move_time_to(explorer, 0.2)

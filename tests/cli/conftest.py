@@ -36,7 +36,7 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
 
 
 class Terminal(StringIO):
-    """A terminal that does something when a word is first written to it, such as the name of a stage of a computation."""
+    """A terminal that acts when a word, such as the name of a stage of a computation, is first written."""
 
     def __init__(self, word: str, action: Callable[[], None]) -> None:
         super().__init__()
@@ -55,7 +55,7 @@ class Terminal(StringIO):
 
 @pytest.fixture
 def run_in_terminal(run: Run, monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, str, str]]:
-    """Function that runs a command in a terminal, with an action at a word; exit code, stdout, and the last line of stderr."""
+    """Function that runs a command in a terminal, with an action at a word; returns exit code, stdout, last line of stderr."""
     monkeypatch.setenv("TERM", "xterm")
 
     def run_command(word: str, action: Callable[[], None], *arguments: object) -> tuple[int, str, str]:

@@ -26,7 +26,7 @@ def scheduler() -> Iterator[str]:
 
 
 def assert_same_map(run: Run, folder: Path, *place: object) -> None:
-    """A map that is computed somewhere is that of the threads of this process."""
+    """Check that a map computed elsewhere is equal to a map computed by threads of this process."""
     assert run(*MAP, *ANALYSES, "--output", folder / "threads")[0] == 0
     assert run(*MAP, *ANALYSES, *place, "--output", folder / "cluster")[0] == 0
     with (

@@ -1,3 +1,5 @@
+"""Command ``ensemble``: shares, entering orbits, movies and tables are those of the engine."""
+
 from __future__ import annotations
 
 import json
@@ -22,7 +24,7 @@ from tests.cli.conftest import Run
 ENSEMBLE = ("ensemble", "III", "--energy", 0.45, "--count", 200, "--t-max", 20)
 
 
-def test_shares_are_those_of_the_engine(run: Run) -> None:
+def test_printed_shares_are_those_of_the_engine(run: Run) -> None:
     code, out, _ = run(*ENSEMBLE, "--seed", 3, "--json")
     outcomes = classify_orbits(CASES["III"], 0.45, sample_starts(CASES["III"], 0.45, 200, seed=3), 20.0)
     answer = json.loads(out)

@@ -125,7 +125,7 @@ LONG = ("map", "III", "--energy", 0.26, "--resolution", 300, "--t-max", 1e7)
 
 
 @pytest.mark.parametrize("times", [1, 2])
-def test_ctrl_c_cancels_a_map_and_a_second_one_ends_it_at_once(times: int, run_in_terminal: Run, tmp_path: Path) -> None:
+def test_ctrl_c_cancels_a_map_and_a_second_ctrl_c_ends_it_at_once(times: int, run_in_terminal: Run, tmp_path: Path) -> None:
     before = signal.getsignal(signal.SIGINT)
 
     def interrupt() -> None:

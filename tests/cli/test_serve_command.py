@@ -22,7 +22,7 @@ def test_default_address_is_local_only() -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="elsewhere the server is a child process")
-def test_options_are_passed_to_the_server_in_whose_place_it_starts(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_becomes_the_server_with_its_options(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[tuple[Any, ...]] = []
 
     def become(*call: Any) -> None:

@@ -72,7 +72,7 @@ def test_store_of_another_sweep_is_rejected(run: Run, tmp_path: Path) -> None:
     assert "t_max" in err
 
 
-def test_plan_computes_nothing(run: Run, tmp_path: Path) -> None:
+def test_option_plan_computes_nothing(run: Run, tmp_path: Path) -> None:
     code, out, _ = run(*SWEEP, "--plan", "--store", tmp_path / "store.zarr")
     assert (code, out.count("\n")) == (0, 1)
     assert "189 orbits" in out

@@ -1,4 +1,4 @@
-"""The potentials of the contract tests: the catalogue, and some random ones."""
+"""The potentials of the contract tests: the catalogue, and random potentials."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whatever is computed on request ends with `CancelledError` when it is cancelled; maps return what they have."""
+"""Cancelled computations end with `CancelledError`, or return what is computed of a map."""
 
 from __future__ import annotations
 

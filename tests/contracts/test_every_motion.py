@@ -19,7 +19,7 @@ def energy_of(potential: Potential, factor: float) -> float:
 
 
 def starts(potential: Potential, energy: float, count: int, seed: int = 0) -> np.ndarray:
-    """(count, 4) states of one energy near the minimum of the well, with random directions."""
+    """Return states of one energy near the minimum of the well, with random directions, of shape (count, 4)."""
     rng = np.random.default_rng(seed)
     place = 0.3 * potential.units.length * rng.uniform(-1.0, 1.0, (20 * count, 2))
     place = place[potential.value(*place.T) < energy][:count]
@@ -29,7 +29,7 @@ def starts(potential: Potential, energy: float, count: int, seed: int = 0) -> np
 
 
 def starts_on_axis(potential: Potential, energy: float, count: int) -> np.ndarray:
-    """(count, 4) states with y = px = 0."""
+    """Return states with y = px = 0, of shape (count, 4)."""
     x = 0.3 * potential.units.length * np.linspace(-1.0, 1.0, count)
     zero = np.zeros(count)
     return np.column_stack([x, zero, zero, np.sqrt(2.0 * (energy - potential.value(x, zero)))])

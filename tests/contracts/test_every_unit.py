@@ -1,4 +1,4 @@
-"""Every public result is the same one in other units: under x → L x, V → E V and m → M m, times scale as L √(M/E).
+"""Every public result is the same in other units: under x → L x, V → E V and m → M m, times scale as L √(M/E).
 
 With L a power of 2, and E and M powers of 4, all conversions are exact, and so must be the results.
 """
@@ -43,7 +43,7 @@ from tests.contracts.scaling import Scaling
 
 EXACT = (Scaling(8.0, 4.0**-3), Scaling(1.0, 1.0, 16.0), Scaling(2.0**-6, 1.0), Scaling(1.0, 4.0**8))
 INEXACT = (Scaling(3.0, 0.7), Scaling(1.0, 1.0, 8.0))
-# No powers of 2, from the least to the largest that are supported.
+# Factors from the smallest to the largest supported, not powers of 2.
 FAR = (Scaling(1e-6, 1e6), Scaling(7e4, 5e5), Scaling(1.0, 1.0, 8.0))
 
 
@@ -53,7 +53,7 @@ def test_a_coefficient_without_effect_is_refused() -> None:
     )
 
 
-# Of degree 4, with channels of different kinds, and in other units than those of its well.
+# A potential of degree 4, with channels of different kinds, and not in units of its well.
 SKEW = Potential("skew", ((2, 0, 0.9), (0, 2, 0.41), (3, 0, 0.23), (1, 2, -0.52), (0, 4, -0.07)))
 ENERGY, UNIT_OF_TIME = 1.1 * SKEW.escape_energy, SKEW.units.time
 
@@ -68,7 +68,7 @@ exactly_scaled = pytest.mark.parametrize(
 
 
 def system(scaling: Scaling | None = None) -> tuple[Potential, float]:
-    """The potential and an energy above its escape energy."""
+    """Return the potential and an energy above its escape energy."""
     return (SKEW, ENERGY) if scaling is None else (scaling.potential(SKEW), scaling.energy * ENERGY)
 
 
@@ -90,14 +90,14 @@ def equal_maps(scaled: EscapeMap, usual: EscapeMap, scaling: Scaling) -> None:
 
 @exactly_scaled
 @pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_H, Plane.TANGENTIAL])
-def test_maps_windows_and_evidence(plane: Plane, scaling: Scaling) -> None:
+def test_maps_windows_and_evidence_are_the_same_in_other_units(plane: Plane, scaling: Scaling) -> None:
     usual = escape_map(plane)
     equal_maps(escape_map(plane, scaling), usual, scaling)
     assert np.unique(usual.fate[usual.interior]).size > 1
 
 
 @exactly_scaled
-def test_follow_up_analyses(scaling: Scaling) -> None:
+def test_follow_up_analyses_are_the_same_in_other_units(scaling: Scaling) -> None:
     usual, scaled = escape_map(Plane.X_PX), escape_map(Plane.X_PX, scaling)
     trust = compute_trust(usual)
     np.testing.assert_array_equal(compute_trust(scaled).trust, trust.trust)
@@ -111,7 +111,7 @@ def rescaled(orbit: LyapunovOrbit, scaling: Scaling) -> tuple[Any, ...]:
 
 
 @exactly_scaled
-def test_lyapunov_orbits(scaling: Scaling) -> None:
+def test_lyapunov_orbits_are_the_same_in_other_units(scaling: Scaling) -> None:
     usual, scaled = find_lyapunov_orbits(*system()), find_lyapunov_orbits(*system(scaling))
     assert len(scaled) == len(usual) > 0
     for orbit, other in zip(scaled, usual, strict=True):
@@ -120,7 +120,7 @@ def test_lyapunov_orbits(scaling: Scaling) -> None:
 
 
 @exactly_scaled
-def test_stable_manifolds(scaling: Scaling) -> None:
+def test_stable_manifolds_are_the_same_in_other_units(scaling: Scaling) -> None:
     usual, scaled = find_stable_manifolds(*system(), images=2), find_stable_manifolds(*system(scaling), images=2)
     assert len(scaled.arcs) == len(usual.arcs) > 0
     assert scaled.truncated == usual.truncated
@@ -131,7 +131,7 @@ def test_stable_manifolds(scaling: Scaling) -> None:
 
 
 @exactly_scaled
-def test_uncertainty_exponents(scaling: Scaling) -> None:
+def test_uncertainty_exponents_are_the_same_in_other_units(scaling: Scaling) -> None:
     potential, energy = CASES["II"], 0.25
     usual, scaled = (
         compute_uncertainty_exponent(MapSpec(s.potential(potential), Plane.X_PX, s.energy * energy, t_max=1e3 * s.time), work=1e6)
@@ -145,7 +145,7 @@ def test_uncertainty_exponents(scaling: Scaling) -> None:
 
 
 def sea_start() -> np.ndarray:
-    """(4,) the start of an orbit that escapes late."""
+    """Return the start of an orbit that escapes late, of shape (4,)."""
     usual = escape_map(Plane.X_PX)
     latest = np.unravel_index(np.nanargmax(usual.escape_time), usual.fate.shape)
     state: np.ndarray = usual.spec.start_states(usual.x[latest[1] :][:1], usual.ordinate[latest[0] :][:1])[0]
@@ -153,7 +153,7 @@ def sea_start() -> np.ndarray:
 
 
 @exactly_scaled
-def test_single_orbits(scaling: Scaling) -> None:
+def test_single_orbits_are_the_same_in_other_units(scaling: Scaling) -> None:
     potential, start, t_max = system()[0], sea_start(), 300.0 * UNIT_OF_TIME
     orbit = integrate_orbit(potential, start, t_max)
     scaled = integrate_orbit(scaling.potential(potential), scaling.states(start), scaling.time * t_max)
@@ -172,7 +172,7 @@ def verdicts(orbit: Orbit) -> tuple[Any, ...]:
 
 
 @exactly_scaled
-def test_measures_of_single_orbits(scaling: Scaling) -> None:
+def test_measures_of_single_orbits_are_the_same_in_other_units(scaling: Scaling) -> None:
     usual, start, t_max = system()[0], sea_start(), 100.0 * UNIT_OF_TIME
     for_both = []
     for s in (Scaling(1.0, 1.0), scaling):
@@ -192,7 +192,7 @@ def test_measures_of_single_orbits(scaling: Scaling) -> None:
 
 
 @pytest.mark.parametrize("scaling", [*INEXACT, *FAR], ids=name_of)
-def test_reviews_and_zero_velocity_curves(scaling: Scaling) -> None:
+def test_reviews_and_zero_velocity_curves_are_the_same_in_other_units(scaling: Scaling) -> None:
     (usual, energy), (potential, _) = system(), system(scaling)
     review, scaled = review_potential(usual), review_potential(potential)
     assert scaled.refusal is None is review.refusal
@@ -206,7 +206,7 @@ def test_reviews_and_zero_velocity_curves(scaling: Scaling) -> None:
 
 
 @pytest.mark.parametrize("scaling", FAR, ids=name_of)
-def test_maps_and_verdicts_in_units_that_round(scaling: Scaling) -> None:
+def test_maps_and_verdicts_are_the_same_in_units_that_round(scaling: Scaling) -> None:
     potential, energy, t_max = CASES["III"], 0.3, 2e3
     scaled = scaling.potential(potential)
     usual = compute_map(MapSpec(potential, Plane.X_PX, energy, (24, 24), t_max=t_max))

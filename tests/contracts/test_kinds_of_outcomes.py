@@ -1,4 +1,4 @@
-"""Every kind of outcome is typed, kept in files, told in words and coloured; so is the one that docs/extending.md adds."""
+"""Every kind of outcome, including that of docs/extending.md, is typed, stored, described and coloured."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def station(monkeypatch: pytest.MonkeyPatch) -> type[outcomes.End]:
     return kind
 
 
-def test_each_kind_has_colours_of_its_own_in_each_palette() -> None:
+def test_each_kind_has_individual_colours_in_each_palette() -> None:
     counts = {tuple((key, len(palette.of_kinds[key])) for key in KINDS) for palette in PALETTES.values()}
     assert len(counts) == 1
     for palette in PALETTES.values():
@@ -61,7 +61,7 @@ def test_orbits_end_at_a_station_as_at_a_body_and_in_its_words_and_colour(statio
     assert palette.entry(3, arrival).colour == palette.ends[end_places(arrival)[2]] == "#005f73"
 
 
-def test_passages_from_a_station_have_codes_of_their_own(station: type[outcomes.End]) -> None:
+def test_passages_from_a_station_have_individual_codes(station: type[outcomes.End]) -> None:
     potential = parse_formula(WELL + "; station the dock (0.2, 0.3) 0.05")
     found = compute_origin_fates(MapSpec(potential, Plane.X_PX, 0.19, (20, 20), t_max=50.0))
     assert ORIGINS.pixels is not None

@@ -1,4 +1,4 @@
-"""Maps on processors with and without AVX-512: equal to the bit, but for escape times where other libraries fit the exits."""
+"""Maps are equal to the bit with and without AVX-512, except for escape times where other libraries fit the exits."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def compute_maps(path: str) -> None:
 
 @pytest.fixture(scope="module")
 def compute(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Mapping[str, str]], dict[str, np.ndarray]]:
-    """Maps of a process with these variables of the environment."""
+    """Return the maps of a process with these environment variables."""
     folder = tmp_path_factory.mktemp("processors")
 
     def compute(variables: Mapping[str, str]) -> dict[str, np.ndarray]:

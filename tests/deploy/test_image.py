@@ -1,4 +1,4 @@
-"""The image has every package that the server imports; images and actions from elsewhere have versions."""
+"""The image has every package that the server imports, and external images and actions have versions."""
 
 from __future__ import annotations
 

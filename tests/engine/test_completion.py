@@ -1,4 +1,4 @@
-"""The completion of names shows what is for users."""
+"""The completion of names shows only names for users."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ LONGEST_SECONDS = 1.0
 
 
 def random_formula(depth: int, rng: random.Random) -> tuple[str, sympy.Expr]:
-    """A random formula as text and as a SymPy expression."""
+    """Return a random formula as text and as a SymPy expression."""
     if depth == 0 or rng.random() < 0.2:
         number = rng.randint(1, 9)
         return rng.choice([("x", X), ("y", Y), (str(number), sympy.Integer(number)), ("0.25", sympy.Rational(1, 4))])

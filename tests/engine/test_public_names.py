@@ -1,3 +1,5 @@
+"""Public names exist, and optional parameters are keywords."""
+
 from __future__ import annotations
 
 import inspect

@@ -73,13 +73,13 @@ def assert_same_outcomes(name: str, energy: float, states: np.ndarray, images: n
     np.testing.assert_allclose(image_time[early], time[early], rtol=1e-6)
 
 
-def test_mirror_images_in_the_x_axis(random_starts: tuple[str, float, np.ndarray]) -> None:
+def test_mirror_images_in_the_x_axis_have_mirrored_outcomes(random_starts: tuple[str, float, np.ndarray]) -> None:
     name, energy, states = random_starts
     image_of = {"I": {1: 2, 2: 1}, "II": {1: 1, 2: 3, 3: 2}, "III": {1: 4, 2: 3, 3: 2, 4: 1}}[name]
     assert_same_outcomes(name, energy, states, states * [1, -1, 1, -1], image_of)
 
 
-def test_rotation_of_case_2_by_120_degrees() -> None:
+def test_rotating_case_2_by_120_degrees_rotates_the_outcomes() -> None:
     energy = 0.5
     x, y, angle = np.random.default_rng(9).uniform([-0.3, -0.3, 0], [0.3, 0.3, 2 * np.pi], (200, 3)).T
     speed = np.sqrt(2 * (energy - CASES["II"].value(x, y)))

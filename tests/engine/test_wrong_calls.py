@@ -43,7 +43,7 @@ LONGEST = 400
 
 @functools.cache
 def names() -> dict[str, Any]:
-    """What the calls use."""
+    """Return the names that the calls use."""
     case, state = CASES["III"], (0.1, 0.0, 0.05, 0.6)
     spec = MapSpec(case, Plane.X_PX, 0.45, (20, 20), t_max=50.0)
     whole = compute_map(spec)

@@ -95,7 +95,7 @@ def test_failing_function_delivers_its_error(queue: Queue) -> None:
 
 
 def _delayed(submit: Callable[..., Any], released: threading.Event) -> Callable[..., Any]:
-    """A `submit` method that waits for an event first."""
+    """Return a `submit` method that waits for an event first."""
 
     def submit_later(*arguments: Any, **named: Any) -> Any:
         released.wait(SECONDS)

@@ -24,7 +24,7 @@ from tests.forked import Finished, fork_context, run
 
 
 def fresh_kernel() -> Callable[[float], float]:
-    """The same function, as a new process would see it."""
+    """Return the same function, as a new process would see it."""
 
     @kernel
     def scaled(x: float) -> float:

@@ -43,7 +43,7 @@ def straight(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return files_of(folder / "store")
 
 
-# The calls of a map: its tiles, then those that look for evidence.
+# The calls of a map: first its tiles, then the tests for evidence.
 @pytest.mark.parametrize("good_calls", [0, 20])
 def test_dropped_call_ends_a_sweep_that_resumes_with_the_same_bytes(
     good_calls: int, tmp_path: Path, straight: dict[str, bytes]
@@ -54,7 +54,7 @@ def test_dropped_call_ends_a_sweep_that_resumes_with_the_same_bytes(
     assert files_of(tmp_path / "store") == straight
 
 
-def test_dropped_call_is_no_missing_result() -> None:
+def test_a_dropped_call_is_not_taken_for_a_result() -> None:
     with ForgetfulPool(0) as pool, pytest.raises(BrokenExecutor):
         map_tiles(lambda *_: np.ones(1), CASES["I"], np.zeros((1, 4)), execution=Execution(pool))
 
@@ -69,7 +69,7 @@ def test_dropped_call_is_no_missing_result() -> None:
     ],
     ids=["workers", "scheduler restarted", "connection lost", "no connection"],
 )
-def test_losses_are_described(error: Exception, expected: str) -> None:
+def test_losses_of_workers_and_schedulers_are_described(error: Exception, expected: str) -> None:
     with pytest.raises(ConnectionError, match=expected), describe_losses():
         raise error
 
@@ -120,7 +120,7 @@ class TestDask:
 
         return run_in
 
-    def test_sweep_goes_on_when_a_worker_is_killed(
+    def test_a_sweep_continues_when_a_worker_is_killed(
         self, tmp_path: Path, sweep: Callable[..., Finished], without_loss: dict[str, bytes]
     ) -> None:
         killed = sweep("killed", kill_worker)

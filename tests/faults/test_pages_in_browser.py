@@ -17,13 +17,13 @@ from tests.waiting import SECONDS, wait_until
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-# Bounded orbits, whose integration takes longer than any test.
+# A map of bounded orbits, whose integration takes longer than any test.
 LONG_MAP = "?case=III&h=0.26&resolution=900&t_max=1e%2B06&plane=x_y"
 HOSTILE = '<img src=x onerror="window.hit=1">'
 # Longer than it takes to connect, and short enough for a test to wait for the end of the session.
 LIFETIME = ("--unused-session-lifetime", "6000", "--check-unused-sessions", "500")
 
-# Sends a value that the control itself would not.
+# Sends a value that the control itself would not send.
 _SEND_INVALID_VALUE = """label => {
     for (const model of Bokeh.documents[0].all_models)
         if (model.title === label) { model.value = 'not-an-option'; return true }

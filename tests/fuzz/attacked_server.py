@@ -1,4 +1,4 @@
-"""A server that random input is sent to: small caches, short sessions, and what must be left of it afterwards."""
+"""A server for random input, with small caches and short sessions, and checks of its memory and log."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SETTINGS = {"CACHE_BYTES": str(32 * 2**20), "PAGES_PER_ADDRESS": "10", "COMPILED
 
 
 async def fetch_page(address: str) -> str:
-    """The page of a map that takes little time."""
+    """Return the page of a map that takes little time."""
     page = await AsyncHTTPClient().fetch(address + LINK, request_timeout=ANSWER_SECONDS)
     return page.body.decode()
 
@@ -37,12 +37,12 @@ async def open_page(address: str) -> None:
 
 
 def resting_memory(app: RunningApp) -> float:
-    """Resident memory in bytes, without pages and running jobs."""
+    """Return the resident memory in bytes, without pages and running jobs."""
     wait_until(lambda: app.figure("sessions_open") + app.figure("jobs_in_flight") == 0, ANSWER_SECONDS)
     return app.figure("resident_memory_bytes")
 
 
 def tracebacks(log: Path) -> list[str]:
-    """Lines of tracebacks with their neighbours."""
+    """Return lines of tracebacks with their neighbours."""
     lines = log.read_text().splitlines()
     return ["\n".join(lines[max(n - 1, 0) : n + 60]) for n, line in enumerate(lines) if "Traceback" in line]

@@ -71,7 +71,7 @@ case_strings = st.builds("{}{}".format, st.sampled_from(NAMED) | formulas, _para
 
 
 def mostly[Value](valid: st.SearchStrategy[Value], invalid: st.SearchStrategy[Any] = anything) -> st.SearchStrategy[Any]:
-    """Three valid values in four, so that several invalid ones seldom occur together."""
+    """Return a strategy with three valid values in four, so that several invalid values seldom occur together."""
     return st.one_of(valid, valid, valid, invalid)
 
 
@@ -87,13 +87,13 @@ def limited_resources() -> Iterator[None]:
 
 
 def _resident_bytes(kind: str) -> int:
-    """The resident memory of this process, VmRSS, or its peak, VmHWM."""
+    """Return the resident memory of this process, VmRSS, or its peak, VmHWM."""
     (line,) = (line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith(kind))
     return 1024 * int(line.split()[1])
 
 
 def result_or_error(call: Callable[[], Any], names: Iterable[str]) -> Any:
-    """The result of a call, or None if it raises an allowed exception.
+    """Return the result of a call, or None if it raises an allowed exception.
 
     Allowed are a ValueError whose message contains one of the parameter names, and a TypeError.
     """

@@ -1,4 +1,4 @@
-"""Random and hostile formulas of every kind, as the parameters of links: what a visitor can type."""
+"""Make random and hostile formulas of every kind that a visitor can type, as parameters of links."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NUMBERS = ("1e9", "1e-9", "1e308", "1e-320", "1e999", "0.1", "3", "−7", "12",
 
 
 def random_link(choice: random.Random) -> Link:
-    """The parameters of a link with a formula of a random kind."""
+    """Return the parameters of a link with a formula of a random kind."""
     return choice.choice(list(KINDS.values()))(choice)
 
 
@@ -35,7 +35,7 @@ def _monomial(choice: random.Random, highest: int = 6) -> str:
 
 
 def _wrapped(choice: random.Random, depth: int, inner: str, functions: tuple[str, ...] = _FUNCTIONS) -> str:
-    """A function of a function … of `inner`, each with an addend."""
+    """Return a function of a function … of `inner`, each with an addend."""
     for _ in range(depth):
         added = f"{_number(choice)}+" if choice.random() < 0.5 else ""
         inner = f"{choice.choice(functions)}({added}{inner})"
@@ -133,7 +133,7 @@ def _any_characters(choice: random.Random) -> Link:
 
 
 def _damaged(choice: random.Random) -> Link:
-    """A formula of another kind with characters exchanged, left out or added."""
+    """Return a formula of another kind with characters exchanged, left out or added."""
     link = choice.choice([_polynomial, _with_letters, _moved_to_a_well, _with_bodies])(choice)
     text = list(link["V"])
     for _ in range(choice.randint(1, 4)):
@@ -144,7 +144,7 @@ def _damaged(choice: random.Random) -> Link:
 
 
 def _functions_of_all(choice: random.Random) -> Link:
-    """Few characters with many products and derivatives."""
+    """Return few characters with many products and derivatives."""
     inner = choice.choice(["x^2*y", "x*y", "1+x^2+y^2", "x+2y"])
     terms = [f"{choice.choice(_FUNCTIONS)}({_number(choice)}+{_number(choice)}*{inner})" for _ in range(choice.randint(2, 30))]
     return {"V": f"{_well(choice)} {choice.choice('+−')} " + choice.choice("+*").join(terms)}

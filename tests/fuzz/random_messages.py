@@ -1,4 +1,4 @@
-"""Random messages of Bokeh's protocol for all models of a page: what the page sends, and what it never does."""
+"""Make random messages of Bokeh's protocol for all models of a page, most as a page sends them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ CHEAP = ("start", "end", "inner_width", "running", "step", "direction")
 
 
 def find_models(part: Any) -> Iterator[dict[str, Any]]:
-    """The models of a serialized document or patch: id, name of the class, attributes."""
+    """Yield the models of a serialized document or patch: id, name of the class, attributes."""
     if isinstance(part, dict):
         if "id" in part and isinstance(part.get("attributes"), dict):
             yield part
@@ -61,14 +61,14 @@ class RandomMessages:
                 self.models[event["model"]["id"]]["attributes"][event["attr"]] = event["new"]
 
     def patch(self) -> dict[str, Any]:
-        """The content of a PATCH-DOC message; nine in ten are what a page sends."""
+        """Return the content of a PATCH-DOC message; nine in ten are what a page sends."""
         plausible = self.random.random() < 0.9
         makers = (self._plausible_change, self._plausible_event) if plausible else (self._hostile_change, self._hostile_event)
         count = 1 if plausible else self.random.randint(0, 3)
         return {"events": [self.random.choice(makers)() for _ in range(count)]}
 
     def wrong_parts(self) -> list[str | bytes]:
-        """The parts of a message of another kind, cut off or no message at all."""
+        """Return the parts of a message of another kind, cut off or no message at all."""
         kind = self.random.choice(["PUSH-DOC", "PULL-DOC-REQ", "PULL-DOC-REPLY", "OK", "ERROR", "ACK", "", "x" * 300])
         usual = {"msgid": "1", "msgtype": kind}
         header: Any = self.random.choice([usual] * 8 + [None, {}, {"msgtype": kind}, {**usual, "num_buffers": 2}])

@@ -1,4 +1,4 @@
-"""Random HTTP requests for the routes of a server: what browsers send, and what they never do."""
+"""Make random HTTP requests for the routes of a server, as browsers send them or never do."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class RandomRequests:
         self._routes, self._random = routes, random.Random(seed)
 
     def make(self) -> bytes:
-        """A request, complete or not."""
+        """Return a request, complete or not."""
         if self._random.random() < 0.02:
             return self._random.randbytes(self._random.randrange(200))
         path = self._path()
@@ -78,7 +78,7 @@ class RandomRequests:
         return b"\r\n".join([*lines, b"", self._random.choice(BODIES)])
 
     def _some(self, choices: Sequence[str], probability: float) -> list[str]:
-        """None, one or more, each as probable as the next one is improbable."""
+        """Return a random number of choices: with `probability` one more each time."""
         chosen = []
         while self._random.random() < probability:
             chosen.append(self._random.choice(choices))
@@ -97,7 +97,7 @@ class RandomRequests:
         return (path + ("?" + "&".join(pairs) if pairs else "")).encode()
 
     def _offer(self) -> str:
-        """Subprotocols of a WebSocket: a token that the server has not issued, or none."""
+        """Return the subprotocols of a WebSocket, with a token that the server has not issued, or none."""
         payload = {"session_id": self._random.choice(("", "x" * 44, 5)), "session_expiry": self._random.choice((0, 2**40, "x"))}
         bomb = zlib.compress(b"0" * self._random.choice((0, 2**12, 2**22)), 9)
         token = base64.urlsafe_b64encode(json.dumps({**payload, "__bk__zlib_": base64.urlsafe_b64encode(bomb).decode()}).encode())

@@ -1,4 +1,4 @@
-"""One client that requests and cancels in any order: its limit of concurrent jobs holds, and every request is answered."""
+"""When one client requests and cancels in any order, its limit of jobs holds, and every request is answered."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def check_display(system: System, review: PotentialReview) -> None:
 
 
 @given(term_lists)
-def test_potential_with_any_terms(terms: list[tuple[Any, ...]]) -> None:
+def test_a_potential_with_any_terms_is_displayed_or_refused(terms: list[tuple[Any, ...]]) -> None:
     potential = result_or_error(lambda: Potential("any", tuple(terms)), ["terms"])
     if potential is not None:
         reviewed(potential)
@@ -80,7 +80,9 @@ def test_a_link_with_a_formula_of_any_kind_is_reviewed_or_refused(seed: int) -> 
 
 
 @given(st.sampled_from(list(WELLS)), *[mostly(st.floats(0.5, 2.0))] * 3)
-def test_any_parameters_of_a_known_potential(name: str, omega_1: Any, omega_2: Any, epsilon: Any) -> None:
+def test_a_known_potential_with_any_parameters_is_displayed_or_refused(
+    name: str, omega_1: Any, omega_2: Any, epsilon: Any
+) -> None:
     plain = WELLS[name]
     changed = result_or_error(lambda: plain.with_parameters(omega_1, omega_2, epsilon), WELL_PARAMETERS)
     if changed is not None:

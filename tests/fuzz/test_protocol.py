@@ -45,7 +45,7 @@ class Visitor:
             try:
                 await self._send_all(channel, reader, min(LIFE, count - self.sent))
             except WebSocketClosedError:
-                # The server has closed it, as it should after many invalid messages.
+                # The server has closed the connection, as it should after many invalid messages.
                 pass
             finally:
                 channel.close()

@@ -18,12 +18,12 @@ from tests.peers.well_comparison import Comparison, compare_with_heyoka
 CHUNK = 10
 # Refusals of wells that are not open, as no orbit escapes or the escape energy is not defined, and of energies of merged exits.
 EXPECTED = ("No saddle leads out", "The well is open without a saddle", "are one exit above V")
-# Most other refusals of a chunk.
+# Largest number of other refusals in a chunk.
 MOST_REFUSED = 2
 # Starts in a rotating system, and exact units of time for which they are followed.
 STARTS, DURATION = 40, 40.0
-# Fewest robust orbits of a system: of others rounding errors decide the ends or the crossings. At the high energy of one system
-# that is so for all orbits.
+# Smallest share of robust orbits in a system. Rounding errors decide the ends or crossings of other orbits. For one system
+# at its high energy, this is true of all orbits.
 LEAST_ROBUST = 0.5
 CHAOTIC_SEEDS = {39}
 chunks = pytest.mark.parametrize(
@@ -32,14 +32,14 @@ chunks = pytest.mark.parametrize(
 
 
 def random_energies(potential: Potential, seed: int) -> list[float]:
-    """One below the escape energy, one slightly above it, and one up to twice the depth of the well."""
+    """Return three energies: below the escape energy, slightly above, and up to twice the depth of the well."""
     random = np.random.default_rng([21, seed])
     factors = random.uniform(0.2, 1.0), 1.0 + 10.0 ** random.uniform(-6.0, -1.0), random.uniform(1.02, 2.0)
     return [factor * potential.escape_energy for factor in factors]
 
 
 def check_well(seed: int) -> tuple[list[Comparison], list[str]]:
-    """Comparisons of a well at random energies in random units, and the sentences by which it or its energies are refused."""
+    """Compare a well with heyoka at random energies in random units; return the comparisons and the reasons for refusals."""
     potential, scaling = random_well(seed, HIGHEST_DEGREE), random_scaling(seed)
     usual, review = review_potential(potential), review_potential(scaling.potential(potential))
     assert (review.refusal is None, review.channels) == (usual.refusal is None, usual.channels)
@@ -56,9 +56,9 @@ def check_well(seed: int) -> tuple[list[Comparison], list[str]]:
 
 
 @chunks
-def test_random_wells_in_random_units(chunk: int) -> None:
+def test_random_wells_agree_with_heyoka_in_random_units(chunk: int) -> None:
     seeds = range(CHUNK * chunk, CHUNK * (chunk + 1))
-    # In a process of its own, as compiled code stays in memory until the end of its process.
+    # In a separate process, because compiled code stays in memory until the end of its process.
     with ProcessPoolExecutor(1, mp_context=fork_context()) as process:
         found = dict(zip(seeds, process.map(check_well, seeds), strict=True))
     assert not {seed: wrong for seed, (comparisons, _) in found.items() if (wrong := [w for c in comparisons for w in c.wrong])}
@@ -67,13 +67,13 @@ def test_random_wells_in_random_units(chunk: int) -> None:
 
 
 @pytest.mark.parametrize(("seed", "factor"), [(97, 2.0), pytest.param(155, 2.0, marks=pytest.mark.slow)])
-def test_exits_found_by_continuation_or_from_both_ends(seed: int, factor: float) -> None:
+def test_exits_found_by_continuation_or_from_both_ends_agree_with_heyoka(seed: int, factor: float) -> None:
     potential = random_well(seed)
     assert not compare_with_heyoka(potential, factor * potential.escape_energy, seed).wrong
 
 
 @pytest.mark.parametrize("seed", [81, pytest.param(896, marks=pytest.mark.slow)])
-def test_exits_of_several_channels(seed: int) -> None:
+def test_exits_of_several_channels_agree_with_heyoka(seed: int) -> None:
     potential = random_well(seed, HIGHEST_DEGREE)
     energy = random_energies(potential, seed)[-1]
     assert potential.well.merged_exits(energy)
@@ -82,7 +82,7 @@ def test_exits_of_several_channels(seed: int) -> None:
 
 @cache
 def open_wells() -> tuple[tuple[int, Potential], ...]:
-    """The first wells with exits, with their seeds."""
+    """Return the first wells with exits, with their seeds."""
     wells: list[tuple[int, Potential]] = []
     seed = 0
     while len(wells) < 40:
@@ -103,14 +103,14 @@ def energy_of(seed: int, potential: Potential) -> float:
 @pytest.mark.parametrize(
     "number", [pytest.param(k, marks=pytest.mark.slow if k < 10 else pytest.mark.exhaustive) for k in range(40)]
 )
-def test_wells_with_functions(number: int) -> None:
+def test_wells_with_functions_agree_with_heyoka(number: int) -> None:
     seed, potential = open_wells()[number]
     assert not compare_with_heyoka(potential, energy_of(seed, potential), seed).wrong, potential.name
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(0, 40, 5))
-def test_energy_is_held_in_wells_with_functions(number: int) -> None:
+def test_the_energy_is_constant_in_wells_with_functions(number: int) -> None:
     _, potential = open_wells()[number]
     energy = potential.well.energy_at(0.9)
     x = 0.1 * potential.units.length * np.linspace(-1.0, 1.0, 8)
@@ -137,7 +137,7 @@ def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
 @pytest.mark.parametrize(
     "number", [pytest.param(k, marks=pytest.mark.slow if k < 8 else pytest.mark.exhaustive) for k in range(40)]
 )
-def test_rotating_systems_bodies_and_escape_radii(number: int) -> None:
+def test_rotating_systems_bodies_and_escape_radii_agree_with_heyoka(number: int) -> None:
     seed, potential, energy, starts = accepted_system(number)
     comparison = compare(potential, energy, starts, DURATION * potential.well.exact_time_unit)
     assert seed in CHAOTIC_SEEDS or comparison.robust > LEAST_ROBUST * STARTS

@@ -60,12 +60,12 @@ def small_map() -> EscapeMap:
 
 
 def shortened(time: Any) -> Any:
-    """A shorter time in place of a valid one that would take long."""
+    """Return a shorter time in place of a valid one that would take long."""
     return 100.0 if isinstance(time, int | float) and 100.0 < time <= LONGEST_TIME else time
 
 
 @given(floats | anything, floats | anything, floats | anything, floats | anything)
-def test_window(x_low: Any, x_high: Any, low: Any, high: Any) -> None:
+def test_any_window_gives_a_result_or_a_named_error(x_low: Any, x_high: Any, low: Any, high: Any) -> None:
     window = result_or_error(lambda: Window(x_low, x_high, low, high), ["window"])
     if window is not None:
         centres = result_or_error(lambda: window.pixel_centres(3, 4), ["window"])
@@ -73,7 +73,9 @@ def test_window(x_low: Any, x_high: Any, low: Any, high: Any) -> None:
 
 
 @given(planes, energies | st.tuples(energies, energies), resolutions, st.none() | edges, times)
-def test_map(plane: Any, energy: Any, resolution: Any, window: Any, t_max: Any) -> None:
+def test_any_map_request_gives_a_result_or_a_named_error(
+    plane: Any, energy: Any, resolution: Any, window: Any, t_max: Any
+) -> None:
     names = ["plane", "energy", "resolution", "window", "t_max", "Plane"]
     spec = result_or_error(lambda: MapSpec(CASE, plane, energy, resolution, window, t_max), names)
     if spec is None:
@@ -92,7 +94,7 @@ def test_map(plane: Any, energy: Any, resolution: Any, window: Any, t_max: Any) 
 @given(
     st.lists(st.tuples(mostly(st.integers(0, 4)), mostly(st.integers(0, 4)), mostly(st.floats(-2.0, 2.0))), max_size=5) | anything
 )
-def test_potential(terms: Any) -> None:
+def test_any_terms_of_a_potential_give_a_result_or_a_named_error(terms: Any) -> None:
     terms = tuple(terms) if isinstance(terms, list) else terms
     potential = result_or_error(lambda: Potential("odd", terms), ["terms"])
     if potential is not None:
@@ -102,14 +104,14 @@ def test_potential(terms: Any) -> None:
 
 
 @given(energies, st.lists(states, max_size=3) | anything, times)
-def test_classify_orbits(energy: Any, rows: Any, t_max: Any) -> None:
+def test_any_orbits_to_classify_give_a_result_or_a_named_error(energy: Any, rows: Any, t_max: Any) -> None:
     on_shell = [(0.1, 0.0, 0.0, 0.5)]
     for states in (rows, on_shell):
         result_or_error(functools.partial(classify_orbits, CASE, energy, states, t_max), ["energy", "states", "t_max"])
 
 
 @given(states, times)
-def test_integrate_orbit(state: Any, t_max: Any) -> None:
+def test_any_orbit_to_integrate_gives_a_result_or_a_named_error(state: Any, t_max: Any) -> None:
     orbit = result_or_error(lambda: integrate_orbit(CASE, state, shortened(t_max)), ["state", "t_max", "energy"])
     if orbit is not None:
         assert judge_orbit(orbit).describe()
@@ -117,54 +119,58 @@ def test_integrate_orbit(state: Any, t_max: Any) -> None:
 
 
 @given(states, states, times)
-def test_separation(first: Any, second: Any, t_max: Any) -> None:
+def test_any_separation_gives_a_result_or_a_named_error(first: Any, second: Any, t_max: Any) -> None:
     result_or_error(lambda: compute_separation(CASE, first, second, shortened(t_max)), ["first", "second", "t_max"])
 
 
 @given(states, times)
-def test_birkhoff_digits(state: Any, t_max: Any) -> None:
+def test_any_birkhoff_digits_give_a_result_or_a_named_error(state: Any, t_max: Any) -> None:
     result_or_error(lambda: compute_birkhoff_digits(CASE, state, t_max), ["state", "t_max", "energy"])
 
 
 @given(energies)
 @example(0.25)
-def test_lyapunov_orbits(energy: Any) -> None:
+def test_any_energy_of_lyapunov_orbits_gives_a_result_or_a_named_error(energy: Any) -> None:
     orbits = result_or_error(lambda: find_lyapunov_orbits(CASE, energy), ["energy"])
     assert not any(np.isnan([orbit.period, *orbit.x, *orbit.y, *orbit.curve]).any() for orbit in orbits or ())
 
 
 @given(planes, energies | st.tuples(energies, energies))
-def test_default_window(plane: Any, energy: Any) -> None:
+def test_any_default_window_gives_a_result_or_a_named_error(plane: Any, energy: Any) -> None:
     result_or_error(lambda: MapSpec(CASE, plane, energy).find_window(), ["energy", "plane"])
 
 
 @given(st.sampled_from(list(Plane)), st.floats(), st.lists(st.floats(), min_size=1, max_size=4))
-def test_start_states(plane: Plane, energy: float, x: list[float]) -> None:
+def test_any_start_states_give_a_result_or_a_named_error(plane: Plane, energy: float, x: list[float]) -> None:
     row = np.array(x)
     states = result_or_error(lambda: start_states(CASE, plane, energy, row, row[::-1]), ["energy"])
     assert states is None or states.shape == (row.size, 4)
 
 
 @given(planes, energies, st.tuples(floats, floats, floats, floats))
-def test_zero_velocity_curves(plane: Any, energy: Any, corners: Any) -> None:
+def test_any_zero_velocity_curves_give_a_result_or_a_named_error(plane: Any, energy: Any, corners: Any) -> None:
     names = ["window", "energy", "plane"]
     result_or_error(lambda: MapSpec(CASE, plane, energy, window=corners).trace_zero_velocity_curve(), names)
 
 
 @given(planes, energies, coordinates, coordinates, times, mostly(st.floats(1e-6, 0.01)))
-def test_divergent_start(plane: Any, energy: Any, x: Any, ordinate: Any, t_max: Any, furthest: Any) -> None:
+def test_any_divergent_start_gives_a_result_or_a_named_error(
+    plane: Any, energy: Any, x: Any, ordinate: Any, t_max: Any, furthest: Any
+) -> None:
     names = ["plane", "energy", "x", "y", "px", "h", "ordinate", "t_max", "furthest"]
     result_or_error(lambda: find_divergent_start(CASE, plane, energy, x, ordinate, shortened(t_max), furthest=furthest), names)
 
 
 @given(planes, mostly(st.lists(energies, max_size=4), anything), resolutions, st.none() | edges, times)
-def test_sweep_specs(plane: Any, swept: Any, resolution: Any, window: Any, t_max: Any) -> None:
+def test_any_sweep_request_gives_a_result_or_a_named_error(
+    plane: Any, swept: Any, resolution: Any, window: Any, t_max: Any
+) -> None:
     names = ["plane", "Plane", "energies", "values", "energy", "resolution", "window", "t_max"]
     result_or_error(lambda: SweepSpec(CASE, plane, swept, resolution, window, t_max), names)
 
 
 @given(anything.filter(lambda cores: cores is not None))
-def test_sweep_plan(cores: Any) -> None:
+def test_any_sweep_plan_gives_a_result_or_a_named_error(cores: Any) -> None:
     if isinstance(cores, int | np.integer) and 1 <= cores <= 10**6:
         return
     spec = SweepSpec(CASE, Plane.X_PX, (0.2,), (4, 4), t_max=5.0)
@@ -172,7 +178,7 @@ def test_sweep_plan(cores: Any) -> None:
 
 
 @given(labels, labels | st.none(), mostly(st.integers(1, 5)))
-def test_basin_measures(pixels: Any, valid: Any, box: Any) -> None:
+def test_any_pixels_of_basin_measures_give_a_result_or_a_named_error(pixels: Any, valid: Any, box: Any) -> None:
     names = ["labels", "valid", "box"]
     result_or_error(lambda: compute_basin_entropy(pixels, valid, box=box), names)
     result_or_error(lambda: compute_wada_test(pixels, valid), names)
@@ -181,18 +187,18 @@ def test_basin_measures(pixels: Any, valid: Any, box: Any) -> None:
 
 
 @given(number_lists, count_lists, count_lists)
-def test_fits_of_uncertain_pairs(separations: Any, pairs: Any, uncertain: Any) -> None:
+def test_any_counts_of_uncertain_pairs_give_a_result_or_a_named_error(separations: Any, pairs: Any, uncertain: Any) -> None:
     result_or_error(lambda: fit_uncertainty(separations, pairs, uncertain), ["separations", "pairs", "uncertain"])
 
 
 @given(times, st.none() | st.tuples(floats, floats) | anything)
-def test_decay_laws(t_max: Any, window: Any) -> None:
+def test_any_decay_laws_give_a_result_or_a_named_error(t_max: Any, window: Any) -> None:
     statistics = compute_statistics(small_map())
     result_or_error(lambda: fit_decay_laws(statistics, t_max, window=window), ["t_max", "window"])
 
 
 @given(mostly(st.integers(5, 12)), mostly(st.integers(3, 6)), mostly(st.floats(1.0, 10.0)), counts)
-def test_uncertainty_exponent(pairs: Any, separations: Any, work: Any, seed: Any) -> None:
+def test_any_uncertainty_exponent_gives_a_result_or_a_named_error(pairs: Any, separations: Any, work: Any, seed: Any) -> None:
     if any(isinstance(value, int | float) and value > 100 for value in (pairs, separations, work)):
         return
     names = ["pairs", "separations", "work", "seed"]
@@ -201,7 +207,7 @@ def test_uncertainty_exponent(pairs: Any, separations: Any, work: Any, seed: Any
 
 
 @given(mostly(st.just(0.05), anything), mostly(st.just(0), anything))
-def test_stable_manifolds(energy: Any, images: Any) -> None:
+def test_any_stable_manifolds_give_a_result_or_a_named_error(energy: Any, images: Any) -> None:
     if isinstance(images, int | float) and images == 1 and isinstance(energy, int | float) and energy > 0.125:
         return
     result_or_error(lambda: find_stable_manifolds(CASE, energy, images=images), ["energy", "images"])

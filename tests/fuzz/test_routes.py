@@ -21,11 +21,11 @@ LARGEST_GROWTH = 0.15
 
 
 async def send(port: int, request: bytes) -> bytes:
-    """The first line of the answer; empty if the server closes the connection."""
+    """Return the first line of the answer; empty if the server closes the connection."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     try:
         writer.write(request)
-        # Else the server waits for the rest of an incomplete request.
+        # Otherwise the server waits for the rest of an incomplete request.
         writer.write_eof()
         first = (await asyncio.wait_for(reader.read(), ANSWER_SECONDS)).partition(b"\r\n")[0]
         await asyncio.wait_for(writer.drain(), ANSWER_SECONDS)

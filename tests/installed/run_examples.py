@@ -13,7 +13,7 @@ import escape_explorer
 
 
 def main(pages: list[str]) -> int:
-    """Exit code 1 if an example prints something else."""
+    """Run the examples; return 1 if an example prints something else."""
     runner, finder = doctest.DocTestRunner(), doctest.DocTestFinder(recurse=False)
     for name in escape_explorer.__all__:
         for test in finder.find(inspect.unwrap(getattr(escape_explorer, name)), name):

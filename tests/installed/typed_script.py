@@ -44,7 +44,7 @@ EDGES = (-1.0, 1.0, -1.0, 1.0)
 
 
 def measure(potential: Potential, energy: float) -> tuple[BasinEntropy, WadaTest]:
-    """Measures of the basins of a small map."""
+    """Return measures of the basins of a small map."""
     spec = MapSpec(potential, Plane.X_PX, energy, resolution=(60, 60), window=EDGES, t_max=1e3)
     assert_type(spec.find_window(), Window)
     escapes = compute_map(spec)
@@ -56,7 +56,7 @@ def measure(potential: Potential, energy: float) -> tuple[BasinEntropy, WadaTest
 
 
 def follow(potential: Potential, energy: float) -> Orbit:
-    """The first of ten random starts, followed to its escape."""
+    """Return the first of ten random starts, followed to its escape."""
     starts = sample_starts(potential, energy, 10, plane=Plane.X_Y, window=EDGES, seed=1)
     assert_type(classify_orbits(potential, energy, starts, t_max=1e3, execution=Execution()), Outcomes)
     orbit = integrate_orbit(potential, starts[0], t_max=1e3)

@@ -34,7 +34,7 @@ def check_former_name(old: str, new: str) -> None:
 
 
 def run_program(*arguments: str) -> str:
-    """What a command writes to its error stream."""
+    """Return what a command writes to its error stream."""
     return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True).stderr
 
 

@@ -22,7 +22,7 @@ def equations(potential: Potential):
 
 
 def variational_equations(potential: Potential):
-    """Equations of an orbit and two deviation vectors: (12,) x, y, px, py and twice δx, δy, δpx, δpy."""
+    """Return the equations of (12,) variables: x, y, px, py of an orbit, and δx, δy, δpx, δpy of two deviation vectors."""
 
     def derivative(_t: float, flat: np.ndarray) -> np.ndarray:
         x, y, px, py = flat[:4]

@@ -31,12 +31,12 @@ class ExitLine:
         return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
 
     def beyond(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Distance beyond the exit along the normal of the chord; −1 for points beside the exit."""
+        """Return the distance beyond the exit along the normal of the chord; −1 for points beside the exit."""
         u, q = self.in_chord_axes(x, y)
         return np.where(np.abs(q) <= self.q[-1], u - np.interp(q, self.q, self.u), -1.0)
 
     def past(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Distance beyond the exit and its straight extension, which the interior does not cross in the cases of the paper."""
+        """Return the distance beyond the exit and its straight extension, which interiors of the paper's cases do not cross."""
         u, q = self.in_chord_axes(x, y)
         return u - np.interp(q, self.q, self.u)
 

@@ -32,7 +32,7 @@ class Ends(NamedTuple):
 
 @dataclass(frozen=True)
 class Exit:
-    """An exit: a function of heyoka's x and y that rises through 0 where an orbit leaves, and whether it does at a point."""
+    """An exit: a function of heyoka's x and y that rises through 0 where an orbit leaves, and a test whether a point counts."""
 
     fate: int
     height: Any
@@ -43,7 +43,7 @@ def exits_of(potential: Potential, energy: float) -> list[Exit]:
     x, y, *_ = coordinates()
     exits = [_line(orbit.channel, orbit.curve, x, y) for orbit in find_lyapunov_orbits(potential, energy)]
     for fate, centre in enumerate(potential.centres, potential.channels + 1):
-        # Divided by the radius, so that the height of each has the same scale.
+        # Division by the radius gives all exits the same scale.
         height = 1.0 - ((x - centre.x) ** 2.0 + (y - centre.y) ** 2.0) * (1.0 / centre.radius**2)
         exits.append(Exit(fate, height, lambda _x, _y: True))
     if potential.escape_radius is not None:
@@ -113,7 +113,7 @@ class Comparison(NamedTuple):
 
 
 def compare(potential: Potential, energy: float, states: np.ndarray, t_max: float) -> Comparison:
-    """The outcomes of the engine beside those of heyoka, where these survive a shift of the start and another tolerance."""
+    """Compare the engine's outcomes with heyoka's where these survive a shift of the start and another tolerance."""
     ours = classify_orbits(potential, energy, states, t_max)
     shift = SHIFT * potential.units.state * np.array([1.0, -1.0, 0.0, 0.0])
     peers = [Peer(potential, energy, tolerance) for tolerance in TOLERANCES]

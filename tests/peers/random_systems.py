@@ -39,7 +39,7 @@ _FUNCTIONS = (
 
 
 def random_well(seed: int, highest_degree: int = 8) -> Potential:
-    """A well with up to ten random terms of degree 3 and higher."""
+    """Return a well with up to ten random terms of degree 3 and higher."""
     random = np.random.default_rng([19, seed])
     degree = int(random.integers(3, highest_degree + 1))
     a, b = random.uniform(0.2, 1.2, 2)
@@ -51,13 +51,13 @@ def random_well(seed: int, highest_degree: int = 8) -> Potential:
 
 
 def random_scaling(seed: int) -> Scaling:
-    """Units from the least to the largest that are supported, no powers of 2."""
+    """Return units from the least to the largest that are supported, no powers of 2."""
     length, energy = 10.0 ** np.random.default_rng([20, seed]).uniform(-6.0, 6.0, 2)
     return Scaling(float(length), float(energy))
 
 
 def random_formula(seed: int) -> tuple[str, dict[str, float]]:
-    """A formula and the values of its letters."""
+    """Return a formula and the values of its letters."""
     random = np.random.default_rng([33, seed])
     terms = [
         f"{'−+'[int(random.integers(2))]} {letter} {_POWERS[random.integers(len(_POWERS))]} "
@@ -70,7 +70,7 @@ def random_formula(seed: int) -> tuple[str, dict[str, float]]:
 
 
 def random_system(seed: int) -> tuple[Potential, float]:
-    """A system, and an energy above its lowest exit."""
+    """Return a system, and an energy above its lowest exit."""
     random = np.random.default_rng([57, seed])
     text, values = random_formula(seed)
     well = parse_formula(text, parameters=values)
@@ -93,5 +93,5 @@ def random_system(seed: int) -> tuple[Potential, float]:
         lambda: well.with_outcomes(escape_radius=radius),
         lambda: parse_formula(body, parameters=values).in_rotating_frame(well.rotation).with_outcomes([centre], radius),
     )
-    # The exits of a well at rest are no lines; `well_comparison` is about these.
+    # The exits of a well at rest are not straight lines; `well_comparison` compares them.
     return builders[int(random.integers(0 if well.rotation else 2, len(builders)))](), energy

@@ -10,7 +10,7 @@ import numpy as np
 from engine import Potential
 from tests.peers import taylor_heyoka
 
-# Points of a path in each step, how often the interval of a crossing is divided into as many parts, and points of an exit.
+# Points of a path in each step, repeated divisions of the interval of a crossing into that many parts, and points of an exit.
 _SAMPLES, _ZOOMS, _EXIT_POINTS = 16, 5, 2001
 
 
@@ -22,7 +22,7 @@ class Exits:
     paths: list[np.ndarray]
 
     def first_crossed(self, path: np.ndarray) -> tuple[int, int]:
-        """The segment of a path (m, 2) that crosses an exit first, and the channel of this exit; channel 0 if there is none."""
+        """Return the first segment of a path (m, 2) that crosses an exit, and the channel of this exit, 0 if there is none."""
         crossings = [(int(np.argmax(hits)), channel) for channel, hits in self._hits(path) if hits.any()]
         return min(crossings, default=(0, 0))
 
@@ -39,7 +39,7 @@ class Exits:
 
 @dataclass(frozen=True)
 class End:
-    """Where (2,) and when an orbit ends, its channel, 0 for none, and how often y passed 0 upward before."""
+    """The place (2,) and time of the end of an orbit, its channel (0 for none), and its upward crossings of y = 0."""
 
     channel: int
     time: float
@@ -57,7 +57,7 @@ class Peer:
 
     def __init__(self, potential: Potential, tolerance: float) -> None:
         self.upward: list[float] = []
-        # Without a reference to this object, which would never be freed.
+        # The lambda has no reference to this object, because heyoka would keep it for ever.
         passed = self.upward.append
         y, upward = taylor_heyoka.coordinates()[1], hy.event_direction.positive
         # heyoka does not copy a lambda.
@@ -71,13 +71,13 @@ class Peer:
         self.upward.clear()
 
     def path_from_rest(self, place: np.ndarray, duration: float) -> np.ndarray:
-        """(n, 4) the states of an orbit that starts at rest."""
+        """Return the states of an orbit that starts at rest, of shape (n, 4)."""
         self.start(np.concatenate([place, [0.0, 0.0]]))
         path: np.ndarray = self.integrator.propagate_grid(np.linspace(0.0, duration, _EXIT_POINTS))[-1]
         return path
 
     def end_of(self, state: np.ndarray, exits: Exits, t_max: float, farthest: float) -> End:
-        """The end of an orbit at the first exit that it crosses, at t_max, or at the distance `farthest`."""
+        """Return the end of an orbit at the first exit that it crosses, at t_max, or at the distance `farthest`."""
         self.start(state)
         while self.integrator.time < t_max and np.hypot(*self.integrator.state[:2]) < farthest:
             begin = self.integrator.time

@@ -49,7 +49,7 @@ def _in_heyoka(form):
 @_in_heyoka.register
 def _(form: PolynomialForm):
     x, y, *_ = coordinates()
-    # Not as powers: the series of y**3 divides by y.
+    # Products instead of powers, because the series of y**3 divides by y.
     terms = (math.prod([x] * i + [y] * j, start=hy.expression(c)) for i, j, c in form.terms)
     return sum(terms, start=hy.expression(0.0))
 
@@ -79,7 +79,7 @@ def _power(base, exponent: float):
 
 
 def taylor_coefficients(potential: Potential, state: np.ndarray) -> np.ndarray:
-    """(2, order + 1) coefficients of x and y about a state."""
+    """Return the coefficients of x and y about a state, of shape (2, order + 1)."""
     integrator = hy.taylor_adaptive(equations(potential), state.tolist(), tol=1e-18)
     integrator.step(write_tc=True)
     return integrator.tc[:2].copy()
@@ -177,7 +177,7 @@ def _plain(potential: Potential):
 
 
 def propagated(potential: Potential, states: np.ndarray, duration: float) -> np.ndarray:
-    """(n, 4) states after a duration, which may be negative."""
+    """Return states after a duration, which may be negative, of shape (n, 4)."""
     integrator = _plain(potential)
     out = np.empty_like(states)
     for n, state in enumerate(states):

@@ -26,7 +26,7 @@ def grazing_starts(y_at_turn: float) -> np.ndarray:
 
 
 def crossings(starts: np.ndarray, t_max: float = T_MAX) -> np.ndarray:
-    """Crossings of each orbit; they are classified separately, as each has its own energy."""
+    """Return the crossings of orbits, which are classified one by one because each has its own energy."""
     energies = ODD.energy(starts)
     assert energies.max() < ODD.escape_energy
     return np.array([classify_orbits(ODD, h, s[None], t_max).crossings[0] for h, s in zip(energies, starts, strict=True)])

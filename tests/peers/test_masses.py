@@ -1,4 +1,4 @@
-"""Orbits of formulas with masses beside SciPy's DOP853, which integrates H = (px² + py²)/2m + V itself."""
+"""Orbits of formulas with masses agree with SciPy's DOP853, which integrates H = (px² + py²)/2m + V directly."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def random_mass(seed: int) -> float:
 
 
 def heavy_system(seed: int) -> tuple[Potential, float]:
-    """A well with a mass, in two of three cases in a rotating frame, and an energy above its escape energy."""
+    """Return a well with a mass, in two of three cases in a rotating frame, and an energy above its escape energy."""
     mass = random_mass(seed)
     well = parse_formula(f"{write_formula(random_well(seed))}; masses (m, m)", parameters={"m": mass})
     rotating = well.in_rotating_frame((0.0, 0.15, -0.1)[seed % 3] / mass**0.5)
@@ -44,7 +44,7 @@ def heavy_system(seed: int) -> tuple[Potential, float]:
 
 
 def path_of(potential: Potential, state: np.ndarray, times: np.ndarray, mass: float) -> np.ndarray:
-    """(4, n) the states at times, from Hamilton's equations with the Coriolis force."""
+    """Return the states at times, from Hamilton's equations with the Coriolis force, of shape (4, n)."""
 
     def motion(_t: float, state: np.ndarray) -> list[float]:
         x, y, px, py = state
@@ -58,7 +58,7 @@ def path_of(potential: Potential, state: np.ndarray, times: np.ndarray, mass: fl
 
 
 @pytest.mark.parametrize("seed", [seed for seed in SEEDS if heavy_system(seed)[0].channels])
-def test_orbits_of_a_mass_are_those_of_its_equations_of_motion(seed: int) -> None:
+def test_orbits_with_a_mass_obey_their_equations_of_motion(seed: int) -> None:
     (potential, energy), mass = heavy_system(seed), random_mass(seed)
     starts = sample_starts(potential, energy, 5, seed=seed)
     kinetic = (starts[:, 2:] ** 2).sum(axis=1) / (2.0 * mass)
@@ -130,7 +130,7 @@ def test_a_mass_can_be_the_axis_of_a_map() -> None:
     np.testing.assert_array_equal(2.0 * times[0].escape_time, times[1].escape_time)
 
 
-def test_the_jacobi_constant_is_that_of_a_unit_mass() -> None:
+def test_the_jacobi_constant_of_a_mass_is_that_of_a_unit_mass() -> None:
     at_rest, heavy = (parse_formula(f"−{k}/√(r² + 1){masses}") for k, masses in ((1, ""), (8, "; masses (8, 8)")))
     one, other = at_rest.in_rotating_frame(0.3), heavy.in_rotating_frame(0.3)
     assert other.jacobi_constant(8.0 * -0.5) == pytest.approx(one.jacobi_constant(-0.5))

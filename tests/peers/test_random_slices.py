@@ -41,7 +41,7 @@ T_MAX, TOLERANCE = 60.0, 1e-15
 
 
 def random_slice(random: np.random.Generator, system: System) -> Slice:
-    """A slice with any two axes, oblique ones included."""
+    """Return a slice with any two axes, oblique ones included."""
     held = round(float(random.uniform(-0.15, 0.15)), 3)
     momentum, other = random.permutation([C.PX, C.PY]).tolist()
     angle = random.choice([C.THETA, C.BETA])
@@ -84,7 +84,7 @@ def state_of(plane: Slice, potential: Potential, energy: float, point: tuple[flo
 
 
 def robust_pixels(plane: Slice, spec: MapSpec, random: np.random.Generator) -> tuple[Any, list[tuple[int, int]]]:
-    """A map and some of its pixels whose fate does not depend on rounding."""
+    """Return a map and some of its pixels whose fate does not depend on rounding."""
     found = compute_map(spec)
     trust = compute_trust(found).trust
     robust = np.argwhere(np.isin(trust, (Trust.LIKE_NEIGHBOURS, Trust.CONFIRMED)))
@@ -97,7 +97,7 @@ def robust_pixels(plane: Slice, spec: MapSpec, random: np.random.Generator) -> t
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(COUNT))
-def test_fates_of_robust_pixels_are_those_of_heyoka(number: int) -> None:
+def test_fates_of_robust_pixels_agree_with_heyoka(number: int) -> None:
     random = np.random.default_rng([32, number])
     system = SYSTEMS[number % len(SYSTEMS)]
     plane, potential = random_slice(random, system), system.potential

@@ -1,4 +1,4 @@
-"""Ridges of Lagrangian descriptors lie on the stable and unstable manifolds of the Lyapunov orbits."""
+"""Ridges of Lagrangian descriptors lie on the stable and unstable manifolds of Lyapunov orbits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ STEEPEST = 0.9
 
 
 def find_ridges(values: np.ndarray) -> np.ndarray:
-    """(n, 2) columns and rows of the pixels whose gradient is among the steepest, and the steepest along its direction."""
+    """Return columns and rows, (n, 2), of pixels whose gradient is among the steepest, and steepest along its direction."""
     slope, along = np.gradient(values)
     steepness = np.hypot(along, slope)
     known = np.isfinite(steepness) & (steepness > 0.0)
@@ -29,7 +29,7 @@ def find_ridges(values: np.ndarray) -> np.ndarray:
 
 
 def manifold_points(images: int, sign: float) -> np.ndarray:
-    """(n, 2) columns and rows of points of the stable manifolds, or of the unstable ones, which have the opposite px."""
+    """Return columns and rows, (n, 2), of points of the stable manifolds, or, with the opposite px, of the unstable ones."""
     window, (columns, rows) = SPEC.find_window(), SPEC.resolution
     points = []
     for arc in find_stable_manifolds(SPEC.potential, SPEC.energy, images=images).arcs:
@@ -52,7 +52,7 @@ def test_ridges_lie_on_the_manifolds_of_their_direction_of_time(direction: str, 
     ridges = find_ridges(descriptor)
     assert len(ridges) > 500
     assert share_within_a_pixel(ridges, manifold_points(3, sign)) > 0.98
-    # Later images lie close together, so that the first two tell one direction of time from the other.
+    # Only the first two images distinguish the directions of time, because later images lie close together.
     first, wrong = manifold_points(2, sign), manifold_points(2, -sign)
     assert share_within_a_pixel(ridges, first) > 0.85 > 2.0 * share_within_a_pixel(ridges, wrong)
     assert share_within_a_pixel(first, ridges) > 0.75

@@ -1,4 +1,4 @@
-"""The systems of the catalogue with rotating frames and bodies beside heyoka: random starts, and orbits that graze exits."""
+"""Systems of the catalogue with rotating frames and bodies agree with heyoka, for random starts and grazing orbits."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ NAMES = [entry.name for entry in ROTATING_ENTRIES]
 STARTS, ENERGIES, DURATION = 60, 3, 40.0
 # Shares of a radius, or of the distance of a saddle, by which the nearest point of an orbit lies beyond an exit.
 DEPTHS = (1e-9, -1e-9)
-# In exact units of time, between the start of a grazing orbit, its nearest point, and the end of the integration.
+# Times from the start of a grazing orbit to its nearest point, and from there to the end, in exact units of time.
 TIME_TO_TURN, AFTER = 1.0, 0.1
 
 
 def energies_of(name: str) -> list[float]:
-    """Random energies from the range of the system at which exits are known."""
+    """Return random energies from the range of the system at which exits are known."""
     system, random = review_system(System(name)), np.random.default_rng(len(name))
     found: list[float] = []
     while len(found) < ENERGIES:
@@ -38,7 +38,7 @@ def energies_of(name: str) -> list[float]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_outcomes_are_those_of_heyoka(name: str) -> None:
+def test_outcomes_agree_with_heyoka(name: str) -> None:
     potential = System(name).potential
     for energy in energies_of(name):
         starts = sample_starts(potential, energy, STARTS, seed=1)
@@ -48,14 +48,14 @@ def test_outcomes_are_those_of_heyoka(name: str) -> None:
 
 
 def acceleration(potential: Potential, states: np.ndarray) -> np.ndarray:
-    """(n, 2) ẍ and ÿ."""
+    """Return ẍ and ÿ, of shape (n, 2)."""
     x, y, px, py = states.T
     twice, (vx, vy) = 2.0 * potential.rotation, potential.gradient(x, y)
     return np.column_stack([twice * py - vx, -twice * px - vy])
 
 
 def with_speeds(potential: Potential, energy: float, places: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """States (n, 4) of an energy with velocities in given directions; those that are allowed."""
+    """Return states (n, 4) of an energy with velocities in given directions; those that are allowed."""
     square = 2.0 * (energy - potential.value(*places.T))
     allowed = square > 0.0
     return np.column_stack([places, np.sqrt(square.clip(0.0))[:, None] * directions])[allowed]
@@ -64,7 +64,7 @@ def with_speeds(potential: Potential, energy: float, places: np.ndarray, directi
 def at_circle(
     potential: Potential, energy: float, centre: tuple[float, float], radius: float, sign: float, depth: float
 ) -> np.ndarray:
-    """States whose distance from a centre is at an extremum, beyond the radius by a share; sign: 1 for the escape circle."""
+    """Return states at extrema of the distance from a centre, beyond the radius by a share; `sign` is 1 for the escape circle."""
     angle = np.repeat(np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False) + 0.1, 2)
     radial = np.column_stack([np.cos(angle), np.sin(angle)])
     tangent = np.column_stack([-radial[:, 1], radial[:, 0]]) * np.tile([1.0, -1.0], 24)[:, None]
@@ -76,7 +76,7 @@ def at_circle(
 
 
 def at_line(potential: Potential, curve: np.ndarray, energy: float, depth: float) -> np.ndarray:
-    """States on a line beside that of an exit, parallel to it, that turn back inward."""
+    """Return states on a line beside that of an exit, parallel to it, that turn back inward."""
     place, outward = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
     across = np.array([-outward[1], outward[0]])
     series, half = chebyshev.Chebyshev(curve[events.COEFFICIENTS :]), curve[events.HALF_WIDTH]
@@ -92,7 +92,7 @@ def at_line(potential: Potential, curve: np.ndarray, energy: float, depth: float
 
 
 def grazing_states(potential: Potential, energy: float, depth: float) -> list[tuple[int, np.ndarray]]:
-    """Fates, and states at the nearest points to their exits."""
+    """Return fates, and states at the nearest points to their exits."""
     discs = enumerate(potential.centres, potential.channels + 1)
     states = [(fate, at_circle(potential, energy, (each.x, each.y), each.radius, -1.0, depth)) for fate, each in discs]
     states += [
@@ -122,10 +122,10 @@ def test_an_orbit_that_grazes_an_exit_ends_there_only_beyond_it(name: str, energ
 
     tested = 0
     for fate, turning in grazing_states(potential, energy, depth):
-        # Some that turn back slowly turn outward again, and cross the exit.
+        # Some orbits that turn back slowly turn outward again, and cross the exit.
         turning = turning[are_inside(taylor_heyoka.propagated(potential, turning, after - before))]
         starts = taylor_heyoka.propagated(potential, turning, -before)
-        # Backward in time some pass close to the other body, where heyoka's steps lose the energy.
+        # Backward in time some orbits pass close to the other body, where heyoka's steps do not conserve the energy.
         starts = starts[np.abs(potential.energy(starts) - energy) < 1e-10 * potential.units.energy]
         starts = starts[are_inside(starts)]
         # Orbits that have passed an exit before are not counted.

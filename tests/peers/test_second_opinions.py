@@ -21,7 +21,7 @@ SETS = [("I", 0.13), ("II", 0.5), ("III", 0.35)]
 
 
 def interior_starts(name: str, energy: float, plane: Plane) -> np.ndarray:
-    """Random interior starts, selected with the independent description of the exits in `exit_lines`."""
+    """Return random interior starts, selected with the independent description of the exits in `exit_lines`."""
     potential, rng = CASES[name], np.random.default_rng(int(1000 * energy))
     window = default_window(potential, plane, energy)
     x = rng.uniform(window.x_low, window.x_high, 400)
@@ -33,7 +33,7 @@ def interior_starts(name: str, energy: float, plane: Plane) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("name", "energy"), SETS)
-def test_outcomes_of_robust_orbits_are_those_of_heyoka(name: str, energy: float) -> None:
+def test_outcomes_of_robust_orbits_agree_with_heyoka(name: str, energy: float) -> None:
     potential, lines = CASES[name], exit_lines(CASES[name], energy)
     states = np.concatenate([interior_starts(name, energy, plane) for plane in (Plane.X_Y, Plane.X_PX)])
     ours = classify_orbits(potential, energy, states, T_MAX)

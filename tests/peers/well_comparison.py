@@ -34,7 +34,7 @@ DRAWN = Scaling(1.0, 1.0)
 def flood_fill(potential: Potential, energy: float, exits: Exits) -> tuple[np.ndarray, ...]:
     """x, y (GRID, GRID), whether inside, and whether known: below the energy and three pixels from all exits and walls."""
     corner, inside = np.full(2, SMALLEST * potential.units.length), np.ones((GRID, GRID), bool)
-    # Until the grid holds the whole interior, which may be slender.
+    # The grid grows until it contains the whole interior, which may be slender.
     while (at_edges := [inside[:, [0, -1]].any(), inside[[0, -1]].any()]) != [False, False]:
         corner *= np.where(at_edges, 1.3, 1.0)
         x, y = np.meshgrid(*(np.linspace(-far, far, GRID) for far in corner))
@@ -55,7 +55,7 @@ def flood_fill(potential: Potential, energy: float, exits: Exits) -> tuple[np.nd
 
 @dataclass(frozen=True)
 class Setting:
-    """A well at an energy: for heyoka as it was drawn, for the engine in other units of length and energy."""
+    """A well at an energy, in the original units for heyoka, and in other units of length and energy for the engine."""
 
     potential: Potential
     energy: float
@@ -74,7 +74,7 @@ class Setting:
 
 @dataclass
 class Comparison:
-    """Exits, regions, robust fates and crossings, and steady escape times that differ, in words, and numbers of orbits."""
+    """Descriptions of differing exits, regions, robust fates and crossings, and steady escape times, and numbers of orbits."""
 
     wrong: list[str] = field(default_factory=list)
     robust: int = 0
@@ -83,7 +83,7 @@ class Comparison:
 
 
 def compare_with_heyoka(potential: Potential, energy: float, seed: int, scaling: Scaling = DRAWN) -> Comparison:
-    """The exits, the interior and the outcomes of random orbits of a well at an energy."""
+    """Return the exits, the interior and the outcomes of random orbits of a well at an energy."""
     setting, random, found = Setting(potential, energy, scaling), np.random.default_rng(seed), Comparison()
     peers = Peer(potential, TOLERANCE), Peer(potential, COARSER)
     exits = integrated_exits(setting, peers[0], found)
@@ -92,7 +92,7 @@ def compare_with_heyoka(potential: Potential, energy: float, seed: int, scaling:
 
 
 def integrated_exits(setting: Setting, peer: Peer, found: Comparison) -> Exits:
-    """The Lyapunov orbits over half a period, integrated from rest; they must end at rest on the zero-velocity curve."""
+    """Return the Lyapunov orbits over half a period, integrated from rest; they must end at rest on the zero-velocity curve."""
     channels, paths = [], []
     potential, units = setting.potential, setting.potential.units
     for orbit in find_lyapunov_orbits(*setting.scaled):
@@ -110,7 +110,7 @@ def integrated_exits(setting: Setting, peer: Peer, found: Comparison) -> Exits:
 
 
 def random_starts(setting: Setting, exits: Exits, random: np.random.Generator, found: Comparison) -> np.ndarray:
-    """(n, 4) starts in the interior, which must be that of a flood fill."""
+    """Return the starts in the interior, which must be that of a flood fill, of shape (n, 4)."""
     x, y, inside, known = flood_fill(setting.potential, setting.energy, exits)
     sample = random.permutation(np.flatnonzero(known))[:2000]
     x, y, inside = (grid.ravel()[sample] for grid in (x, y, inside))

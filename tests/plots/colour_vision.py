@@ -1,4 +1,4 @@
-"""Differences of colours as people see them, also with a colour-vision deficiency."""
+"""Compute differences of colours as people see them, also with a colour-vision deficiency."""
 
 from __future__ import annotations
 
@@ -18,36 +18,36 @@ _TO_XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.
 
 
 def lab(colours: Sequence[str], vision: str = "normal") -> np.ndarray:
-    """(n, 3) CIELAB coordinates, D65, of opaque colours."""
+    """Return CIELAB coordinates, D65, of opaque colours, of shape (n, 3)."""
     encoded = np.array([ImageColor.getrgb(colour)[:3] for colour in colours]) / 255.0
     return lab_of_linear(_linear(encoded) @ VISIONS[vision].T)
 
 
 def lab_of_linear(rgb: np.ndarray) -> np.ndarray:
-    """(n, 3) CIELAB coordinates of linear RGB from 0 to 1."""
+    """Return CIELAB coordinates of linear RGB from 0 to 1, of shape (n, 3)."""
     xyz = np.clip(rgb, 0.0, 1.0) @ _TO_XYZ.T / _TO_XYZ.sum(axis=1)
     f = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
     return np.stack([116.0 * f[:, 1] - 16.0, 500.0 * (f[:, 0] - f[:, 1]), 200.0 * (f[:, 1] - f[:, 2])], axis=-1)
 
 
 def luminance(colour: str) -> float:
-    """Relative luminance, 0 to 1, as in the WCAG."""
+    """Return the relative luminance, 0 to 1, as in the WCAG."""
     return float(_linear(np.array(ImageColor.getrgb(colour)[:3]) / 255.0) @ _TO_XYZ[1])
 
 
 def contrast(one: str, other: str) -> float:
-    """Contrast ratio of the WCAG, 1 to 21."""
+    """Return the contrast ratio of the WCAG, 1 to 21."""
     low, high = sorted((luminance(one), luminance(other)))
     return (high + 0.05) / (low + 0.05)
 
 
 def differences(ones: Sequence[str], others: Sequence[str], vision: str = "normal") -> np.ndarray:
-    """(n, m) differences CIEDE2000 between colours."""
+    """Return the differences CIEDE2000 between colours, of shape (n, m)."""
     return ciede2000(lab(ones, vision)[:, None], lab(others, vision)[None])
 
 
 def ciede2000(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Difference CIEDE2000 of CIELAB colours, after Sharma, Wu and Dalal (2005)."""
+    """Return the difference CIEDE2000 of CIELAB colours, after Sharma, Wu and Dalal (2005)."""
     one, other = np.broadcast_arrays(one, other)
     mean_chroma = 0.5 * (np.hypot(one[..., 1], one[..., 2]) + np.hypot(other[..., 1], other[..., 2]))
     stretch = 1.5 - 0.5 * np.sqrt(mean_chroma**7 / (mean_chroma**7 + 25.0**7))

@@ -18,5 +18,5 @@ from tests.plots.colour_vision import ciede2000
         ((22.7233, 20.0904, -46.6940), (23.0331, 14.9730, -42.5619), 2.0373),
     ],
 )
-def test_differences_are_those_of_sharma_and_others(one, other, expected: float) -> None:
+def test_differences_agree_with_sharma_and_others(one, other, expected: float) -> None:
     assert ciede2000(np.array(one), np.array(other)) == pytest.approx(expected, abs=1e-4)

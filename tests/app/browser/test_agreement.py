@@ -1,4 +1,4 @@
-"""The browser's pixels are those of the server's map at the same time: on all robust pixels, and on nearly all others."""
+"""The browser's pixels agree with the server's map at the same time: all robust pixels, and nearly all others."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ SLICES = (
 # Powers of ten.
 ZOOMS = (0, 0, 2, 2, 5, 9)
 SIDE, COARSE, HORIZON = 30, 10, 30.0
-# Of all pixels, sensitive ones included.
+# Smallest share of equal pixels, including sensitive pixels.
 LEAST_SHARE = 0.995
 
 
 def random_specs(system: System, chance: np.random.Generator, all_zooms: Sequence[int]) -> Iterator[MapSpec]:
-    """Views of a system, one for each zoom, on boundaries between basins: plane, energy and place are random."""
+    """Yield views of a system, one for each zoom, on boundaries between basins: plane, energy and place are random."""
     potential, energies = system.potential, review_system(system).energies
     low, high = max(potential.escape_energy, energies.low), energies.high
     ends = low + 0.05 * (high - low), low + 0.9 * (high - low)
@@ -68,7 +68,7 @@ def random_specs(system: System, chance: np.random.Generator, all_zooms: Sequenc
 
 
 def zoom_on_boundary(spec: MapSpec, chance: np.random.Generator) -> MapSpec:
-    """The view ten times smaller around a random pixel that escapes elsewhere than its neighbour, or around the middle."""
+    """Return the view ten times smaller around a random pixel that escapes elsewhere than its neighbour, or around the middle."""
     coarse = compute_map(replace(spec, resolution=(COARSE, COARSE)))
     left, right = coarse.fate[:, :-1], coarse.fate[:, 1:]
     places = np.argwhere((left != right) & (left >= 1) & (right >= 1))
@@ -85,14 +85,14 @@ def as_view(spec: MapSpec) -> dict[str, Any]:
 
 
 def run_views(system: System, specs: Sequence[MapSpec], folder: Path) -> Any:
-    """What the browser's engine finds in views of a system."""
+    """Return what the browser's engine finds in views of a system."""
     portable = make_portable_system(system.potential, review_system(system).energies.high)
     views = [as_view(spec) for spec in specs]
     return run_node("run_view.js", {"system": portable.to_dict(), "module": portable.module, "views": views}, folder)
 
 
 def expected_fate(escape_map: EscapeMap) -> np.ndarray:
-    """Orbits inside at the horizon are undecided."""
+    """Return the fates of a map, undecided for orbits that are inside at the horizon."""
     return np.where(escape_map.fate == Fate.BOUNDED, Fate.NOT_COMPUTED, escape_map.fate)
 
 

@@ -23,12 +23,12 @@ def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None
         assert abs(edge - window.x_high) < 0.01
 
 
-def test_each_potential_has_its_key() -> None:
+def test_each_potential_has_an_individual_key() -> None:
     systems = (System("I"), System("II"), System("I", parameters={"epsilon": 1.1}), System("typed", "x²+y²-x²y²"))
     assert len({system_key(system.potential) for system in systems}) == len(systems)
 
 
-def test_frames_centres_and_escape_radii_have_their_keys_and_names_of_potentials_none() -> None:
+def test_frames_centres_and_escape_radii_change_the_key_and_names_of_potentials_do_not() -> None:
     well = CASES["I"]
     potentials = [
         well,

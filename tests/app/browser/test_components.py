@@ -1,4 +1,4 @@
-"""Messages from the components in the browser to the server: legal ones are reported, and all others are ignored."""
+"""Legal messages from components in the browser are reported, and all others are ignored."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from tests.app.browser_messages import send
 
 Report = Callable[..., None]
 NAN = float("nan")
-# Wrong for every component.
+# Messages that are wrong for every component.
 NEVER = [None, 7, "x", [], {}, {"other": 1}]
 
 
 @dataclass(frozen=True)
 class Example:
-    """A component, messages with what is reported of them, and messages that are ignored."""
+    """A component, legal messages with their reports, and messages that are ignored."""
 
     make: Callable[[Report], JSComponent]
     legal: list[tuple[Any, tuple[Any, ...]]]
@@ -56,7 +56,7 @@ def make_player(report: Report) -> JSComponent:
 
 
 def given(value: Any, count: Any = 1, *, done: bool = True) -> dict[str, Any]:
-    """The message of a value that the visitor gives."""
+    """Return the message of a value that the visitor gives."""
     return {"value": value, "count": count, "done": done}
 
 
@@ -100,7 +100,7 @@ EXAMPLES = {
     ),
     "player of orbits": Example(
         make_player,
-        # Numbers of a browser have no type: 5.0 arrives as 5.
+        # JavaScript has one type of numbers: 5.0 arrives as 5.
         [({"step": step, "begin": 5, "end": 12.5}, (step,)) for step in (0, 1, 600)],
         [
             {"step": 3},
@@ -140,20 +140,20 @@ def test_legal_messages_are_reported_and_all_others_ignored(name: str) -> None:
     assert reported == [expected for _, expected in example.legal]
 
 
-def test_what_the_server_shows_has_the_count_of_what_was_given_before() -> None:
+def test_values_of_the_server_carry_the_count_of_values_given_before() -> None:
     slider = make_slider(lambda *_: None)
     send(slider, given(1.13, 3))
     slider.show(0.25)
     assert slider.shown == {"value": 0.25, "count": 3}
 
 
-def test_a_value_that_is_refused_is_counted_too_so_that_the_browser_shows_the_last_one_again() -> None:
+def test_a_refused_value_is_counted_so_that_the_browser_shows_the_previous_value_again() -> None:
     slider = make_slider(lambda *_: None)
     send(slider, given(1.13), given(11.0, 2))
     assert slider.shown == {"value": 1.13, "count": 2}
 
 
-def test_commands_that_repeat_differ() -> None:
+def test_repeated_commands_differ() -> None:
     engine, commands = BrowserEngine(lambda energy: None), []
     for _ in range(2):
         engine.play(0.2, 0.1, 0.5)

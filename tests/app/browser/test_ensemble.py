@@ -1,4 +1,4 @@
-"""Many orbits in the browser: places of heyoka, exits of the server, starts that are spread evenly."""
+"""Orbits in the browser are where heyoka has them, leave through the server's exits, and start evenly spread."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ PLACE_ERROR = 1e-8
 
 @dataclass(frozen=True)
 class Followed:
-    """An ensemble as the browser follows it, with what it was made of."""
+    """An ensemble that the browser has followed, with its request."""
 
     potential: Potential
     energy: float
@@ -65,7 +65,7 @@ def followed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
 
 
 def positions_of_heyoka(potential: Potential, state: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """(n, 2) x and y at rising times."""
+    """Return x and y by heyoka at rising times, of shape (n, 2)."""
     integrator = hy.taylor_adaptive(equations(potential), state.tolist(), tol=1e-16)
     _, grid = integrator.propagate_grid(np.concatenate([[0.0], times]))[-2:]
     positions: np.ndarray = grid[1:, :2]
@@ -73,7 +73,7 @@ def positions_of_heyoka(potential: Potential, state: np.ndarray, times: np.ndarr
 
 
 @needs_node
-def test_orbits_are_where_heyoka_has_them_until_they_leave(followed: Followed) -> None:
+def test_orbits_agree_with_heyoka_until_they_leave(followed: Followed) -> None:
     compared = 0
     places = np.array([[frame["x"], frame["y"]] for frame in followed.frames])
     for orbit in range(COUNT):
@@ -200,7 +200,7 @@ def test_starts_of_a_box_fill_it_evenly(drawn: dict[str, np.ndarray]) -> None:
 
 
 @needs_node
-def test_orbits_that_enter_stay_as_long_as_those_of_the_library(drawn: dict[str, np.ndarray]) -> None:
+def test_entering_orbits_stay_as_long_as_entering_orbits_of_the_library(drawn: dict[str, np.ndarray]) -> None:
     potential, t_max = System("III").potential, 100.0
     # Orbits that are still inside at t_max have no escape time; t_max stands for it.
     found, wanted = (
@@ -215,7 +215,7 @@ def test_orbits_that_enter_stay_as_long_as_those_of_the_library(drawn: dict[str,
 
 
 @needs_node
-def test_of_the_orbits_at_the_tubes_one_half_leaves_where_the_other_turns_back(drawn: dict[str, np.ndarray]) -> None:
+def test_half_of_the_orbits_at_the_tubes_leaves_where_the_other_half_turns_back(drawn: dict[str, np.ndarray]) -> None:
     potential, states = System("III").potential, drawn["tubes"]
     outcomes = classify_orbits(potential, 0.45, states, 100.0)
     leave = np.abs(outcomes.escape_time - BEFORE_EXIT) < 1.0

@@ -1,4 +1,4 @@
-"""Exits on the page: their lines, and starts that enter through them."""
+"""Exits on the page have lines, and orbits enter through them."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ DISC, RADIUS = Centre(0.3, 0.1, 0.05), 3.0
 
 
 def look_at(potential: Potential, energy: float, folder: Path) -> Any:
-    """What `run_exits.js` finds at an energy."""
+    """Return what `run_exits.js` finds at an energy."""
     portable = make_portable_system(potential, 2.0 * energy)
     data: dict[str, Any] = {"system": portable.to_dict(), "module": portable.module, "positions": [0.0]}
     return run_node("run_exits.js", data | {"energies": [energy / potential.units.energy]}, folder)[0]
 
 
 @needs_node
-def test_circles_are_drawn_closed_as_far_from_their_centres_as_they_are_without_a_number(tmp_path: Path) -> None:
+def test_circles_are_closed_curves_at_their_radius_without_a_number(tmp_path: Path) -> None:
     potential = parse_formula("2(x² + y²)").with_outcomes([DISC], RADIUS)
     lines = look_at(potential, 0.3, tmp_path)["lines"]
     assert [line["channel"] for line in lines] == [1, 2]

@@ -9,7 +9,7 @@ from tests.waiting import SECONDS
 
 
 @needs_node
-def test_the_tests_of_the_modules_pass() -> None:
+def test_the_javascript_tests_pass() -> None:
     tests = sorted(map(str, SCRIPTS.parent.rglob("*.test.js")))
     done = subprocess.run(["node", "--test", *tests], capture_output=True, text=True, timeout=SECONDS, check=False)
     assert tests

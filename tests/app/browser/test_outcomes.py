@@ -1,4 +1,4 @@
-"""In rotating frames, at discs around centres and at the escape circle, orbits of the browser end as those of the library."""
+"""In rotating frames, at discs and at the escape circle, orbits in the browser end as in the library."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ from tests.node import needs_node, run_node
 COUNT = 400
 # In units of the well, as the page computes at rest.
 HORIZON = 100.0
-# A change of the starts that decides nothing where the motion is not very sensitive, and what that changes of times.
+# Shift of the starts that changes no outcome unless the motion is very sensitive, and the changes of times that it causes.
 SMALL, SAME_TIME = 1e-11, 1e-5
-# Those of the browser are located to 1e-9.
+# The browser locates end times to 1e-9.
 TIME_ERROR = 1e-6
-# How far beyond the edge of a disc, or inside of it, orbits are at their closest, as a share of the radius.
+# Smallest distances of orbits from the edge of a disc, outside or inside, as a share of the radius.
 DEPTH = 1e-3
-# Time from the start to the disc.
+# Time from the start to the disc, in units of time.
 TO_THE_DISC = 0.3
 
 
@@ -85,7 +85,7 @@ GRAZED = {
 
 
 def random_states(example: Example) -> np.ndarray:
-    """(COUNT, 4) states inside the exits, in random directions."""
+    """Return states inside the exits, in random directions, of shape (COUNT, 4)."""
     chance, potential, energy = np.random.default_rng(1), example.potential, example.energy
     x, y = chance.uniform(-example.half_side, example.half_side, (2, 20 * COUNT))
     inside = (potential.value(x, y) < energy) & (find_outside_channels(potential, energy, x, y) == 0)
@@ -97,7 +97,7 @@ def random_states(example: Example) -> np.ndarray:
 def ends_in_browser(
     potential: Potential, energy: float, states: np.ndarray, t_max: float, folder: Path, *, is_backward: bool = False
 ) -> dict[str, dict[str, np.ndarray]]:
-    """What `run_orbits.js` finds of states, with times in units of the potential."""
+    """Return what `run_orbits.js` finds of states, with times in units of the potential."""
     portable, units = make_portable_system(potential, energy), potential.units
     data: dict[str, Any] = {"system": portable.to_dict(), "module": portable.module, "energy": energy / units.energy}
     data |= {"states": (states / units.state).tolist(), "horizon": t_max / units.time, "isBackward": is_backward}
@@ -109,12 +109,12 @@ def ends_in_browser(
 
 
 def decided(fate: np.ndarray) -> np.ndarray:
-    """The library calls orbits bounded that are inside at the horizon."""
+    """Return the fates of the browser, bounded for orbits that are inside at the horizon, as in the library."""
     return np.where(fate == Fate.NOT_COMPUTED, Fate.BOUNDED, fate)
 
 
 def ends_in_library(potential: Potential, energy: float, states: np.ndarray, t_max: float) -> tuple[Outcomes, np.ndarray]:
-    """The outcomes of states, and which of them do not depend on small changes of the starts."""
+    """Return the outcomes of states, and which of them do not depend on small changes of the starts."""
     turned = states + SMALL * np.column_stack([np.zeros((len(states), 2)), -states[:, 3], states[:, 2]])
     outcomes, others = (classify_orbits(potential, energy, each, t_max) for each in (states, turned))
     same_time = ~(np.abs(outcomes.escape_time - others.escape_time) > SAME_TIME)
@@ -141,7 +141,7 @@ def test_orbits_end_as_those_of_the_library(name: str, tmp_path: Path) -> None:
 
 
 def touching_states(potential: Potential, energy: float, share: float) -> np.ndarray:
-    """(n, 4) states of orbits that come as close to a disc as a share of its radius, `TO_THE_DISC` later."""
+    """Return (n, 4) states whose orbits, `TO_THE_DISC` later, are nearest to a disc, beyond its radius by a share."""
     centre, turned = potential.centres[0], np.linspace(0.0, 2.0 * np.pi, COUNT, endpoint=False)
     distance = share * centre.radius
     x, y = centre.x + distance * np.cos(turned), centre.y + distance * np.sin(turned)
@@ -158,14 +158,14 @@ def touching_states(potential: Potential, energy: float, share: float) -> np.nda
 def test_an_orbit_that_grazes_a_disc_within_a_step_collides(name: str, tmp_path: Path) -> None:
     potential, energy = GRAZED[name]
     collision = potential.channels + 1
-    # In the step that passes the horizon, and before.
+    # The orbit ends in the step that passes the horizon, or before.
     for share, t_max in itertools.product((1.0 - DEPTH, 1.0 + DEPTH), (1.1 * TO_THE_DISC, 10.0 * TO_THE_DISC)):
         states = touching_states(potential, energy, share)
         outcomes = classify_orbits(potential, energy, states, t_max)
         touched = (outcomes.fate == collision) & (outcomes.escape_time < 1.1 * TO_THE_DISC)
         assert touched.all() if share < 1.0 else not touched.any()
         found = ends_in_browser(potential, energy, states, t_max, tmp_path)
-        # What has collided is not followed beyond the edge.
+        # Orbits that have collided are not followed beyond the edge.
         assert np.isnan(found["player"]["x"][outcomes.fate == collision]).all()
         for way, ends in found.items():
             np.testing.assert_array_equal(decided(ends["fate"]), outcomes.fate, err_msg=way)

@@ -16,7 +16,7 @@ from tests.node import needs_node, run_node
 
 POTENTIALS = {"III": CASES["III"], "a formula with other units": parse_formula("8x² + 4y² − 3x²y")}
 LOW, ENERGY, HIGH = 0.1, 0.35, 1.0
-# Of numbers of about 1: sines and cosines differ in their last bits.
+# Tolerance for numbers of about 1, because sines and cosines differ in their last bits.
 ACCURACY = 1e-14
 
 

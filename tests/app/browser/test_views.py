@@ -1,4 +1,4 @@
-"""What the page shows, as data."""
+"""The view that the browser gets follows the state of the page."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def test_a_view_follows_the_state() -> None:
     assert view["coding"]["ends"] == [0, 1, 2, 3]
 
 
-def test_the_browser_knows_no_slice_along_a_parameter() -> None:
+def test_slices_along_a_parameter_have_no_browser_view() -> None:
     view = describe_view(
         ViewState(system=System("I"), plane=Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))))
     )

@@ -1,4 +1,4 @@
-"""Follow-up analyses are requested for complete maps while they are wanted."""
+"""Follow-up analyses of complete maps are requested while they are wanted."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def bounded_map(energy: float, t_max: float = 100.0) -> EscapeMap:
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, energy, (64, 64), t_max=t_max))
 
 
-def test_maps_are_analysed_while_that_is_wanted(session: Session) -> None:
+def test_maps_are_analysed_while_the_analysis_is_wanted(session: Session) -> None:
     session.state.layers = frozenset()
     frame = bounded_map(0.2)
     session.requests.follow(frame)

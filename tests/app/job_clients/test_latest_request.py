@@ -1,4 +1,4 @@
-"""One request at a time: only results of the latest one are delivered."""
+"""Only results of the latest request are delivered."""
 
 from __future__ import annotations
 

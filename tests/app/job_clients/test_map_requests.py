@@ -97,7 +97,7 @@ def test_a_map_arrives_in_frames_and_ends_complete(session: Session) -> None:
     assert "map stopped" not in recorder.names()
 
 
-def test_no_frame_of_an_old_energy_follows_one_of_the_new(session: Session) -> None:
+def test_no_frame_of_the_old_energy_follows_a_frame_of_the_new(session: Session) -> None:
     state, _, recorder, _ = session
     state.t_max = 1e4
     for energy in (0.31, 0.32, 0.33):
@@ -108,7 +108,7 @@ def test_no_frame_of_an_old_energy_follows_one_of_the_new(session: Session) -> N
 
 
 class LatestCalls:
-    """Runs callbacks later, and only the latest call of each."""
+    """Runs callbacks later, each with its latest arguments only."""
 
     def __init__(self) -> None:
         self.pending: dict[Callable[..., None], tuple[Any, ...]] = {}
@@ -123,7 +123,7 @@ class LatestCalls:
 
 
 class ManualJobs:
-    """Requests whose results the test delivers."""
+    """Accepts requests; the test delivers their results."""
 
     def __init__(self) -> None:
         self.jobs: list[Job[Any]] = []

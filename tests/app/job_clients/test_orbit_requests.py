@@ -20,7 +20,7 @@ from tests.waiting import SECONDS
 
 
 class Recorder:
-    """Records the calls that the views would get."""
+    """Records calls to the views."""
 
     def __init__(self) -> None:
         self.orbits: tuple[ChosenOrbit, ...] = ()
@@ -128,7 +128,7 @@ def test_without_a_start_there_is_no_search(session: Session) -> None:
 
 
 @pytest.mark.parametrize("change", ["energy", "close"])
-def test_a_twin_that_comes_too_late_is_not_added(session: Session, change: str) -> None:
+def test_a_divergent_start_that_arrives_too_late_is_not_added(session: Session, change: str) -> None:
     state, _, recorder, jobs = session
     search = DivergentStartRequests(state, jobs, recorder.notify, unlocked)
     state.add_start((0.1, 0.05))

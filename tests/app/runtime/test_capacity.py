@@ -1,4 +1,4 @@
-"""How many pages the processors have room for."""
+"""Capacity admits as many pages as the processors can serve."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CORES_PER_PAGE = 0.02
 
 @dataclass
 class Machine:
-    """Two processors with other programs, in an imagined time."""
+    """Two simulated processors with other programs."""
 
     others: float = 0.0
     own: float = 0.0
@@ -49,7 +49,7 @@ class Machine:
 
 
 def admitted(capacity: Capacity) -> int:
-    """How many visitors are let in before anyone has acted."""
+    """Return the number of visitors admitted before anyone has acted."""
     pages = dict[str, float]()
     while capacity.has_room(pages, str(len(pages))):
         pages[str(len(pages))] = 1.0
@@ -60,7 +60,7 @@ def test_pages_are_admitted_before_anyone_acts_up_to_a_share_of_a_processor() ->
     assert admitted(Machine().capacity()) == int(FULL / CORES_PER_PAGE)
 
 
-def test_half_of_them_are_admitted_by_each_of_two_processes_beside_a_busy_program() -> None:
+def test_each_of_two_processes_beside_a_busy_program_admits_half_as_many_pages() -> None:
     machine = Machine(others=1.0)
     capacity = machine.capacity(processes=2)
     machine.run(capacity, 20)
@@ -79,14 +79,14 @@ def test_a_busy_program_that_gets_less_because_of_the_pages_leaves_no_room_for_m
     assert capacity.cores == pytest.approx(0.8)
 
 
-def test_what_this_process_and_its_siblings_use_is_not_that_of_other_programs() -> None:
+def test_the_use_of_this_process_and_its_siblings_does_not_count_as_use_of_other_programs() -> None:
     machine = Machine(own=0.7)
     capacity = machine.capacity(processes=2)
     machine.run(capacity, 20, siblings=0.7)
     assert capacity.cores == pytest.approx(1.0)
 
 
-def test_some_are_admitted_beside_programs_that_keep_all_processors_busy() -> None:
+def test_some_pages_are_admitted_while_other_programs_keep_all_processors_busy() -> None:
     machine = Machine(others=2.0)
     capacity = machine.capacity()
     machine.run(capacity, 20)
@@ -111,7 +111,7 @@ def test_nobody_is_admitted_while_the_event_loop_is_busy_whatever_the_number_of_
     assert capacity.is_crowded({"a": 1.0})
 
 
-def test_work_is_put_off_before_pages_are_refused() -> None:
+def test_work_is_postponed_before_pages_are_refused() -> None:
     capacity = Machine().capacity()
     crowd = {str(number): 1.0 for number in range(30)}
     assert capacity.is_crowded(crowd)
@@ -119,7 +119,7 @@ def test_work_is_put_off_before_pages_are_refused() -> None:
     assert not capacity.is_crowded({"a": 1.0})
 
 
-def test_one_visitor_cannot_fill_the_server_for_others_but_alone_has_all_of_it() -> None:
+def test_one_visitor_cannot_fill_the_server_for_others_but_may_use_all_of_it_alone() -> None:
     capacity = Machine().capacity()
     assert capacity.has_room({"crowd": 50.0}, "other")
     most = int(FULL / CORES_PER_PAGE)
@@ -127,7 +127,7 @@ def test_one_visitor_cannot_fill_the_server_for_others_but_alone_has_all_of_it()
     assert not capacity.has_room({"crowd": float(most)}, "crowd")
 
 
-def test_a_page_counts_less_when_its_visitor_rests_and_nothing_when_it_is_left() -> None:
+def test_an_idle_page_counts_less_and_an_abandoned_page_nothing() -> None:
     clock = Clock()
     share = FairShare(clock.monotonic)
     assert count_page(share, connected=False) == count_page(share, connected=True) == 1.0

@@ -1,4 +1,4 @@
-"""The share of the event loop's time that a page may take."""
+"""A page gets its share of the event loop's time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def test_a_drag_with_thirty_messages_per_second_never_waits() -> None:
         assert share.wait_seconds() == 0.0
 
 
-def test_a_page_that_takes_all_it_gets_has_its_share_after_the_burst() -> None:
+def test_a_greedy_page_gets_its_share_after_the_burst() -> None:
     clock, taken = Clock(), 0.0
     share, begin = FairShare(clock.monotonic), clock.now
     while clock.now < begin + 100.0:
@@ -54,7 +54,7 @@ def test_only_the_steps_of_a_coroutine_count() -> None:
         clock.now += 1.0
         other.set()
         assert await task == "done"
-        # It has got the share of two seconds and has taken one.
+        # In two seconds the page may use its share of them; it has used one second.
         assert share.wait_seconds() == 0.0
         share.take(2.0 * SHARE - 1.0)
         assert share.wait_seconds() == 0.0

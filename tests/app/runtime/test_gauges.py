@@ -1,4 +1,4 @@
-"""Gauges of the process state."""
+"""Gauges show the present state of the process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""When a server is ready, and whom it admits."""
+"""A server tells why it is not ready, and whom it refuses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Calls that exceed their time or their memory end, and later ones do not notice."""
+"""Calls that exceed their time or memory end, without effects on later calls."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def fill_memory() -> None:
 
 
 def read_pipe(pipe: Path) -> str:
-    """Waits for what is written."""
+    """Wait for the text that the other process writes."""
     return pipe.read_text()
 
 
@@ -77,7 +77,7 @@ def test_calls_share_a_process_which_is_replaced_when_it_ends(limited: LimitedPr
     assert limited(os.getpid) != first
 
 
-def test_a_call_does_not_wait_for_one_in_another_process(tmp_path: Path) -> None:
+def test_a_call_does_not_wait_for_a_call_in_another_process(tmp_path: Path) -> None:
     processes, pipe = LimitedProcesses(2), tmp_path / "pipe"
     os.mkfifo(pipe)
     with ThreadPoolExecutor(1) as thread:
@@ -89,14 +89,14 @@ def test_a_call_does_not_wait_for_one_in_another_process(tmp_path: Path) -> None
     processes.close()
 
 
-def test_errors_are_those_of_the_function(limited: LimitedProcess) -> None:
+def test_errors_of_the_function_are_raised(limited: LimitedProcess) -> None:
     before = limited.stopped
     with pytest.raises(FormulaError, match="character 4: ") as caught:
         limited(partial(parse_formula, "x +"))
     assert (caught.value.position, limited.stopped) == (3, before)
 
 
-def test_the_review_of_a_formula_is_equal_to_one_of_this_process(limited: LimitedProcess) -> None:
+def test_the_review_of_a_formula_is_the_same_in_this_process(limited: LimitedProcess) -> None:
     system = System("typed", "½r² − a x²y exp(−y²)", {"a": 2.0})
     found, expected = limited(partial(review_system, system)), review_system(system)
     assert found == expected

@@ -1,4 +1,4 @@
-"""Delay of the event loop."""
+"""The load of the event loop follows its delays."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def counted(metrics: ServerMetrics) -> dict[str, float]:
 
 
 class _Entry:
-    """A state that calls back from a module of the app."""
+    """A state whose callback runs in a module of the app."""
 
     def __init__(self, callback: Callable[[], Any]) -> None:
         self.callback = callback

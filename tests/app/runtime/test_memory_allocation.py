@@ -1,4 +1,4 @@
-"""Options of glibc's memory allocation."""
+"""Options of glibc limit the arenas of threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Counters for Prometheus."""
+"""Log records are counted, and the status page lists the metrics."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The state of a server process."""
+"""Settings and capacity of a server process reach its jobs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def test_settings_reach_the_jobs_of_the_process(start_state: Callable[..., Proce
 
 
 class SparedJobs(Jobs):
-    """Jobs that record whether first frames are spared."""
+    """Jobs that record whether first frames have priority."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -29,7 +29,7 @@ class SparedJobs(Jobs):
         self.spared.append(spared)
 
 
-def test_work_is_put_off_while_the_pages_may_take_more_than_the_processors_have() -> None:
+def test_work_is_postponed_while_pages_may_take_more_processor_time_than_there_is() -> None:
     clock, loop = Clock(), iter((0.0, 0.9, 0.9))
     state = ProcessState(Settings())
     state.jobs = jobs = SparedJobs()

@@ -22,18 +22,18 @@ from tests.waiting import SECONDS
 
 
 async def new_session() -> tuple[ServerSession, ApplicationContext]:
-    """A session, and the server's context, which owns it."""
+    """Return a session, and the server's context, which owns it."""
     context = ApplicationContext(Application())
     return await context.create_session_if_needed("session"), context  # type: ignore[arg-type]
 
 
 def is_held(session: ServerSession) -> bool:
-    """Whether changes wait to be sent together."""
+    """Return whether changes wait to be sent together."""
     return session.document.callbacks.hold_value == "combine"
 
 
 class Calls:
-    """Keeps the arguments of calls on the event loop, which can be awaited."""
+    """Records the arguments of calls on the event loop, and lets tests await the calls."""
 
     def __init__(self) -> None:
         self._calls = asyncio.Queue[Any]()
@@ -42,7 +42,7 @@ class Calls:
         self._calls.put_nowait(value)
 
     async def take(self, count: int) -> list[Any]:
-        """The next calls."""
+        """Return the next calls."""
         async with asyncio.timeout(SECONDS):
             return [await self._calls.get() for _ in range(count)]
 
@@ -61,7 +61,7 @@ def test_calls_of_threads_run_on_the_loop_with_the_document_whose_changes_are_he
     run_on_new_loop(scenario)
 
 
-def test_a_page_that_is_made_on_a_thread_has_its_calls_on_the_loop_of_the_server() -> None:
+def test_calls_of_a_page_made_on_a_thread_run_on_the_loop_of_the_server() -> None:
     async def scenario() -> None:
         (session, _owner), calls = await new_session(), Calls()
         callbacks = await asyncio.to_thread(SessionCallbacks, session.document, asyncio.get_running_loop())
@@ -71,7 +71,7 @@ def test_a_page_that_is_made_on_a_thread_has_its_calls_on_the_loop_of_the_server
     run_on_new_loop(scenario)
 
 
-def test_of_calls_that_wait_for_the_lock_only_the_latest_runs() -> None:
+def test_only_the_latest_of_the_calls_that_wait_for_the_lock_runs() -> None:
     async def scenario() -> None:
         (session, _owner), calls = await new_session(), Calls()
         call = SessionCallbacks(session.document).latest(calls.add)
@@ -131,7 +131,7 @@ def test_calls_after_the_session_are_dropped() -> None:
         document = weakref.ref(session.document)
         session.destroy()
         call(1)
-        # What the call has begun ends before.
+        # Tasks that the call has started end first.
         begun = asyncio.Event()
         asyncio.get_running_loop().call_soon(begun.set)
         await begun.wait()

@@ -1,4 +1,4 @@
-"""Settings from environment variables."""
+"""Settings are read from environment variables, and invalid values refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which addresses have one limit."""
+"""Visitors of one IPv6 network share a limit, and this machine has none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A server with a login, for the tests of what depends on one."""
+"""Make a server with a login."""
 
 from __future__ import annotations
 
@@ -16,5 +16,5 @@ class Login(NullAuth):
 
 
 def server_with_login(prefix: str = "") -> BokehTornado:
-    """An application at /app behind a login."""
+    """Return an application at /app behind a login."""
     return BokehTornado({"/app": Application()}, prefix=prefix, auth_provider=Login())

@@ -1,4 +1,4 @@
-"""Print the patterns of all routes that `panel serve app` mounts, in the order of their requests, one on each line."""
+"""Print the patterns of all routes that `panel serve app` mounts, in order of precedence, one on each line."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ ROOT = Path(__file__).parents[3]
 
 
 def mounted_routes() -> list[str]:
-    """The patterns, listed by a process of its own."""
+    """Return the patterns, listed by a separate process."""
     command = [sys.executable, "-m", "tests.app.server.mounted_routes"]
     return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True, timeout=SECONDS).stdout.splitlines()
 
 
 class ListRoutes(Serve):
-    """`panel serve` until the server would start."""
+    """Runs `panel serve` until the server would start."""
 
     def customize_server(self, server: Server) -> Server:
         """Print the routes of its web application, and exit."""
@@ -35,7 +35,7 @@ class ListRoutes(Serve):
 
 
 def patterns(router: RuleRouter) -> Iterator[str]:
-    """The patterns of paths in a router and its inner ones."""
+    """Yield the patterns of paths in a router and its inner ones."""
     for rule in router.rules:
         if isinstance(rule.target, RuleRouter):
             yield from patterns(rule.target)

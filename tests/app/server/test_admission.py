@@ -1,4 +1,4 @@
-"""Which pages and WebSockets are admitted."""
+"""Pages and WebSockets are admitted within the limits of addresses and tokens."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def state(start_state: Callable[..., ProcessState]) -> ProcessState:
 
 
 class OpenedDocument:
-    """The part of a document that tells whose it is."""
+    """The part of a document that identifies its visitor."""
 
     def __init__(self, address: str) -> None:
         self.session_context = SimpleNamespace(request=SimpleNamespace(remote_ip=address))
@@ -45,7 +45,7 @@ def session_of(address: str) -> Any:
 
 
 def new_token(age: float) -> str:
-    """A token that was issued some seconds ago."""
+    """Return a token that was issued some seconds ago."""
     request = HTTPServerRequest(
         start_line=RequestStartLine("GET", "/app", "HTTP/1.1"), headers=HTTPHeaders({"Host": "localhost"})
     )
@@ -53,7 +53,7 @@ def new_token(age: float) -> str:
 
 
 def ask(address: str, uri: str = "/app") -> tuple[int, str]:
-    """Status and reason of a request for a page."""
+    """Return the status and reason of a request for a page."""
     try:
         admit(SimpleNamespace(path=uri.partition("?")[0], uri=uri, remote_ip=address))
     except HTTPError as refusal:
@@ -87,7 +87,7 @@ def test_the_only_visitor_of_a_busy_server_may_reload_the_page(state: ProcessSta
 
 
 @pytest.mark.usefixtures("state")
-def test_an_old_token_is_good_for_its_open_session_only() -> None:
+def test_an_old_token_opens_only_its_open_session() -> None:
     token = new_token(age=300.0)
     check_session(token, SimpleNamespace(sessions=[SimpleNamespace(id=get_session_id(token))]), "192.0.2.1", APPLICATION)
     with pytest.raises(ProtocolError, match="ended"):

@@ -1,4 +1,4 @@
-"""What a browser may set: values of widgets and plots within their limits, and events that the server waits for."""
+"""A browser may set widgets and plots within their limits, and send events that the server waits for."""
 
 from __future__ import annotations
 

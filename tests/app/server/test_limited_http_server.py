@@ -1,4 +1,4 @@
-"""Limits on connections, and their end when nothing arrives."""
+"""Connections are limited in number and size, and closed when nothing arrives."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Answer(RequestHandler):
 
 
 class Origin(RequestHandler):
-    """Answers with what the server takes for the address and the scheme of the client."""
+    """Answers with the address and scheme that the server sees of the client."""
 
     def get(self) -> None:
         self.write(f"{self.request.protocol} {self.request.remote_ip}")
@@ -45,7 +45,7 @@ def state(start_state: Callable[..., ProcessState]) -> ProcessState:
 
 @asynccontextmanager
 async def served(**options: Any) -> AsyncIterator[int]:
-    """The port of a server."""
+    """Yield the port of a server."""
     server = LimitedHTTPServer(Application([("/", Answer), ("/origin", Origin), ("/ws", Echo)]), **options)
     listening, port = bind_unused_port()
     server.add_socket(listening)
@@ -65,7 +65,7 @@ def run(scenario: Scenario, **options: Any) -> None:
 
 
 async def is_served(port: int) -> bool:
-    """Whether a new connection, which stays open, gets an answer."""
+    """Return whether a new connection, which stays open, gets an answer."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     _kept.append(writer)
     writer.write(REQUEST)

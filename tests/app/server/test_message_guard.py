@@ -1,4 +1,4 @@
-"""Messages of a WebSocket: only those of a page reach Bokeh; floods and other protocols close the connection."""
+"""Only messages of a page reach Bokeh. Floods and other protocols close the WebSocket."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_a_second_request_for_the_document_is_refused_and_the_next_message_passe
     ],
     ids=["empty", "half", "deep", "null", "no kind", "number", "buffers"],
 )
-def test_what_is_no_header_closes_the_connection(header: str) -> None:
+def test_a_message_without_a_header_closes_the_connection(header: str) -> None:
     with pytest.raises(UnacceptableConnectionError):
         MessageGuard().take(header, DOCUMENT)
 
@@ -94,7 +94,7 @@ def test_binary_parts_follow_their_headers() -> None:
 
 
 @pytest.mark.parametrize("before", [0, 1, 2, 3])
-def test_binary_parts_elsewhere_close_the_connection(before: int) -> None:
+def test_unexpected_binary_parts_close_the_connection(before: int) -> None:
     guard = MessageGuard()
     for part in ['{"msgid": "1", "msgtype": "PATCH-DOC", "num_buffers": 1}', "{}", json.dumps(PATCH)][:before]:
         guard.take(part, DOCUMENT)

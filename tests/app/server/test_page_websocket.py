@@ -1,4 +1,4 @@
-"""The socket of a page: changes reach the page at once, and messages beyond the page's share of the event loop's time wait."""
+"""Changes reach a page at once. Messages of a page wait beyond its share of the event loop's time."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def build(document: Document) -> None:
 
 @asynccontextmanager
 async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIterator[tuple[Channel, Document]]:
-    """Open pages; the channel and the document of the last one."""
+    """Open pages; return the channel and the document of the last page."""
     server = Server({"/app": Application(FunctionHandler(make))}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
     server.start()
     address, channels = f"http://127.0.0.1:{server.port}/app", []
@@ -62,14 +62,14 @@ async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIt
     finally:
         for channel in channels:
             channel.close()
-            # What is under way must arrive before the server's tasks end.
+            # Messages in transit must arrive before the server's tasks end.
             async for _ in channel.messages():
                 pass
         server.stop()
 
 
 async def receive(channel: Channel, kind: str) -> str:
-    """The content of the next message of a kind."""
+    """Return the content of the next message of a kind."""
     async for each, content in channel.messages():
         if each == kind:
             return content
@@ -102,7 +102,7 @@ async def move_slider(channel: Channel, document: Document) -> None:
 
 def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        # What has to be made up for takes half a second.
+        # The excess that must be waited for is half a second.
         state.fair_share(document).take(BURST_SECONDS + 0.5 * SHARE)
         channel.set(slider_of(document).id, value=5)
         assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
@@ -157,7 +157,7 @@ def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessS
         session, texts = document.session_context.session, iter(range(5))
 
         async def lengthen_title() -> asyncio.Task[None]:
-            """Begin to send a long text under the session's lock."""
+            """Begin to send a long title under the session's lock."""
             title = f"{next(texts)}{LONG}"
             task = asyncio.create_task(session.with_document_locked(setattr, slider_of(document), "title", title))
             for _ in range(100):
@@ -169,7 +169,7 @@ def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessS
             with set_curdoc(document):
                 pane.object = f"{next(texts)}{LONG}"
         assert "title" in await receive(channel, "PATCH-DOC")
-        # The first part of the three changes, whose end is still under way.
+        # The first part of the three changes. Their end is still in transit.
         await channel.part()
         tasks.append(await lengthen_title())
         with set_curdoc(document):

@@ -1,4 +1,4 @@
-"""The routes that are mounted, documented and served."""
+"""Mounted routes are documented and served."""
 
 from __future__ import annotations
 

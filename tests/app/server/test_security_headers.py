@@ -1,4 +1,4 @@
-"""Security headers."""
+"""Pages have security headers and a nonce."""
 
 from __future__ import annotations
 

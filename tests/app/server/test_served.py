@@ -26,7 +26,7 @@ from tests.browser.served_app import RunningApp, started_app
 from tests.page_channel import Channel
 from tests.waiting import SECONDS
 
-# Bounded orbits, which take longer than any test.
+# A map of bounded orbits, which takes longer than any test.
 LONG_MAP = {"case": "III", "h": "0.26", "resolution": "900", "t_max": "1e+06", "plane": "x_y"}
 MARKUP = {"V": '"><script>1</script>', "h": "0.25"}
 
@@ -97,7 +97,7 @@ def test_responses_have_security_headers(served: Served) -> None:
         assert "Server" not in headers, path
 
 
-def test_modules_of_the_engine_in_the_browser_can_be_kept(served: Served) -> None:
+def test_modules_of_the_engine_in_the_browser_can_be_cached(served: Served) -> None:
     status, text, headers = served.get(f"/{ADDRESS}")
     assert (status, headers["Content-Type"].endswith("/javascript")) == (200, True)
     assert "import" in text
@@ -107,7 +107,7 @@ def test_modules_of_the_engine_in_the_browser_can_be_kept(served: Served) -> Non
     assert served.get("/browser/0123456789abcdef/main.js")[0] == 404
 
 
-def test_kernels_can_be_kept_and_are_compressed_for_those_who_ask(served: Served) -> None:
+def test_kernels_can_be_cached_and_are_compressed_on_request(served: Served) -> None:
     for headers in ({}, {"Accept-Encoding": "gzip"}):
         request = urllib.request.Request(f"{served.running.root}/{KERNELS_ADDRESS}", headers=headers)
         with urllib.request.urlopen(request, timeout=SECONDS) as answer:
@@ -118,7 +118,7 @@ def test_kernels_can_be_kept_and_are_compressed_for_those_who_ask(served: Served
         assert (gzip.decompress(content) if headers else content) == kernel_module()
 
 
-def test_scripts_are_compressed_for_those_who_ask(served: Served) -> None:
+def test_scripts_are_compressed_on_request(served: Served) -> None:
     for path in ("/static/js/bokeh.min.js", "/static/extensions/panel/panel.min.js", f"/{ADDRESS}"):
         contents = []
         for headers in ({}, {"Accept-Encoding": "gzip"}, {"Accept-Encoding": "gzip", "Range": "bytes=0-"}):
@@ -168,7 +168,7 @@ def test_other_hosts_are_refused(path: str, host: str, status: int, served: Serv
     assert served.metric("sessions_created_total") == 0
 
 
-def test_root_leads_to_the_page_with_the_query(served: Served) -> None:
+def test_root_redirects_to_the_page_with_the_query(served: Served) -> None:
     connection = http.client.HTTPConnection(served.host, timeout=60)
     connection.request("GET", "/?case=III&h=0.3")
     with connection.getresponse() as answer:
@@ -212,7 +212,7 @@ def test_websocket_of_another_origin_is_refused(served: Served) -> None:
 
 
 def check_stop(served: Served, number: signal.Signals) -> None:
-    """A signal ends the server within seconds, during a map that takes minutes, with a whole log."""
+    """Check that a signal ends the server within seconds, during a map that takes minutes, with a whole log."""
     run_on_new_loop(lambda: stop_during_a_map(served, number))
     assert served.running.process.wait(SECONDS) == 0
     assert time.monotonic() - served.stopped_at < 30.0
@@ -225,14 +225,14 @@ def test_ctrl_c_stops_the_server_during_a_computation(served: Served) -> None:
 
 
 @pytest.mark.slow
-def test_the_end_of_a_service_stops_panel_during_a_computation(tmp_path: Path) -> None:
+def test_sigterm_stops_panel_during_a_computation(tmp_path: Path) -> None:
     with serving(tmp_path / "log", "panel", "serve", "app") as server:
         server.pages = [server.get(f"/app?{urlencode(LONG_MAP)}")[1]]
         check_stop(server, signal.SIGTERM)
 
 
 def check_log(served: Served) -> None:
-    """The last record is that of the stop, and no record has a traceback."""
+    """Check that the last record is that of the stop, and no record has a traceback."""
     text = served.log.read_text()
     records = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
     assert records[-1]["message"] == "stopping"
@@ -241,7 +241,7 @@ def check_log(served: Served) -> None:
 
 
 def upgrade(served: Served, token: str, origin: str) -> int:
-    """Status of a request for a WebSocket."""
+    """Return the status of a request for a WebSocket."""
     headers = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "x"}
     # urllib would send "Connection: close".
     connection = http.client.HTTPConnection(served.host, timeout=SECONDS)
@@ -253,7 +253,7 @@ def upgrade(served: Served, token: str, origin: str) -> int:
 
 
 def check_nonce(page: str, policy: str) -> None:
-    """All scripts of a page have the nonce of its policy."""
+    """Check that all scripts of a page have the nonce of its policy."""
     [nonce] = set(re.findall(r'<script nonce="([^"]+)"', page))
     assert f"'nonce-{nonce}'" in policy
     assert page.count("<script") == page.count("<script nonce=")

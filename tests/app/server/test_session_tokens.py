@@ -1,4 +1,4 @@
-"""Signed tokens: what they contain, and which ones are refused without being inflated."""
+"""Signed tokens contain the parameters of the link, and other tokens are refused without being inflated."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def socket_request(token: str) -> HTTPServerRequest:
 
 
 def bomb(expires: int = 2**40) -> str:
-    """A token that is not signed and needs much memory when it is inflated."""
+    """Return a token that is not signed and needs much memory when it is inflated."""
     payload = {"session_id": "x" * 44, "session_expiry": expires, "__bk__zlib_": _encode(zlib.compress(b"0" * INFLATED))}
     return _encode(json.dumps(payload).encode())
 
@@ -102,11 +102,11 @@ def test_token_contains_the_parameters_of_the_link_only(application: BokehTornad
 
 
 @pytest.mark.parametrize(("age", "fresh"), [(0.0, True), (299.0, True), (300.0, False), (-1.0, False)])
-def test_a_token_may_begin_a_session_for_a_time_of_the_monotonic_clock(
+def test_a_token_may_begin_a_session_for_a_limited_time_of_the_monotonic_clock(
     age: float, fresh: bool, application: BokehTornado, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     token = issue_token(application, request(), {}, clock=lambda: 50.0)
-    # The clock of the wall does not matter.
+    # The wall clock does not matter.
     monkeypatch.setattr(time, "time", lambda: 2.0**33)
     assert may_begin_session(application, token, clock=lambda: 50.0 + age) == fresh
 
@@ -129,7 +129,7 @@ def test_the_longest_link_fits_into_the_headers_of_the_websocket(application: Bo
     assert len(token) < 16_000
 
 
-def test_bokeh_takes_the_token_and_not_the_one_of_the_client(application: BokehTornado) -> None:
+def test_bokeh_takes_the_token_of_the_server_and_not_that_of_the_client(application: BokehTornado) -> None:
     asked = request("/app?bokeh-token=mine&bokeh-session-id=%ff")
     use_token(asked, "issued")
     assert asked.arguments == {"bokeh-token": [b"issued"]}

@@ -1,4 +1,4 @@
-"""Pages that are asked for at the same time."""
+"""Pages requested at the same time are made one after another."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ COUNT = 6
 
 
 class AdmittedPages(CodeHandler):
-    """Makes pages on the event loop, as the application does, for visitors who are admitted."""
+    """Makes pages for admitted visitors on the event loop, as the application does."""
 
     def __init__(self) -> None:
         super().__init__(source="", filename="pages.py")
@@ -50,7 +50,7 @@ def start(start_state: Callable[..., ProcessState]) -> Callable[..., ProcessStat
 
 @asynccontextmanager
 async def serving(state: ProcessState, pages: AdmittedPages) -> AsyncIterator[int]:
-    """Run a server; its port."""
+    """Run a server; yield its port."""
     server = Server({"/app": Application(pages)}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
     state.sessions = lambda: server.get_sessions("/app")
     server.start()
@@ -61,7 +61,7 @@ async def serving(state: ProcessState, pages: AdmittedPages) -> AsyncIterator[in
 
 
 def ask_at_once(state: ProcessState, pages: AdmittedPages) -> list[int]:
-    """The statuses of pages that one visitor asks for."""
+    """Return the statuses of pages that one visitor requests at once."""
 
     async def scenario() -> list[int]:
         client = AsyncHTTPClient(force_instance=True, max_clients=COUNT)
@@ -72,7 +72,7 @@ def ask_at_once(state: ProcessState, pages: AdmittedPages) -> list[int]:
     return run_on_new_loop(scenario)
 
 
-def test_others_are_served_between_two_pages(start: Callable[..., ProcessState]) -> None:
+def test_other_requests_are_served_between_two_pages(start: Callable[..., ProcessState]) -> None:
     pages = AdmittedPages()
     assert ask_at_once(start(pages_per_address=COUNT), pages) == [200] * COUNT
     assert pages.events == ["page", "another"] * COUNT

@@ -27,7 +27,7 @@ NO_LINK: Mapping[str, str] = {}
 
 # Bokeh calls other handlers in a thread.
 class PageBuilder(DocumentLifecycleHandler):
-    """Builds the page of a session on the event loop, and calls `prepare` before."""
+    """Calls `prepare`, and then builds the page of a session on the event loop."""
 
     def __init__(self, prepare: Callable[[Explorer], None]) -> None:
         super().__init__()
@@ -45,7 +45,7 @@ class PageBuilder(DocumentLifecycleHandler):
 async def opened_page(
     link: Mapping[str, str] = NO_LINK, prepare: Callable[[Explorer], None] = lambda explorer: None
 ) -> AsyncIterator[tuple[Explorer, ServerSession]]:
-    """The explorer and the session of a page that is opened with a link; `prepare` is called before it is built."""
+    """Yield the explorer and the session of a page opened with a link, after calling `prepare` and then building the page."""
     builder = PageBuilder(prepare)
     line = RequestStartLine("GET", f"/app?{urlencode(link)}", "HTTP/1.1")
     request = HTTPServerRequest(start_line=line, headers=HTTPHeaders({"Host": "localhost"}))
@@ -73,7 +73,7 @@ async def on_loop(session: ServerSession, function: Callable[[], object]) -> Non
 
 
 async def tell_ready(session: ServerSession) -> None:
-    """As a browser does that shows the page."""
+    """Tell the server that the page is shown, as a browser does."""
     await on_loop(session, lambda: session.document.callbacks.trigger_event(DocumentReady()))
 
 
@@ -89,6 +89,6 @@ async def wait_for(watched: param.Parameterized, name: str, condition: Callable[
 
 
 async def run_callbacks(session: ServerSession) -> None:
-    """Run the callbacks that wait for the session's lock, and those that they begin: the lock is given in turn."""
+    """Run the callbacks that wait for the session's lock, and the callbacks that these begin."""
     for _ in range(2):
         await session.with_document_locked(lambda: None)

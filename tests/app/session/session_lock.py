@@ -1,4 +1,4 @@
-"""A session without a page: its lock tells waiting tests when a callback has run."""
+"""A session without a page, whose lock tells waiting tests when a callback has run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from engine.jobs.client import JobSubmitter
 
 
 def locked_by(changed: threading.Condition) -> Locked:
-    """Runs functions under a condition, and notifies those that wait for it."""
+    """Return a decorator that runs calls under a condition, and then notifies the waiting threads."""
 
     def locked(function: Callable[..., None]) -> Callable[..., None]:
         def call(*arguments: Any, **named: Any) -> None:
@@ -35,6 +35,6 @@ def context_of(
     changed: threading.Condition,
     open_view: Callable[[System, dict[str, Any]], None] = lambda system, values: None,
 ) -> SessionContext:
-    """What presenters share in a session with this lock, whose page copies nothing."""
+    """Return the context that presenters share in a session with this lock, without copying on the page."""
     locked = locked_by(changed)
     return SessionContext(state, ShownResults(), jobs, Notice(), locked, locked, lambda text: None, open_view)

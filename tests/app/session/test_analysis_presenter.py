@@ -1,4 +1,4 @@
-"""Analyses of a map: requests and display of their results."""
+"""Analyses of a map are requested, and their results shown."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ def frame() -> EscapeMap:
 
 
 def unfinished(frame: EscapeMap, energy: float) -> EscapeMap:
-    """A frame of a map of another energy."""
+    """Return a frame of a map of another energy."""
     return replace(frame, spec=replace(frame.spec, energy=energy), complete=False)
 
 
 @pytest.fixture(autouse=True)
 def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Little work for each exponent of the curves against energy."""
+    """Limit the work for each exponent of the curves, which widens the intervals."""
     monkeypatch.setattr("engine.sweeps.measures.WORK", 1e7)
 
 
@@ -93,7 +93,7 @@ def begin(open_sessions: list[Session], jobs: Jobs) -> Callable[..., Session]:
     return begin_session
 
 
-def test_doubtful_pixels_are_marked_until_they_are_switched_off_or_the_map_is_another(
+def test_doubtful_pixels_are_marked_until_the_layer_is_off_or_the_map_changes(
     begin: Callable[..., Session], frame: EscapeMap
 ) -> None:
     session = begin(layers=frozenset({"trust"}))
@@ -114,7 +114,7 @@ def test_doubtful_pixels_are_marked_until_they_are_switched_off_or_the_map_is_an
     assert (session.analyses, shown, session.presenter.notes.object) == (MapAnalyses(), 1, "")
 
 
-def test_manifolds_are_drawn_over_their_section_all_or_one_image(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_all_images_of_manifolds_or_one_are_drawn_over_their_section(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(layers=frozenset({"manifolds"}), settings={**default_settings(), "images": 1})
     session.show(compute_map(MapSpec(CASES["II"], Plane.X_Y, 0.25, (16, 16), t_max=100.0)))
     assert session.jobs.in_flight == 0
@@ -200,7 +200,7 @@ def test_another_map_cancels_a_slow_measure(begin: Callable[..., Session], frame
     assert session.jobs.in_flight == 0
 
 
-def test_curves_arrive_one_by_one_stop_at_a_click_and_end_with_their_case(begin: Callable[..., Session]) -> None:
+def test_curves_arrive_one_by_one_and_stop_at_a_click_or_with_another_case(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
     curves.button.clicks += 1

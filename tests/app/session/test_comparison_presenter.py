@@ -1,4 +1,4 @@
-"""The view in the controls is compared with another one: its map is requested, drawn, counted and removed."""
+"""A second view is compared with that in the controls: its map is requested, drawn, counted and removed."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def session(jobs: Jobs) -> Iterator[Session]:
     made.presenter.close()
 
 
-def test_the_share_of_other_ends_is_that_of_two_maps(session: Session, frame: EscapeMap) -> None:
+def test_the_share_of_other_outcomes_is_that_of_two_maps(session: Session, frame: EscapeMap) -> None:
     session.state.compared = OTHER
     session.show(frame)
     session.wait_for("starts have different outcomes")

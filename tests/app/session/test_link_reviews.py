@@ -23,7 +23,7 @@ from tests.app.session.opened_page import opened_page, tell_ready, wait_for
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
 LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
-# Whatever takes time, or reads from the disk what did; a potential has no other costly quantities.
+# Functions that compute slow quantities of a potential, or read them from the disk.
 _FUNCTIONS = [parse_formula, review_system, find_critical_points, stored_points, leads_out_of_well, find_maxima_beside]
 SLOW = [inspect.unwrap(function).__code__ for function in _FUNCTIONS]
 STARTED, TOOL = sys.monitoring.events.PY_START, 4
@@ -33,7 +33,7 @@ STARTED, TOOL = sys.monitoring.events.PY_START, 4
 def called() -> Iterator[list[str]]:
     """The slow functions that are called in this process."""
     called: list[str] = []
-    # As when the server starts.
+    # The state is that at the start of a server.
     for case in CASES:
         review_catalogue_entry(case)
     sys.monitoring.use_tool_id(TOOL, "slow functions")
@@ -76,7 +76,7 @@ def test_a_circular_potential_in_a_link_is_refused_in_another_process(called: li
     assert not called
 
 
-def test_a_link_is_shown_whole_when_its_potential_has_passed(called: list[str]) -> None:
+def test_a_link_is_shown_whole_after_the_review_of_its_potential(called: list[str]) -> None:
     asked = {"plane": "x_y", "h": "0.4", "window": "-1,1,-0.5,0.5", "orbits": "0.1,0.2", "resolution": "112", "t_max": "100"}
 
     async def check(explorer: Explorer) -> None:

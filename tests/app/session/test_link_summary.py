@@ -1,4 +1,4 @@
-"""What other programs show of a link: its title and one sentence."""
+"""A link has a title and a sentence for other programs."""
 
 from __future__ import annotations
 

@@ -1,3 +1,5 @@
+"""The explorer in a notebook cell opens the page at a map."""
+
 from __future__ import annotations
 
 import re
@@ -31,7 +33,7 @@ def explorer() -> Iterator[Explorer]:
 def test_frame_in_the_cell_opens_the_page_at_the_map(explorer: Explorer) -> None:
     frame = explorer._repr_html_()
     assert "height:500px" in frame
-    # What a browser shows where it cannot reach the page.
+    # The text that a browser shows if it cannot reach the page.
     assert re.search(r"'>.*data:image/png;base64,.*</object>$", frame, re.DOTALL)
     (address,) = re.findall(r"<object [^>]*data='([^']*)'", frame)
     assert unescape(address) == explorer.address

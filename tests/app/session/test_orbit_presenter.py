@@ -1,4 +1,4 @@
-"""Orbits of a session on the maps."""
+"""Orbits of a session are integrated, judged and shown on the maps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Choice of a potential: validation, use, and messages for invalid ones."""
+"""Potentials are chosen or typed, reviewed, and refused with messages."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from tests.app.browser_messages import send
 from tests.app.session.session_lock import context_of
 from tests.waiting import SECONDS
 
-# With the integrator of case I.
+# A potential with the integrator of case I.
 WEAKER = "½(x² + y²) − 0.5xy²"
 STRONGER = "½(x² + y²) − 2xy²"
-# With an integrator that no other test compiles.
+# A potential with an integrator that no other test compiles.
 NEW = "½(x² + y²) + x²y − y³/3 + 0.001x^6"
 # The channels 1 and 3 merge at h = 0.5.
 CHANNELS_THAT_MERGE = "½(x² + y²) − xy² − x⁴/8"
@@ -148,7 +148,7 @@ def test_a_well_elsewhere_can_be_used(session: Session) -> None:
     assert "x and y count from the well at (1, 0)" in session.panel.facts.object
 
 
-def test_what_stands_beside_a_refused_text_goes_with_it(session: Session) -> None:
+def test_messages_beside_a_refused_text_disappear_with_the_text(session: Session) -> None:
     text = session.panel.formula.value
     leave: list[Callable[[], None]] = [
         lambda: session.type(text, enter=False),
@@ -212,7 +212,7 @@ def test_typing_starts_from_coefficients_without_rounding_errors(session: Sessio
     ("label", "formula"),
     [("+ letter", "½r² + r⁴ + a x y; escape 10"), ("+ body", "½r² + r⁴; escape 10; centre (0, 0) 0.001")],
 )
-def test_a_button_adds_a_term_before_the_clauses_and_a_clause_after_them(session: Session, label: str, formula: str) -> None:
+def test_a_button_adds_a_term_before_the_clauses_or_a_clause_behind_them(session: Session, label: str, formula: str) -> None:
     session.type("½r² + r⁴; escape 10")
     session.wait_for(lambda: session.state.system.formula == "½r² + r⁴; escape 10")
     next(button for button in session.panel.additions if button.label == label).clicks += 1

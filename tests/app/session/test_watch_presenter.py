@@ -1,4 +1,4 @@
-"""The player of many orbits follows the view state, writes to it, and gets the decay rate of mixed motion."""
+"""The player of many orbits follows and changes the view state, and gets the decay rate of mixed motion."""
 
 from __future__ import annotations
 
@@ -88,6 +88,6 @@ def test_the_player_gets_the_rate_of_mixed_motion_where_starts_share_energy_and_
     for several in (Plane.X_H, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))):
         session.state.plane = several
         assert session.player.rate == 0.0
-        # A result that is known is there at once.
+        # A cached result is available at once.
         session.state.plane = Plane.X_PX
         assert session.player.rate == expected

@@ -1,4 +1,4 @@
-"""A link as the page opens it, without the page."""
+"""Open a link as the page does, without a page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from plots.texts.accepted_potentials import refusal
 
 
 def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:
-    """The view of a link once its system is reviewed, and the messages about the link."""
+    """Return the view of a link once its system is reviewed, and the messages about the link."""
     values, problems = read_link(parameters)
     try:
         reviewed = review_system(linked_view(values).system)

@@ -1,4 +1,4 @@
-"""Terms are explained where they first stand in a text."""
+"""Terms are explained where they first occur in a text."""
 
 from __future__ import annotations
 

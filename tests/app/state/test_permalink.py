@@ -62,7 +62,7 @@ def test_a_link_contains_the_view_state_at_full_precision(
 
 
 @pytest.mark.parametrize("focus", PICTURES)
-def test_an_embedded_picture_is_read_as_the_one_that_is_large(focus: str) -> None:
+def test_an_embedded_picture_is_read_as_the_large_picture(focus: str) -> None:
     values, problems = read_link(parameters(write_link(ViewState(focus=focus), embedded=True)))
     assert (values["focus"], problems) == (focus, [])
 
@@ -120,7 +120,7 @@ def test_any_usual_format_of_a_number_is_read(text: str) -> None:
     assert read_link({"t_max": text}) == ({"t_max": 1e5}, [])
 
 
-def test_an_invalid_potential_drops_what_belongs_to_it() -> None:
+def test_an_invalid_potential_drops_the_parameters_that_depend_on_it() -> None:
     state, problems = open_link({"V": "x²", "box": "0,1,0,1", "window": "0,1,0,1", "h": "0.3", "resolution": "112"})
     assert (state.system.case, state.box, state.window, state.energy, state.resolution) == ("I", None, None, 0.19, 112)
     assert len(problems) == 1
@@ -193,7 +193,7 @@ def test_a_link_contains_the_view_with_which_another_is_compared(view: View) -> 
         ({"with_V": "x" * 501, "with_h": "0.2"}, ["with_V=xxx"]),
     ],
 )
-def test_a_view_to_compare_with_is_left_out_and_all_that_is_not_understood_of_it_is_named(
+def test_an_invalid_view_to_compare_with_is_left_out_and_each_invalid_part_is_named(
     link: dict[str, str], named: list[str]
 ) -> None:
     values, problems = read_link(link)

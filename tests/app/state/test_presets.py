@@ -47,7 +47,7 @@ COMPILED_LONG = ("bar",)
 
 
 def marked(key: str, value: Any) -> Any:
-    """A parameter of a test that integrates orbits."""
+    """Return a parameter of a test that integrates orbits."""
     return pytest.param(value, id=key, marks=pytest.mark.slow if key in COMPILED_LONG else ())
 
 
@@ -81,7 +81,7 @@ def test_keys_and_titles_are_unique() -> None:
     assert len({preset.key for preset in PRESETS}) == len({preset.title for preset in PRESETS}) == len(PRESETS)
 
 
-def test_all_groups_cases_planes_and_pictures_occur() -> None:
+def test_presets_cover_all_groups_cases_planes_and_pictures() -> None:
     places = [preset for preset in PRESETS if preset.group == "Places"]
     assert len(places) >= 12
     assert {preset.group for preset in PRESETS} == set(GROUPS)
@@ -122,7 +122,7 @@ def test_every_thumbnail_has_a_preset() -> None:
 @pytest.mark.parametrize("preset", [marked(preset.key, preset) for preset in PRESETS])
 def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
     view, spec = preset.view, spec_of(preset.view)
-    # Many orbits are watched without any of them being chosen.
+    # Presets that show many orbits have no chosen orbits.
     fewest = 0 if view.analysis is Analysis.WATCH else 1
     assert fewest <= len(set(view.starts)) == len(view.starts) <= MOST_ORBITS
     for x, ordinate in view.starts:
@@ -157,7 +157,7 @@ def test_fates_agree_with_the_caption(key: str) -> None:
     assert fates(view_of(key)) == FATES[key]
 
 
-def test_the_example_on_stable_manifolds_shows_them() -> None:
+def test_the_example_on_stable_manifolds_shows_manifolds() -> None:
     assert "manifolds=yes" in write_link(ViewState(**view_of("threads").values()))
 
 
@@ -193,11 +193,11 @@ def test_the_sticky_orbit_looks_regular_and_escapes_late() -> None:
 
 
 def near(share: float, count: int) -> Any:
-    """Equal to a share in a caption, rounded to 1 %, of `count` random orbits: the probability of a false alarm is 4e-8."""
+    """Match a share of `count` random orbits that a caption rounds to 1 %. The probability of a false alarm is 4e-8."""
     return pytest.approx(share, abs=0.005 + 5.5 * math.sqrt(share * (1.0 - share) / count))
 
 
-def test_as_many_orbits_are_left_as_the_caption_of_the_draining_well_says() -> None:
+def test_the_caption_of_the_draining_well_has_the_share_of_remaining_orbits() -> None:
     count = 40_000
     times = classify_orbits(CASES["III"], 0.45, sample_starts(CASES["III"], 0.45, count, seed=1), t_max=50.0).escape_time
     left = [float(np.mean(~(times <= t))) for t in (5.0, 50.0)]
@@ -205,7 +205,7 @@ def test_as_many_orbits_are_left_as_the_caption_of_the_draining_well_says() -> N
     assert math.exp(-50.0 * compute_flux(CASES["III"], 0.45).decay_rate) == pytest.approx(1 / 4000, rel=0.1)
 
 
-def test_orbits_that_are_torn_leave_when_the_caption_says() -> None:
+def test_the_orbits_of_the_torn_disc_leave_when_the_caption_says() -> None:
     view = view_of("torn")
     window, ((x, px),) = spec_of(view).find_window(), view.starts
     random, count = np.random.default_rng(4), 20_000

@@ -31,7 +31,7 @@ def starts_of(count: int) -> list[tuple[float, float]]:
     return [(0.01 * k, 0.0) for k in range(count)]
 
 
-def test_a_new_start_is_chosen_and_one_beyond_the_maximal_number_is_refused() -> None:
+def test_a_new_start_is_chosen_unless_there_are_too_many() -> None:
     view = ViewState()
     assert view.chosen_start is None
     added = [view.add_start(start) for start in starts_of(MOST_ORBITS + 1)]

@@ -1,3 +1,5 @@
+"""Birkhoff averages agree to many digits on tori, and to few digits on chaotic and escaping orbits."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -30,7 +32,7 @@ def test_two_averages_that_agree_by_chance_are_not_enough() -> None:
 
 
 def test_an_orbit_whose_energy_drifts_has_zero_digits() -> None:
-    # Tori all the same, but at the larger amplitude the fixed step is too long.
+    # All orbits still lie on tori, but at the larger amplitude the fixed step is too long.
     states = np.array([[amplitude, 0.0, 0.0, 0.3] for amplitude in (0.5, 2.0)])
     digits = count_agreeing_digits(SEPARABLE, states, 1000.0)
     assert digits[0] > TORUS_DIGITS

@@ -1,4 +1,4 @@
-"""Maps with evidence against maps with full integration: there must be no evidence for an orbit that escapes."""
+"""Maps with evidence agree with maps of full integration, and no orbit with evidence escapes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MAPS = [
 
 @cache
 def map_pair(name: str, energy: float, plane: Plane) -> tuple[EscapeMap, EscapeMap]:
-    """The map with evidence, and the same map with full integration."""
+    """Return the map with evidence, and the same map with full integration."""
     spec = MapSpec(CASES[name], plane, energy, (21, 21), t_max=3e4)
     return compute_map(spec), compute_map(replace(spec, use_evidence=False))
 

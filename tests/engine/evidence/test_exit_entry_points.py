@@ -1,3 +1,5 @@
+"""Orbits through the entry points of an exit have entered through this exit."""
+
 from __future__ import annotations
 
 import numpy as np

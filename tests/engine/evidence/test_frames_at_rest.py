@@ -1,4 +1,4 @@
-"""What rests on the symmetry of time reversal, on tori as evidence or on fixed steps is refused or off where it does not hold."""
+"""Analyses that need time reversal, tori as evidence or fixed steps are refused or off where these do not hold."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ WITH_RADIUS = replace(CASES["I"], escape_radius=3.0)
         lambda potential, energy: UnstableManifold.from_orbit(find_lyapunov_orbits(potential, energy)[0]),
     ],
 )
-def test_what_rests_on_time_reversal_refuses_rotating_frames(call: Callable[[Potential, float], Any]) -> None:
+def test_analyses_that_need_time_reversal_refuse_rotating_frames(call: Callable[[Potential, float], Any]) -> None:
     with pytest.raises(ValueError, match="its frame rotates"):
         call(ROTATING, ENERGY)
 
@@ -56,7 +56,7 @@ def test_what_rests_on_time_reversal_refuses_rotating_frames(call: Callable[[Pot
 @pytest.mark.parametrize(
     ("potential", "expected"), [(CASES["I"], True), (ROTATING, False), (WITH_CENTRE, False), (WITH_RADIUS, False)]
 )
-def test_tori_are_evidence_in_wells_at_rest_only(potential: Potential, expected: bool) -> None:
+def test_tori_are_evidence_only_in_wells_at_rest(potential: Potential, expected: bool) -> None:
     spec = MapSpec(potential, Plane.X_PX, 0.12, (4, 4), t_max=1e5)
     assert looks_for_tori(spec) == expected
 

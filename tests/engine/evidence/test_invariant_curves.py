@@ -1,3 +1,5 @@
+"""Curves through section points enclose the right area, and escaping orbits lie inside them."""
+
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -19,13 +21,13 @@ def ellipse(phase: np.ndarray) -> np.ndarray:
 
 
 def boomerang(phase: np.ndarray) -> np.ndarray:
-    """A thin, strongly bent closed curve whose centroid lies outside it."""
+    """Return a thin, strongly bent closed curve whose centroid lies outside it."""
     angle, radius = 1.9 * np.cos(phase), 0.5 + 0.05 * np.sin(phase)
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
 def rotation_points(curve: Curve, count: int, rotation: float = GOLDEN) -> np.ndarray:
-    """(count, 2) successive points of a rotation on a curve."""
+    """Return successive points of a rotation on a curve, of shape (count, 2)."""
     return curve(2.0 * np.pi * rotation * np.arange(count) + 0.7)
 
 

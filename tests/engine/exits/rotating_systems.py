@@ -14,22 +14,22 @@ EARTH_MOON = 1.215058560962404e-2
 
 
 def hill() -> Potential:
-    """Φ = −1/r − 3x²/2, Ω = 1: the entry of the catalogue, whose compiled kernels other tests also use."""
+    """Return Φ = −1/r − 3x²/2, Ω = 1: the entry of the catalogue, whose compiled kernels other tests also use."""
     return POTENTIALS["Hill"]
 
 
 def three_body(mu: float) -> Potential:
-    """The restricted three-body problem with the body of mass μ at the origin, the other one at x = −1; that of the catalogue."""
+    """Return the restricted three-body problem of the catalogue, with the body of mass μ at the origin, the other at x = −1."""
     return System("Earth-Moon", parameters={"m": mu}).potential
 
 
 def at_jacobi_constant(constant: float, mu: float = EARTH_MOON) -> float:
-    """The energy of the Jacobi constant C = x² + y² + 2(1 − μ)/r1 + 2μ/r2 − v², with x and y from the centre of mass."""
+    """Return the energy of the Jacobi constant C = x² + y² + 2(1 − μ)/r1 + 2μ/r2 − v², with x and y from the centre of mass."""
     return 0.5 * ((1.0 - mu) ** 2 - constant)
 
 
 def integrate(mu: float | None, start: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """(n, 4) states by heyoka at increasing times, the first of which is 0; mu None for Hill's problem."""
+    """Return heyoka's states, (n, 4), at increasing times that begin with 0; `mu` is None for Hill's problem."""
     integrator = _integrator(mu)
     integrator.time, integrator.state[:] = 0.0, start
     return np.asarray(integrator.propagate_grid(list(times))[-1])
@@ -37,7 +37,7 @@ def integrate(mu: float | None, start: np.ndarray, times: np.ndarray) -> np.ndar
 
 @cache
 def _integrator(mu: float | None) -> hy.taylor_adaptive:
-    """From equations of motion written here."""
+    """Return heyoka's integrator for equations of motion written here."""
     x, y, vx, vy = hy.make_vars("x", "y", "vx", "vy")
     nearby = (1.0 if mu is None else mu) * (x * x + y * y) ** -1.5
     if mu is None:

@@ -1,3 +1,5 @@
+"""Lyapunov orbits of wells at rest lie on their exit curves, and are the same from both ends."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -55,7 +57,7 @@ def test_every_point_of_the_orbit_lies_on_its_exit_curve_and_beyond_its_gate(pot
 
 
 def test_gates_of_several_energies_lie_inside_all_exits() -> None:
-    # At the higher energy the axes of the exit are others.
+    # At the higher energy the exit has other axes.
     energies = [1.02 * BENT_WALL.escape_energy, 2.0 * BENT_WALL.escape_energy]
     a, b, c = exit_gates(np.array([exit_curves(BENT_WALL, energy) for energy in energies]))[0]
     for energy in energies:
@@ -64,7 +66,7 @@ def test_gates_of_several_energies_lie_inside_all_exits() -> None:
 
 
 def half_of(potential: Potential, orbit: LyapunovOrbit, end: int) -> np.ndarray:
-    """(51, 2) DOP853's path from one of the ends, 0 or 100, to the middle of the orbit."""
+    """Return DOP853's path from one of the ends, 0 or 100, to the middle of the orbit, of shape (51, 2)."""
     start, times = [orbit.x[end], orbit.y[end], 0.0, 0.0], np.linspace(0.0, 0.25 * orbit.period, 51)
     path = solve_ivp(equations(potential), times[[0, -1]], start, "DOP853", rtol=1e-13, atol=1e-15, t_eval=times).y
     return path[:2].T

@@ -1,4 +1,4 @@
-"""Solutions followed with an adaptive step; here the solution is the list of the values reached."""
+"""Solutions are followed with an adaptive step. Here the solution is the list of the values reached."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STEPS = Steps(first=0.5, smallest=2.0**-5, most=50)
 
 
 def reached_with(longest: Callable[[float], float]) -> list[float] | None:
-    """The values reached from 0 up to 1, where a step from a value can be as long as `longest` of it."""
+    """Return the values reached from 0 up to 1, where a step from a value can be as long as `longest` of it."""
 
     def advance(values: list[float], target: float) -> list[float] | None:
         return [*values, target] if target - values[-1] <= longest(values[-1]) else None
@@ -29,7 +29,7 @@ def test_steps_are_halved_where_the_solution_is_not_found() -> None:
     assert values == pytest.approx([0.0, 0.0625, 0.125, 0.1875, 0.25, 0.375, 0.625, 1.0])
 
 
-def test_a_solution_that_ceases_to_exist_on_the_way_gives_none() -> None:
+def test_a_solution_that_ceases_to_exist_on_the_way_is_not_found() -> None:
     assert reached_with(lambda value: 0.7 - value) is None
 
 

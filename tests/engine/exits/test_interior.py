@@ -1,3 +1,5 @@
+"""The interior is the region connected with the origin without crossing an exit."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -19,7 +21,7 @@ CURLED_QUINTIC = Potential(
 
 
 def flood_filled(potential: Potential, energy: float, window: Window, side: int) -> tuple[np.ndarray, ...]:
-    """(side, side) x, y, whether below the energy, and whether connected with the origin, on a grid with the exits drawn."""
+    """Return x, y, whether V < h, and whether connected with the origin, all (side, side), on a grid with the exits as walls."""
     x, y = np.meshgrid(*window.pixel_centres(side, side))
     allowed = potential.value(x, y) <= energy
     barrier = np.zeros_like(allowed)

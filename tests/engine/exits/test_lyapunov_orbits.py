@@ -1,3 +1,5 @@
+"""Lyapunov orbits agree with SciPy and with the limit at the saddle, and have the symmetries and units of the well."""
+
 from __future__ import annotations
 
 import numpy as np

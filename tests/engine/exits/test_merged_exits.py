@@ -1,4 +1,4 @@
-"""Exits of two channels, above the maximum of V between these."""
+"""Two channels have one exit above the maximum of V between them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from tests.peers.dop853 import equations
 
 # Even in x and y. The maxima lie on the y axis, between channels 1 and 2, and between 3 and 4.
 SYMMETRIC = Potential("symmetric", ((2, 0, 0.8902), (0, 2, 0.3619), (2, 4, -0.94), (0, 6, -0.0346)))
-# No symmetry, and a channel apart from those that merge.
+# A potential without symmetry, and with a channel that does not merge.
 GENERAL = Potential(
     "general",
     (
@@ -42,7 +42,7 @@ GENERAL = Potential(
     ),
 )
 MAXIMUM = SYMMETRIC.well.channel_mergers[0].energy
-# In units of the maximum.
+# Energies in units of that of the maximum.
 ABOVE = 1.2
 
 
@@ -51,14 +51,14 @@ def above(potential: Potential) -> float:
 
 
 def random_states(potential: Potential, energy: float, count: int) -> np.ndarray:
-    """Starts in the inner part of the well."""
+    """Return starts in the inner part of the well."""
     random, reach = np.random.default_rng(1), 0.3 * np.hypot(*potential.saddles.T).min()
     place, angle = random.uniform(-reach, reach, (count, 2)), random.uniform(0.0, 2.0 * np.pi, count)
     speed = np.sqrt(2.0 * (energy - potential.value(*place.T)))
     return np.column_stack([place, speed * np.cos(angle), speed * np.sin(angle)])
 
 
-def test_channels_on_both_sides_of_a_maximum_are_one_exit_above_it() -> None:
+def test_channels_on_both_sides_of_a_maximum_are_one_exit_above_its_energy() -> None:
     assert [orbit.name for orbit in find_lyapunov_orbits(SYMMETRIC, 0.99 * MAXIMUM)] == ["1", "2", "3", "4"]
     assert [orbit.name for orbit in find_lyapunov_orbits(SYMMETRIC, ABOVE * MAXIMUM)] == ["1+2", "3+4"]
     labels = [outcome.label for outcome in SYMMETRIC.outcomes_at(ABOVE * MAXIMUM)]
@@ -149,7 +149,7 @@ def test_maps_and_single_orbits_agree_and_mirror_images_leave_through_the_mirror
     np.testing.assert_array_equal(classify_orbits(SYMMETRIC, energy, states, 100.0).fate, frame.fate[rows, columns])
 
 
-def test_a_plane_of_energies_names_exits_from_the_energy_on_at_which_they_merge() -> None:
+def test_a_plane_of_energies_names_merged_exits_above_their_energy() -> None:
     spec = MapSpec(SYMMETRIC, Plane.X_H, (0.9 * MAXIMUM, ABOVE * MAXIMUM), (6, 2), t_max=20.0)
     assert spec.outcomes[0].label == f"exit 1, 1+2 above h = {MAXIMUM:.6g}"
     fates = compute_map(spec).fate

@@ -1,4 +1,4 @@
-"""The Lyapunov orbits of rotating systems, and those at rest found by the same method."""
+"""Lyapunov orbits of rotating systems, and of systems at rest by the same method, agree with published orbits and heyoka."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ HILL_SADDLE = -0.5 * 3.0 ** (4.0 / 3.0)
 
 
 def orbit_of(potential: Potential, energy: float, channel: int) -> PeriodicOrbit:
-    """The orbit, in units of the well."""
+    """Return the orbit, in units of the well."""
     orbit = find_orbit_in_rotating_frame(potential.in_well_units, energy / potential.units.energy, channel)
     assert orbit is not None
     return orbit
 
 
 def path_of(potential: Potential, energy: float, channel: int) -> tuple[float, np.ndarray]:
-    """Period and path (4, 201) in the units of the potential."""
+    """Return the period and path (4, 201) in the units of the potential."""
     orbit = orbit_of(potential, energy, channel)
     return orbit.period * potential.units.time, orbit.path * potential.units.state[:, None]
 
 
 def crossings_of(mu: float | None, period: float, path: np.ndarray) -> np.ndarray:
-    """(4, n) the states in which an orbit crosses y = 0, integrated by heyoka from the points before."""
+    """Return the states in which an orbit crosses y = 0, integrated by heyoka from the points before, of shape (4, n)."""
 
     def later(point: int, time: float) -> np.ndarray:
         return integrate(mu, path[:, point], np.array([0.0, time]))[-1]
@@ -48,7 +48,7 @@ def crossings_of(mu: float | None, period: float, path: np.ndarray) -> np.ndarra
 
 
 @each_well
-def test_brake_orbits_are_found_by_continuation_too(potential: Potential, energy: float) -> None:
+def test_brake_orbits_are_also_found_by_continuation(potential: Potential, energy: float) -> None:
     scaled = energy / potential.units.energy
     for expected in find_lyapunov_orbits(potential.in_well_units, scaled):
         orbit = find_orbit_in_rotating_frame(potential.in_well_units, scaled, expected.channel)
@@ -68,9 +68,7 @@ def test_brake_orbits_are_found_by_continuation_too(potential: Potential, energy
         (L2, 2.95787377644491, 5.640853006654308, 61.0217545317533),
     ],
 )
-def test_orbits_of_earth_and_moon_are_those_of_the_catalogue(
-    channel: int, jacobi: float, period: float, stability: float
-) -> None:
+def test_orbits_of_earth_and_moon_agree_with_the_catalogue(channel: int, jacobi: float, period: float, stability: float) -> None:
     """Three-Body Periodic Orbits of NASA's Jet Propulsion Laboratory, version 1.0: Earth-Moon, planar Lyapunov orbits.
 
     Jacobi constant, period and stability index (λ + 1/λ)/2 of some members of both families, from a published copy of what its
@@ -82,7 +80,7 @@ def test_orbits_of_earth_and_moon_are_those_of_the_catalogue(
     assert 0.5 * (largest + 1.0 / largest) == pytest.approx(stability, rel=1e-7)
 
 
-def test_orbit_of_oterma_is_that_of_a_computer_assisted_proof() -> None:
+def test_the_orbit_of_oterma_agrees_with_a_computer_assisted_proof() -> None:
     """Wilczak & Zgliczyński 2003, Commun. Math. Phys. 234, 37 (arXiv math/0201278): μ = 0.0009537, C = 3.03.
 
     Their C includes μ(1 − μ). They enclose the points in which the Lyapunov orbits cross y = 0. The CAPD library, which they

@@ -1,4 +1,4 @@
-"""The exits of rotating systems: lines at the outer edges of their Lyapunov orbits."""
+"""Exits of rotating systems are lines at the outer edges of their Lyapunov orbits."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ HILL_WITH_CENTRE = hill().with_outcomes([Centre(0.0, 0.0, 0.01)])
 
 
 def random_starts(energy: float, count: int) -> np.ndarray:
-    """(count, 4) states around the centre of Hill's problem, with velocities in random directions."""
+    """Return states around the centre of Hill's problem, with velocities in random directions, of shape (count, 4)."""
     random = np.random.default_rng(5)
     x, y = 0.3 * random.uniform(-1.0, 1.0, (2, count))
     angle = random.uniform(0.0, 2.0 * np.pi, count)
@@ -121,7 +121,7 @@ def test_orbits_that_have_crossed_the_line_do_not_return_to_the_well(energy: flo
         pytest.param("Logarithmic bar", -0.308, marks=pytest.mark.slow),
     ],
 )
-def test_exits_end_where_the_document_says(name: str, highest: float) -> None:
+def test_exits_end_at_the_energies_in_the_document(name: str, highest: float) -> None:
     step = 1e-3 * abs(highest)
     assert find_lyapunov_orbits(POTENTIALS[name], highest - step)
     with pytest.raises(ValueError, match="does not end on the walls"):

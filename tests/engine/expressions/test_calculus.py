@@ -47,7 +47,7 @@ def values_of(expression: Expression) -> np.ndarray:
 
 @seeds
 @pytest.mark.parametrize("orders", [(1, 0), (0, 1), (2, 0), (1, 1), (0, 2)])
-def test_derivatives_are_those_of_sympy(seed: int, orders: tuple[int, int]) -> None:
+def test_derivatives_agree_with_sympy(seed: int, orders: tuple[int, int]) -> None:
     expression = random_expression(seed)
     derived = expression
     for axis, order in enumerate(orders):
@@ -90,7 +90,7 @@ def test_values_have_the_parity_exactly(seed: int, axis: int) -> None:
         ("√(1 + (x − 1)²) + √(1 + (x + 1)²)", NEITHER, EVEN),
     ],
 )
-def test_parities(text: str, in_x: int, in_y: int) -> None:
+def test_known_expressions_have_their_parities(text: str, in_x: int, in_y: int) -> None:
     definition = parse_formula(text).form.definition
     assert isinstance(definition, Expression)
     assert (parity(definition, 0), parity(definition, 1)) == (in_x, in_y)

@@ -1,4 +1,4 @@
-"""Graphs of expressions: how few sums over all lower orders the series of a gradient need."""
+"""Graphs of expressions need few sums over all lower orders for the series of a gradient."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_other_slopes_of_logarithms_of_roots_are_quotients() -> None:
 @pytest.mark.parametrize(
     "text", ["x² − 3x y + 2", "exp(x y) + sin(3x) cos(y) − log(2 + x)", "(x − y)^−3 + √(x + 5)", "√(x − 9)", "1/(x − 0.3)"]
 )
-def test_the_values_at_one_point_are_those_of_arrays(text: str) -> None:
+def test_values_at_one_point_equal_values_of_arrays(text: str) -> None:
     potential = parse_formula(f"{text} + exp(x)")
     graph, numbers = make_graph((potential.form.definition, derivative(potential.form.definition, 0)))
     np.testing.assert_allclose(evaluate_at(graph, numbers, 0.3, -0.7), evaluate(graph, numbers, 0.3, -0.7), rtol=1e-14)

@@ -1,4 +1,4 @@
-"""Canonical form of expressions."""
+"""Expressions have a canonical form."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_equal_formulas_are_equal_and_have_equal_hashes(one: Expression, other: 
     assert hash(one) == hash(other)
 
 
-def test_polynomials_are_terms_and_back() -> None:
+def test_polynomials_survive_conversion_to_terms_and_back() -> None:
     terms = {(2, 0): 0.5, (1, 2): -1.0, (0, 0): 3.0}
     assert as_terms(from_terms(terms)) == terms
     assert as_terms(multiply(X, WAVE)) is None

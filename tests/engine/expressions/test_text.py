@@ -1,4 +1,4 @@
-"""Numbers of formulas as fractions."""
+"""Numbers in formulas are written as short fractions."""
 
 from __future__ import annotations
 

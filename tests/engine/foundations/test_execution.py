@@ -1,3 +1,5 @@
+"""Parallel calls cover all parts, report progress, and end with an error when calls are cancelled or lost."""
+
 from __future__ import annotations
 
 import threading
@@ -27,7 +29,7 @@ def test_parts_cover_all_indices_in_order(count: int, workers: int) -> None:
 
 
 class CancelledWhileWaiting(Future[None]):
-    """A call that is cancelled after `result` has been called."""
+    """A call that is cancelled while `result` waits."""
 
     def result(self, timeout: float | None = None) -> None:
         self.cancel()
@@ -55,13 +57,13 @@ def long_call(*, on_frame: object = None, execution: Execution = DEFAULT_EXECUTI
 
 
 class Terminal(StringIO):
-    """A stream that says it is a terminal."""
+    """A stream that claims to be a terminal."""
 
     def isatty(self) -> bool:
         return True
 
 
-def test_a_bar_is_shown_in_a_terminal_where_nobody_follows_the_progress() -> None:
+def test_a_bar_is_shown_in_a_terminal_unless_progress_has_a_listener() -> None:
     with redirect_stderr(Terminal()), ThreadPoolExecutor(1) as thread:
         assert callable(long_call())
         assert long_call(on_frame=print) is None

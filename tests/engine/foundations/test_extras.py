@@ -1,4 +1,4 @@
-"""A package that is missing is named, with the command that installs it."""
+"""A missing package is named with the command that installs it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Former names warn, and stand for the present ones."""
+"""Former names work like the present names, with a warning."""
 
 from __future__ import annotations
 
@@ -73,13 +73,13 @@ def test_the_former_functions_of_orbits_refuse_another_potential() -> None:
         find_multipliers(CASES["I"], exit_orbit)
 
 
-def test_the_former_request_of_curves_is_one_of_a_sweep() -> None:
+def test_the_former_request_of_curves_is_a_request_of_a_sweep() -> None:
     with pytest.warns(DeprecationWarning, match="^CurvesSpec is deprecated: use SweepSpec$"):
         spec = engine.CurvesSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), 500.0, exponent=False)  # type: ignore[attr-defined]
     assert spec == SweepSpec(CASES["II"], Plane.X_PX, (0.1, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
 
 
-def test_an_unknown_name_is_no_former_one() -> None:
+def test_an_unknown_name_is_not_taken_for_a_former_name() -> None:
     with pytest.raises(AttributeError, match="no attribute 'Certificates'"):
         engine.Certificates  # type: ignore[attr-defined]  # noqa: B018
 

@@ -15,12 +15,12 @@ import xarray as xr
 
 from tests.results import ENERGY, POTENTIAL, RESULTS, result_of
 
-# Plain dataclasses of numbers, whose text is that of any dataclass.
+# Plain dataclasses of numbers, with the default text of dataclasses.
 PLAIN = {"potential", "verdict", "divergent start", "entropy"}
 
 
 def arrays_of(result: Any) -> Iterator[np.ndarray]:
-    """The arrays of a result, and of the results in it; a map keeps the state of its orbits, which is no result."""
+    """Yield the arrays of a result and of the results in it, without the states of orbits that a map keeps."""
     if isinstance(result, np.ndarray):
         yield result
     elif isinstance(result, tuple):
@@ -77,7 +77,7 @@ def test_a_map_says_what_it_is_in_five_lines() -> None:
 def test_the_path_of_a_lyapunov_orbit_has_its_times() -> None:
     exit_orbit: Any = result_of("Lyapunov orbit")
     path = exit_orbit.to_xarray()
-    # It starts on an exit, where rounding decides whether an integrated orbit is outside; its speed follows from the energy.
+    # The path starts on an exit, where rounding decides whether an orbit is outside. Its speed follows from the energy.
     velocity = [np.gradient(path[name], path["t"], edge_order=2) for name in ("x", "y")]
     expected = np.sqrt(2.0 * np.maximum(ENERGY - POTENTIAL.value(path["x"], path["y"]), 0.0))
     np.testing.assert_allclose(np.hypot(*velocity), expected, atol=2e-3)

@@ -1,3 +1,5 @@
+"""Roots are those of SciPy, and invalid brackets are refused."""
+
 from __future__ import annotations
 
 import math
@@ -19,7 +21,7 @@ FUNCTIONS: dict[str, tuple[Callable[[float], float], float, float]] = {
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_root_is_that_of_scipy_to_the_bit(name: str) -> None:
+def test_roots_agree_with_scipy_to_the_bit(name: str) -> None:
     function, low, high = FUNCTIONS[name]
     assert find_root(function, low, high, absolute=1e-17, relative=1e-15) == optimize.brentq(
         function, low, high, xtol=1e-17, rtol=1e-15

@@ -1,3 +1,5 @@
+"""Numbers and times are written with groups of digits and typographic signs."""
+
 from __future__ import annotations
 
 import pytest

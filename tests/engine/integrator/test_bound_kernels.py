@@ -1,3 +1,5 @@
+"""Potentials of one structure share generated code."""
+
 from __future__ import annotations
 
 import threading
@@ -21,7 +23,7 @@ def test_potentials_of_one_structure_share_code_with_their_own_coefficients() ->
 
 def test_functions_of_a_known_structure_are_not_generated_again(monkeypatch: pytest.MonkeyPatch) -> None:
     bound_kernels.load_kernels(TERMS, 0)
-    # Whatever other structures were needed meanwhile.
+    # This holds even after other structures were needed.
     monkeypatch.setattr(bound_kernels, "generate", None)
     assert bound_kernels.load_kernels(((2, 0, 0.9), (0, 2, 0.5)), 0).potential_value(2.0, 1.0) == 0.9 * 4 + 0.5
 
@@ -34,7 +36,7 @@ def test_a_potential_of_the_same_powers_may_need_other_functions() -> None:
     assert not bound_kernels.is_generated(strong, setting)
 
 
-def test_known_functions_are_there_while_others_are_generated(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_known_functions_are_available_while_others_are_generated(monkeypatch: pytest.MonkeyPatch) -> None:
     bound_kernels.load_kernels(TERMS, 0)
     begun, end = threading.Event(), threading.Event()
 

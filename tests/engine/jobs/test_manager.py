@@ -177,7 +177,7 @@ def test_jobs_of_jobs_are_computed_once() -> None:
 
 
 def compile_kernels(begun: threading.Event, end: threading.Event) -> None:
-    """A compilation that lasts until `end` is set."""
+    """Stand in for a compilation that lasts until `end` is set."""
     begun.set()
     end.wait(SECONDS)
 
@@ -192,7 +192,7 @@ def test_orbits_do_not_wait_for_a_compilation() -> None:
 
 
 def wait_for(begun: threading.Event, end: threading.Event) -> str:
-    """A call that lasts until `end` is set."""
+    """Stand in for a call that lasts until `end` is set."""
     begun.set()
     end.wait(SECONDS)
     return "waited"
@@ -243,7 +243,7 @@ def test_cancelled_map_ends_while_background_is_paused(paused: Jobs) -> None:
 
 
 def show_two_frames(clock: Clock, shown: threading.Event, *, execution: Execution, on_frame: Callable[[Any], None]) -> str:
-    """A map whose second frame needs 2 s of a processor."""
+    """Return a map whose second frame needs 2 s of a processor."""
     on_frame(SimpleNamespace(complete=False, horizon=1.0))
     assert execution.executor is not None
     second = execution.executor.submit(clock.compute, 2)

@@ -1,4 +1,4 @@
-"""Priority of the calls of a map."""
+"""The priority of the calls of a map depends on stage and load."""
 
 from __future__ import annotations
 

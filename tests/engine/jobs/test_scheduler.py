@@ -1,4 +1,4 @@
-"""Fair scheduler: priorities, round-robin among clients, and a free thread beside long calls."""
+"""The fair scheduler has priorities, serves clients in turn, and leaves a thread free during long calls."""
 
 from __future__ import annotations
 

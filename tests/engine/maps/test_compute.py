@@ -1,4 +1,4 @@
-"""Maps computed in blocks of rows, and maps with their reliability."""
+"""Maps computed in blocks of rows are the same as maps computed at once."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_frames_cancellation_and_executor_may_be_given_by_position() -> None:
         assert not compute_map(SPECS[0], None, cancel, pool).complete
 
 
-def test_what_is_given_beside_an_execution_replaces_its_fields() -> None:
+def test_arguments_beside_an_execution_replace_its_fields() -> None:
     cancelled = threading.Event()
     cancelled.set()
     shares: list[float] = []

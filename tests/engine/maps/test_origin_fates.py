@@ -1,4 +1,4 @@
-"""Origins and fates; the past of an orbit is the future of the reversed orbit."""
+"""The origin of an orbit is the fate of the reversed orbit."""
 
 from __future__ import annotations
 

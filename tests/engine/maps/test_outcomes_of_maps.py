@@ -31,7 +31,7 @@ def escape_map() -> EscapeMap:
     return disc_map()
 
 
-def test_shares_are_of_each_outcome(escape_map: EscapeMap) -> None:
+def test_each_outcome_has_its_share(escape_map: EscapeMap) -> None:
     interior, shares = escape_map.fate[escape_map.interior], escape_map.fractions()
     assert [shares[k] for k in (1, 2, 3)] == [float(np.mean(interior == k)) for k in (1, 2, 3)]
     assert min(shares[k] for k in (1, 2, 3)) > 0.1
@@ -61,7 +61,7 @@ def test_passages_are_counted_between_all_outcomes(escape_map: EscapeMap) -> Non
     assert "channel" not in origins.describe()
 
 
-def test_outcomes_of_orbits_come_back_from_a_file(tmp_path: Path) -> None:
+def test_outcomes_of_orbits_read_from_a_file_are_equal(tmp_path: Path) -> None:
     found = classify_orbits(DISC, 0.19, sample_starts(DISC, 0.19, 50, seed=1), 100.0)
     found.to_xarray().to_netcdf(tmp_path / "orbits.nc", engine="h5netcdf")
     opened = open_result(tmp_path / "orbits.nc")

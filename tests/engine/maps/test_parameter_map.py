@@ -1,3 +1,5 @@
+"""Each line of a map along a parameter is the map of one potential."""
+
 from __future__ import annotations
 
 import threading
@@ -37,7 +39,7 @@ def along_epsilon() -> EscapeMap:
 
 
 def ordinary_map(spec: MapSpec, axis: ParameterAxis, value: float) -> EscapeMap:
-    """The starts at one value of the parameter as a map of that potential, made without a parameter."""
+    """Return the starts at one value of the parameter as a map of that potential, made without a parameter."""
     potential = axis.system.with_parameter(axis.key, value).potential
     window = spec.find_window()
     if spec.plane.parameter_axis == 1:
@@ -65,7 +67,7 @@ def test_columns_are_maps_of_their_potentials() -> None:
     found = compute_map(TURNED)
     for column, line in enumerate(find_lines(TURNED)):
         assert line is not None
-        # Of time units that differ: the frequency changes by more than 2.
+        # Lines with different units of time, because the frequency changes by more than a factor of 2.
         assert_equal_outcomes(line.of(found), ordinary_map(TURNED, FREQUENCY, float(found.x[column])))
 
 
@@ -103,7 +105,7 @@ def test_trust_and_character_are_those_of_the_lines(along_epsilon: EscapeMap) ->
         np.testing.assert_array_equal(character.character[line.place], compute_regularity(line.of(along_epsilon)).character)
         alone = compute_trust(line.of(along_epsilon)).trust
         tested = alone != Trust.LIKE_NEIGHBOURS
-        # Neighbours in other lines make more pixels be tested.
+        # More pixels are tested because of neighbours in other lines.
         np.testing.assert_array_equal(trust.trust[line.place][tested], alone[tested])
 
 

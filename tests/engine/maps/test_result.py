@@ -1,3 +1,5 @@
+"""Maps have the right codes, shares, frames and provenance."""
+
 from __future__ import annotations
 
 import itertools
@@ -11,7 +13,7 @@ from engine.foundations.execution import Execution
 from engine.results import Outcomes
 
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
-# Has bounded, escaping, forbidden and outside pixels, and more pixels than the first frame.
+# A map with bounded, escaping, forbidden and outside pixels, and more pixels than the first frame.
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.35, (70, 66), t_max=300.0)
 
 
@@ -198,7 +200,7 @@ def test_incomplete_map_is_exported_as_incomplete(frames: list[EscapeMap]) -> No
 
 
 @pytest.mark.parametrize("resolution", [(1, 1), (1, 7), (7, 1), (3, 200)])
-def test_unusual_resolutions(resolution: tuple[int, int]) -> None:
+def test_maps_of_unusual_resolutions_are_computed(resolution: tuple[int, int]) -> None:
     result = compute_map(MapSpec(CASES["I"], Plane.X_Y, 0.2, resolution, t_max=20.0))
     assert result.complete
     assert result.fate.shape == resolution[::-1]

@@ -27,7 +27,7 @@ from engine.maps.result import PIXEL_ARRAYS
 from tests.forgetful_pool import ForgetfulPool
 
 ALONG_EPSILON = Slice(Coordinate.X, ParameterAxis("epsilon", 0.9, 1.1, System("I")))
-# The orbits of each are tested twice, at t = 1000 and 10 000, and those of the last one also at 100 000.
+# The orbits of each map are tested at t = 1000 and 10 000, and those of the last map also at 100 000.
 SPECS = {
     "III": MapSpec(CASES["III"], Plane.X_PX, 0.30, (24, 24), t_max=2e4),
     "many energies": MapSpec(CASES["III"], Plane.X_H, (0.25, 0.5), (16, 12), t_max=2e4),
@@ -52,7 +52,7 @@ def assert_same_map(one: EscapeMap, other: EscapeMap) -> None:
 
 
 def early(escape_map: EscapeMap) -> np.ndarray:
-    """(rows, columns) bool: pixels called bounded before t_max."""
+    """Return which pixels are called bounded before t_max, (rows, columns)."""
     return ~np.isin(escape_map.evidence, (Evidence.NONE, Evidence.INTEGRATED))
 
 
@@ -68,7 +68,7 @@ class CallCounter(SerialExecutor):
 
 
 @each_spec
-def test_a_map_continued_from_shorter_ones_is_the_one_computed_at_once(spec: MapSpec) -> None:
+def test_a_map_continued_from_shorter_maps_equals_a_map_computed_at_once(spec: MapSpec) -> None:
     result = None
     for t_max in (*LADDER, spec.t_max):
         result = compute_map(replace(spec, t_max=t_max), resume=result)
@@ -93,7 +93,7 @@ def test_a_map_interrupted_at_any_call_is_resumed_to_the_same_result(name: str) 
         assert_same_map(compute_map(spec, resume=interrupted), at_once(spec))
 
 
-def test_a_test_for_evidence_that_is_interrupted_leaves_none() -> None:
+def test_an_interrupted_test_for_evidence_leaves_no_evidence() -> None:
     spec, counter = SPECS["III"], CallCounter()
     after_each_test = [early(compute_map(replace(spec, t_max=t_max))) for t_max in (1e3, 1e4)] + [early(at_once(spec))]
     compute_map(spec, executor=counter)

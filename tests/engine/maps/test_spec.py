@@ -1,3 +1,5 @@
+"""Requests of maps have pixel centres, windows and resolutions without starts on lines of symmetry."""
+
 from __future__ import annotations
 
 from dataclasses import astuple, fields, replace
@@ -36,13 +38,13 @@ def test_outer_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
 
 
 def starts_on_a_symmetry_line(spec: MapSpec) -> int:
-    """The number of pixels with x = px = 0 or y = py = 0."""
+    """Return the number of pixels with x = px = 0 or y = py = 0."""
     x, ordinate = np.meshgrid(*spec.pixel_centres())
     states = spec.start_states(x.ravel(), ordinate.ravel())
     return int(sum((states[:, pair] == 0.0).all(axis=1).sum() for pair in ([0, 2], [1, 3])))
 
 
-# x and y held by a momentum of 0 or by an angle, in both orders of the axes.
+# Slices over x and y with a fixed momentum of 0 or a fixed angle, in both orders of the axes.
 @pytest.mark.parametrize(
     ("plane", "energy"),
     [

@@ -1,4 +1,4 @@
-"""The loop of stages, with work that counts."""
+"""The loop of stages publishes frames, reports progress and can be cancelled; here the work is counting."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from engine.maps.stages import OnChange, Stage, frame_pause, run_stages, run_to_
 
 @dataclass(frozen=True)
 class Count:
-    """How far the work is."""
+    """The progress of the work."""
 
     done: int
     complete: bool
@@ -28,7 +28,7 @@ class Counting:
     finished: list[int] = field(default_factory=list)
 
     def stages(self, _execution: Execution, on_change: OnChange) -> Iterator[Stage]:
-        """Stages of two steps each."""
+        """Yield stages of two steps each."""
         for number in range(3):
 
             def stage(number: int = number) -> None:
@@ -40,11 +40,11 @@ class Counting:
             yield stage
 
     def progress(self) -> float:
-        """Share of the steps."""
+        """Return the share of the steps."""
         return self.done / 6
 
     def frame(self) -> Count:
-        """The steps so far."""
+        """Return the steps so far."""
         return Count(self.done, self.done == 6)
 
 
@@ -59,7 +59,7 @@ def test_frames_begin_after_the_first_stage_and_end_with_one_complete_frame() ->
     assert [frame.complete for frame in frames] == [False] * 5 + [True]
 
 
-def test_between_frames_is_a_pause() -> None:
+def test_there_is_a_pause_between_frames() -> None:
     frames: list[Count] = []
     run_stages(Counting(), Execution(), frames.append, lambda _elapsed: 60.0)
     assert [frame.done for frame in frames] == [2]

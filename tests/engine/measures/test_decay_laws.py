@@ -1,3 +1,5 @@
+"""Fits of decay laws recover the law, rate and interval of random samples."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -34,19 +36,19 @@ DEVIATIONS = 5.5
 
 
 def statistics_of(times: np.ndarray, *, bounded: int = 0, undecided: int = 0) -> EscapeStatistics:
-    """Statistics of a map with escapes at these times."""
+    """Return statistics of a map with escapes at these times."""
     return EscapeStatistics((times.size,), bounded, undecided, 0, 0.0, 0.0, np.zeros(0, np.int64), times)
 
 
 def shares_of(count: int, seed: int | None) -> np.ndarray:
-    """Random shares; without a seed those of a sample whose quantiles are the exact ones of its law."""
+    """Return random shares, or without a seed the exact quantiles of a sample."""
     return (np.arange(count) + 0.5) / count if seed is None else np.random.default_rng(seed).random(count)
 
 
 def exponential_times(
     count: int, seed: int | None = None, *, window: tuple[float, float] = WINDOW, kappa: float = KAPPA
 ) -> np.ndarray:
-    """Times in the window that follow an exponential law."""
+    """Return times in the window that follow an exponential law."""
     low, high = window
     share = shares_of(count, seed) * -np.expm1(-kappa * (high - low))
     times: np.ndarray = low - np.log1p(-share) / kappa
@@ -54,7 +56,7 @@ def exponential_times(
 
 
 def power_times(count: int, seed: int | None = None, *, window: tuple[float, float] = WINDOW, gamma: float = GAMMA) -> np.ndarray:
-    """Times in the window that follow a power law."""
+    """Return times in the window that follow a power law."""
     low, high = window
     share = shares_of(count, seed) * (1.0 - (high / low) ** -gamma)
     times: np.ndarray = low * (1.0 - share) ** (-1.0 / gamma)

@@ -1,3 +1,5 @@
+"""Statistics count every interior start once, also of unfinished maps and single windows."""
+
 from __future__ import annotations
 
 import threading
@@ -55,7 +57,7 @@ def under_way() -> EscapeMap:
 
 
 def with_times(frame: EscapeMap, times: list[float]) -> EscapeStatistics:
-    """Statistics of a map in which one orbit escapes at each of these times and no other."""
+    """Return statistics of a map in which one orbit escapes at each of these times and no other."""
     fate, escape_time = np.zeros(frame.fate.size, np.int8), np.full(frame.fate.size, np.nan)
     fate[: len(times)], escape_time[: len(times)] = 1, times
     shape = frame.fate.shape

@@ -39,7 +39,7 @@ def test_each_orbit_has_one_entrance(entrances: list[int]) -> None:
         match(entrances, [1, 1])
 
 
-def test_as_many_orbits_pass_from_one_exit_to_another_as_back() -> None:
+def test_equally_many_orbits_pass_between_two_exits_in_both_directions() -> None:
     """Orbits are drawn by the flux, and each one passed backward in time is another one."""
     entrances, states = sample_entrances_by_exit(UNEQUAL, ENERGY, 4000, seed=5)
     counts = compute_exit_matching(entrances, classify_orbits(UNEQUAL, ENERGY, states, 1e4)).counts[:, 1:]
@@ -47,7 +47,7 @@ def test_as_many_orbits_pass_from_one_exit_to_another_as_back() -> None:
     assert counts.min() > 10
     # The difference of each of a few pairs is normal; the probability of a false alarm is 4e-8.
     assert np.all(np.abs(counts - counts.T) <= 5.5 * np.sqrt(counts + counts.T))
-    # They remember how they entered.
+    # The orbits remember how they entered.
     assert np.ptp(counts / counts.sum(axis=1, keepdims=True), axis=0).max() > 0.1
 
 

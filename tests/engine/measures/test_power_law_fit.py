@@ -1,3 +1,5 @@
+"""Fits of uncertain pairs recover exact power laws and the dimension of the Cantor set."""
+
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -16,18 +18,18 @@ FALSE_ALARM = 1e-7
 
 
 def law(alpha: float, amplitude: float, bend_at: float = np.inf) -> np.ndarray:
-    """Shares A ε^α that saturate above `bend_at`."""
+    """Return shares A ε^α that saturate above `bend_at`."""
     return amplitude * SEPARATIONS**alpha / (1.0 + SEPARATIONS / bend_at) ** alpha
 
 
 def counts(share: np.ndarray, random: np.random.Generator | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Counts of pairs, about 200 of them uncertain at each separation: random ones, or as many as are expected."""
+    """Return random or expected counts of pairs, with about 200 uncertain pairs at each separation."""
     pairs = np.clip(200.0 / share, 200.0, 2e5).astype(int)
     return SEPARATIONS, pairs, np.rint(pairs * share).astype(int) if random is None else random.binomial(pairs, share)
 
 
 def fit_set(label: Callable[[np.ndarray], np.ndarray], pairs: int, smallest: float = 1e-9) -> UncertaintyExponent:
-    """The exponent of a labelled interval [0, 1], from random pairs of points."""
+    """Return the exponent of a labelled interval [0, 1], from random pairs of points."""
     random = np.random.default_rng(5)
     separations = np.geomspace(1e-2, smallest, 15)
     points = random.uniform(0.0, 1.0, (separations.size, pairs))
@@ -36,7 +38,7 @@ def fit_set(label: Callable[[np.ndarray], np.ndarray], pairs: int, smallest: flo
 
 
 def is_near(fit: UncertaintyExponent, exponent: float) -> bool:
-    """Whether an exponent is within 5.5 standard errors; a correct one is not with a probability of 4e-8."""
+    """Return whether an exponent is within 5.5 standard errors, as correct ones are with a probability of 1 − 4e-8."""
     return abs(fit.exponent - exponent) < 5.5 * (fit.high - fit.low) / 3.92
 
 

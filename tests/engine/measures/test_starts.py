@@ -1,3 +1,5 @@
+"""Measures count the right starts of a map, and Wilson's intervals are those of SciPy."""
+
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -21,19 +23,19 @@ def whole() -> EscapeMap:
 
 
 def with_fate(frame: EscapeMap, fate: Fate) -> EscapeMap:
-    """The map with one escaping pixel changed."""
+    """Return the map with one escaping pixel changed."""
     codes = frame.fate.copy()
     codes[np.unravel_index(np.argmax(codes), codes.shape)] = fate
     return replace(frame, fate=codes)
 
 
-def test_all_interior_starts_count_with_bounded_ones(whole: EscapeMap) -> None:
+def test_all_interior_starts_count_if_bounded_starts_do(whole: EscapeMap) -> None:
     labels, valid = exit_labels(whole.fate, bounded=True)
     assert np.array_equal(valid, whole.interior)
     assert np.array_equal(labels[valid], whole.fate[whole.interior])
 
 
-def test_only_escaping_starts_count_without_bounded_ones(whole: EscapeMap) -> None:
+def test_only_escaping_starts_count_if_bounded_starts_do_not(whole: EscapeMap) -> None:
     labels, valid = exit_labels(whole.fate, bounded=False)
     assert np.array_equal(valid, whole.fate >= 1)
     assert set(labels[valid]) == {1, 2, 3, 4}
@@ -56,7 +58,7 @@ def test_negative_codes_without_a_mask_are_no_basin(measure: Callable[..., Any])
 
 
 @pytest.mark.parametrize(("count", "total"), [(0, 1), (0, 50), (1, 50), (25, 50), (50, 50), (12_345, 39_000)])
-def test_limits_are_those_of_scipy(count: int, total: int) -> None:
+def test_limits_agree_with_scipy(count: int, total: int) -> None:
     reference = binomtest(count, total).proportion_ci(method="wilson")
     assert wilson_interval(count, total) == pytest.approx((reference.low, reference.high), abs=1e-12)
 

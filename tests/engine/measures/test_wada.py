@@ -1,3 +1,5 @@
+"""The merging test agrees with a comparison of all pixels, and tells Wada basins from others."""
+
 from __future__ import annotations
 
 import math
@@ -19,13 +21,13 @@ def stripes(width: int, number: int = 3, rows: int = 10) -> np.ndarray:
 
 
 def patches(seed: int, labels: int = 4, side: int = 24) -> np.ndarray:
-    """Random labels in squares of 3 × 3 pixels."""
+    """Return random labels in squares of 3 × 3 pixels."""
     coarse = np.random.default_rng(seed).integers(labels, size=(side // 3, side // 3))
     return coarse.repeat(3, axis=0).repeat(3, axis=1)
 
 
 def pixel_by_pixel(labels: np.ndarray, valid: np.ndarray) -> list[float]:
-    """Distance of each boundary pixel from the furthest slim boundary, by comparing all pairs of pixels."""
+    """Return the distance of each boundary pixel from the furthest slim boundary, by comparing all pairs of pixels."""
     rows, columns = labels.shape
     slim: dict[int, set[tuple[int, int]]] = {int(label): set() for label in np.unique(labels[valid])}
     for (row, column), (down, right) in product(np.ndindex(rows, columns), [(0, 1), (1, 0)]):
@@ -43,9 +45,9 @@ def pixel_by_pixel(labels: np.ndarray, valid: np.ndarray) -> list[float]:
 
 
 def cantor_basins(level: int) -> np.ndarray:
-    """Three basins that are Wada in the limit, with 3**level columns: the gaps of the Cantor set, labelled in turn by their size.
+    """Return three basins that are Wada in the limit, 3**level columns: gaps of the Cantor set, labelled in turn by size.
 
-    Every point of that set has gaps of all three labels arbitrarily close.
+    Every point of the set has gaps of all three labels arbitrarily close.
     """
     labels = np.full(3**level, level % 3)
     place = np.arange(3**level)
@@ -56,7 +58,7 @@ def cantor_basins(level: int) -> np.ndarray:
 
 
 def newton(side: int) -> WadaTest:
-    """The basins of Newton's method for z³ = 1 on −2 to 2, whose common boundary is the Julia set."""
+    """Return the basins of Newton's method for z³ = 1 on −2 to 2, whose common boundary is the Julia set."""
     place = (2.0 * np.arange(side) + 1.0 - side) / side * 2.0
     z = place + 1j * place[:, None]
     for _ in range(40):

@@ -1,3 +1,5 @@
+"""Batches of orbits keep undecided orbits, raise errors of workers, and compute with low priority."""
+
 from __future__ import annotations
 
 import os

@@ -1,3 +1,5 @@
+"""SALI of many orbits agrees with SALI of single orbits."""
+
 from __future__ import annotations
 
 import threading

@@ -1,3 +1,5 @@
+"""Fates have names and sentences, and SALI has its threshold."""
+
 from __future__ import annotations
 
 import math

@@ -1,4 +1,4 @@
-"""How well the energy, in rotating frames the Jacobi integral, is held in the systems with rotating frames and bodies."""
+"""The Jacobi integral of systems with rotating frames and bodies is constant."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ENERGIES = [
 
 
 def outcomes_of(potential: Potential, energy: float) -> tuple[Outcomes, np.ndarray]:
-    """Outcomes, and which orbits pass a centre within ten radii."""
+    """Return outcomes, and which orbits pass a centre within ten radii."""
     starts = sample_starts(potential, energy, STARTS, seed=3)
     wide = potential.with_outcomes([replace(c, radius=NEAR * c.radius) for c in potential.centres], potential.escape_radius)
     t_max = T_MAX * potential.well.exact_time_unit

@@ -1,3 +1,5 @@
+"""Section points agree with SciPy, and do not depend on the executor."""
+
 from __future__ import annotations
 
 import threading

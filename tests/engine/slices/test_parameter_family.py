@@ -1,3 +1,5 @@
+"""Exits followed along a parameter are those of each potential, and keep their numbers."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -29,7 +31,7 @@ def test_continued_maxima_merge_the_same_channels() -> None:
 
 
 @pytest.mark.parametrize(("value", "expected"), [(0.05, (1, 2)), (-0.43, (1, 3, 2))])
-def test_exits_keep_their_numbers_and_a_new_one_gets_the_next(value: float, expected: tuple[int, ...]) -> None:
+def test_exits_keep_their_numbers_and_a_new_exit_gets_the_next(value: float, expected: tuple[int, ...]) -> None:
     family = ParameterFamily(THIRD_EXIT)
     member = family.member(value)
     # Counterclockwise: above, at the left, below.

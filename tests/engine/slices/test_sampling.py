@@ -1,3 +1,5 @@
+"""Random starts cover the energy surface, or a window, uniformly."""
+
 from __future__ import annotations
 
 import numpy as np

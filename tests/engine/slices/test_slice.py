@@ -1,3 +1,5 @@
+"""Starts, limits, mirror images and windows of arbitrary slices follow from their definitions."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -40,7 +42,7 @@ def test_zero_velocity_curve_has_the_required_energy(plane: Plane) -> None:
 
 
 def interior_by_path(name: str, plane: Plane, energy: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points of the interior on a large grid: those connected to the origin without crossing a Lyapunov orbit."""
+    """Return points of the interior on a large grid: those connected to the origin without crossing a Lyapunov orbit."""
     side = np.linspace(-2.2, 2.2, 551)
     x, ordinate = np.meshgrid(side, side)
     y = ordinate if plane is Plane.X_Y else np.zeros_like(x)
@@ -112,7 +114,7 @@ def oblique_slices(draw: st.DrawFn) -> Slice:
 
 
 def slices() -> st.SearchStrategy[Slice]:
-    """Any slice of one system."""
+    """Return any slice of one system."""
     return st.one_of(slices_of_coordinates(), slices_with_an_angle(), oblique_slices())
 
 
@@ -175,7 +177,7 @@ def test_a_start_of_any_slice_is_forbidden_exactly_where_energy_is_missing(plane
     np.testing.assert_array_equal(np.isnan(states).any(axis=1)[clear], missing[clear] > 0.0)
 
 
-# With pixels at 0, and without.
+# Maps with and without pixels at 0.
 @pytest.mark.parametrize("shape", [(6, 4), (5, 3)])
 @example(Slice(Coordinate.X, Coordinate.BETA))
 @example(Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, 0.0),)))

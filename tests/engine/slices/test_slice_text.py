@@ -1,3 +1,5 @@
+"""Slices are read as they were written."""
+
 from __future__ import annotations
 
 import pytest
@@ -15,7 +17,7 @@ LETTER = ParameterAxis("b", 0.1, 0.3, TYPED)
 
 @given(slices())
 def test_a_slice_is_read_as_it_was_written(plane: Slice) -> None:
-    # One that is a named slice is read as that.
+    # A text of a named slice is read as that slice.
     assert read_slice(*write_slice(plane), System("I")) == checked_slice(plane)
 
 

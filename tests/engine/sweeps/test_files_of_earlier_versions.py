@@ -15,7 +15,7 @@ SWEEP = SweepSpec(CASES["III"], Plane.X_PX, (0.3, 0.4, 0.5), (12, 10), t_max=300
 
 
 def as_earlier(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset as earlier versions wrote it."""
+    """Return the dataset as earlier versions wrote it."""
     earlier = dataset.rename({"evidence": "certificate"} if "evidence" in dataset else {})
     earlier.attrs = {"certify" if name == "use_evidence" else name: value for name, value in dataset.attrs.items()}
     return earlier

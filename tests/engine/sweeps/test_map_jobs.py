@@ -1,4 +1,4 @@
-"""What the jobs of maps and sweeps compute within limits."""
+"""Jobs of typed formulas find their potentials within limits."""
 
 from __future__ import annotations
 

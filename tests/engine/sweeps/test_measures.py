@@ -1,4 +1,4 @@
-"""The table of measures: what each entry gives to files, tables, the page and figures."""
+"""Each entry of the table of measures has numbers and words for files, tables, the page and figures."""
 
 from __future__ import annotations
 
@@ -61,13 +61,13 @@ def test_documents_list_all_measures() -> None:
 
 
 @pytest.mark.parametrize("measure", MEASURES.values(), ids=MEASURES)
-def test_an_entry_has_its_words(measure: Measure) -> None:
+def test_an_entry_has_a_title_and_a_short_meaning(measure: Measure) -> None:
     assert measure.title
     assert 3 <= len(measure.meaning.split()) <= 6
     assert bool(measure.curve.axis) is bool(measure.help)
 
 
-def test_numbers_have_names_of_their_own() -> None:
+def test_names_of_numbers_are_unique() -> None:
     names = [quantity.name for measure in MEASURES.values() for quantity in measure.quantities]
     assert len(names) == len(set(names))
 
@@ -94,7 +94,7 @@ def test_the_chaotic_share_of_all_bounded_starts_is_that_of_the_regularity(sea: 
     assert found.judged == np.count_nonzero(sea.fate == 0)
 
 
-def test_drawn_starts_have_the_characters_that_they_have_among_all(sea: EscapeMap) -> None:
+def test_sampled_starts_have_the_same_character_as_among_all_starts(sea: EscapeMap) -> None:
     whole = compute_regularity(sea).character
     characters = MeasuredMap(sea, effort=0.1).find_characters()
     bounded = np.flatnonzero(sea.fate == 0)

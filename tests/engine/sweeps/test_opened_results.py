@@ -1,4 +1,4 @@
-"""Results that are written to files come back equal."""
+"""Results read from files are equal to the written results."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ WRITERS: dict[str, Callable[[Result, Path], Path]] = {"NetCDF": to_netcdf, "Zarr
 
 
 def assert_equal(found: Any, wanted: Any) -> None:
-    """Equal to the last bit, but for the integration state, which files do not hold; datasets tell how results were made."""
+    """Check equality to the last bit, without the integration state, which files do not contain."""
     assert type(found) is type(wanted)
     for field in fields(wanted):
         one, other = getattr(found, field.name), getattr(wanted, field.name)
@@ -148,7 +148,7 @@ def assert_equal(found: Any, wanted: Any) -> None:
 
 @pytest.mark.parametrize("how", WRITERS)
 @pytest.mark.parametrize("name", SPECS)
-def test_map_comes_back(name: str, how: str, tmp_path: Path) -> None:
+def test_a_map_read_from_a_file_is_equal(name: str, how: str, tmp_path: Path) -> None:
     wanted = compute_map(SPECS[name])
     found = open_result(str(WRITERS[how](wanted, tmp_path)))
     assert_equal(found, wanted)
@@ -164,7 +164,7 @@ def computed(name: str) -> Result:
 
 
 @pytest.mark.parametrize("name", RESULTS)
-def test_result_comes_back_and_can_be_written_again(name: str, tmp_path: Path) -> None:
+def test_a_result_read_from_a_file_is_equal_and_can_be_written_again(name: str, tmp_path: Path) -> None:
     wanted = computed(name)
     found = open_result(to_netcdf(wanted, tmp_path))
     assert_equal(found, wanted)
@@ -209,7 +209,7 @@ def test_common_times_are_a_dimension() -> None:
 
 @pytest.mark.parametrize("how", WRITERS)
 @pytest.mark.parametrize("name", SWEEPS)
-def test_sweep_comes_back_and_goes_on(name: str, how: str, tmp_path: Path) -> None:
+def test_a_sweep_read_from_a_file_is_equal_and_continues(name: str, how: str, tmp_path: Path) -> None:
     wanted = compute_sweep(SWEEPS[name])
     found = open_result(WRITERS[how](wanted, tmp_path))
     xr.testing.assert_equal(found.dataset, wanted.dataset)
@@ -230,14 +230,14 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_a_file_of_another_kind_than_the_wanted_one_is_refused(tmp_path: Path) -> None:
+def test_a_file_of_an_unwanted_kind_is_refused(tmp_path: Path) -> None:
     CASES["I"].save(tmp_path / "case.nc")
     assert open_result(tmp_path / "case.nc", Potential) == CASES["I"]
     with pytest.raises(ValueError, match=r"case\.nc: holds Potential; must hold EscapeMap$"):
         open_result(tmp_path / "case.nc", EscapeMap)
 
 
-def test_sweep_in_a_store_comes_back(store: Path) -> None:
+def test_a_sweep_read_from_a_store_is_equal(store: Path) -> None:
     xr.testing.assert_identical(open_result(store).dataset, compute_sweep(SWEEP, store).dataset)
 
 

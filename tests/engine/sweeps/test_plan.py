@@ -1,4 +1,4 @@
-"""Plans of sweeps."""
+"""Plans of sweeps estimate starts, bytes and time."""
 
 from __future__ import annotations
 
@@ -40,6 +40,6 @@ def test_plan_uses_the_midpoints_of_twelve_intervals(monkeypatch: pytest.MonkeyP
     assert sorted(seen) == pytest.approx(np.arange(0.01, 0.24, 0.02), abs=0.001)
 
 
-def test_description() -> None:
+def test_the_description_of_a_plan_states_its_costs() -> None:
     text = SweepPlan(10**9, 7200.0, 23 * 10**9, 16).describe()
     assert text == "1e+09 orbits: about 2 hours on 16 cores (32 core hours), at most 23 GB"

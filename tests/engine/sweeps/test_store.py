@@ -92,7 +92,7 @@ def run_until(spec: SweepSpec, store: Path, share: float) -> None:
 # Contents.
 
 
-def test_a_store_has_the_sweep_of_memory(finished: Path) -> None:
+def test_a_store_contains_the_same_sweep_as_memory(finished: Path) -> None:
     """It opens without a warning, which would be an error."""
     with xr.open_zarr(finished) as found:
         xr.testing.assert_equal(found, compute_sweep(SPEC).dataset)
@@ -227,7 +227,7 @@ def test_dask_cluster_is_byte_identical(tmp_path: Path, processes: bool) -> None
     assert files_of(tmp_path / "cluster") == files_of(tmp_path / "straight")
 
 
-def test_a_sweep_of_which_less_is_known_is_another_one() -> None:
+def test_a_sweep_with_less_provenance_is_another_sweep() -> None:
     wanted = {"energy": 0.2, "t_max": 100.0}
     check_same_sweep("store", wanted, wanted)
     with pytest.raises(ValueError, match=r"store: holds another sweep, with t_max=None; must have t_max=100.0"):

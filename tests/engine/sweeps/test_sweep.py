@@ -169,7 +169,7 @@ def test_outcomes_along_a_parameter_keep_their_numbers() -> None:
 
 
 def step_at(edge: float) -> Callable[[SweepPoint], xr.Dataset]:
-    """Measures a share that falls from 1 to 0 at an energy."""
+    """Return a measure of a share that falls from 1 to 0 at an energy."""
 
     def measure(point: SweepPoint) -> xr.Dataset:
         share = float(point.value < edge)

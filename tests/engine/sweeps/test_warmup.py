@@ -1,4 +1,4 @@
-"""Compilation ahead of time."""
+"""Kernels are compiled ahead of time, in the order of need, without delaying maps."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_kernels_are_compiled_in_the_order_of_need() -> None:
     assert compiled == [{"step", "jets"}, {"step", "jets", "fixed_step"}, {"step", "jets", "fixed_step", "tangent"}]
 
 
-def test_background_compilation_lets_maps_go_first() -> None:
+def test_maps_go_before_background_compilation() -> None:
     compilations, order = Compilations(), []
 
     def background() -> None:

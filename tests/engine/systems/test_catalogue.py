@@ -1,3 +1,5 @@
+"""Entries of the catalogue have the exits, energies and integrals of the literature."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -13,7 +15,7 @@ each_entry = pytest.mark.parametrize("name", POTENTIALS)
 
 
 @each_entry
-def test_entry_is_complete(name: str) -> None:
+def test_each_entry_is_complete(name: str) -> None:
     entry = CATALOGUE[name]
     assert entry.name == POTENTIALS[name].name == name
     assert entry.title
@@ -47,7 +49,7 @@ def test_channels_and_escape_energy_of_literature_entries(name: str, channels: i
 
 
 def second_integral(name: str) -> tuple[sympy.Expr, sympy.Expr]:
-    """The Hamiltonian of an integrable entry and an integral independent of it."""
+    """Return the Hamiltonian of an integrable entry and an integral independent of it."""
     px, py = sympy.symbols("px py")
     value = sum(sympy.nsimplify(c, rational=True) * X**i * Y**j for i, j, c in POTENTIALS[name].terms)
     energy = (px**2 + py**2) / 2 + value

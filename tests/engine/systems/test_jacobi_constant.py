@@ -1,4 +1,4 @@
-"""The Jacobi constants of Lagrange points beside those of the literature, and the names of these points."""
+"""Jacobi constants and names of Lagrange points are those of the literature."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def constant_at(potential: Potential, x: float) -> float:
         ("Hill", -0.69, 3 ** (4 / 3)),
     ],
 )
-def test_jacobi_constants_are_those_of_the_literature(name: str, x: float, constant: float) -> None:
+def test_jacobi_constants_agree_with_the_literature(name: str, x: float, constant: float) -> None:
     assert constant_at(POTENTIALS[name], x) == pytest.approx(constant, abs=6e-6 if name != "Copenhagen" else 6e-5)
 
 

@@ -1,4 +1,4 @@
-"""Equilibria of rotating systems and their energies beside solutions of the equilibrium equations with 40 digits."""
+"""Equilibria of rotating systems and their energies agree with solutions of the equations in 40 digits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ACCURACY = 1e-12
 
 
 def critical(name: str) -> dict[tuple[float, float], float]:
-    """The energies of the critical points of a system by their places."""
+    """Return the energies of the critical points of a system by their places."""
     return {(point.x, point.y): point.energy for point in review_potential(System(name).potential).critical_points}
 
 
@@ -23,7 +23,7 @@ def nearest(name: str, x: mpmath.mpf, y: mpmath.mpf) -> tuple[float, float, floa
 
 
 def three_bodies(mu: mpmath.mpf, shift: mpmath.mpf):
-    """Φ of the restricted problem, with the masses 1 − μ at x = −shift and μ at 1 − shift, and the axis at x = μ − shift."""
+    """Return Φ of the restricted problem: masses 1 − μ at x = −shift and μ at 1 − shift, and the axis at x = μ − shift."""
 
     def phi(x, y):
         one, other = (mpmath.sqrt((x + shift - place) ** 2 + y**2) for place in (0, 1))

@@ -1,3 +1,5 @@
+"""Channels merge to one exit above each maximum between them."""
+
 from __future__ import annotations
 
 import pytest
@@ -18,7 +20,7 @@ def test_maxima_all_around_the_well_close_a_ring() -> None:
     assert merged_exits(RING, 0.75) == (MergedExit((1, 2, 3, 4), closes_ring=True),)
 
 
-def test_an_exit_has_the_lowest_number_of_its_channels_and_other_outcomes_their_own() -> None:
+def test_a_merged_exit_has_the_lowest_number_of_its_channels() -> None:
     assert exit_numbers(MERGERS, 5).tolist() == [[0, 1, 2, 3, 4, 5], [0, 1, 2, 1, 4, 5], [0, 1, 2, 1, 1, 5]]
 
 
@@ -33,5 +35,5 @@ def test_an_exit_has_the_lowest_number_of_its_channels_and_other_outcomes_their_
         (4, 0.4, 0.8, "4, 4 in 1+3+4 above h = 0.5"),
     ],
 )
-def test_names_tell_from_which_energy_on_they_hold(channel: int, low: float, high: float, expected: str) -> None:
+def test_names_of_merged_exits_tell_their_lowest_energy(channel: int, low: float, high: float, expected: str) -> None:
     assert describe_channel(channel, MERGERS, low, high) == expected

@@ -1,4 +1,4 @@
-"""Axes moved to a well elsewhere: potentials as their authors write them, with their energies."""
+"""Axes move to a well elsewhere, so that potentials keep their authors' formulas and energies."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ def test_saddles_have_the_energies_that_authors_state(
 def test_the_lowest_exit_of_de_leon_and_berne_is_the_saddle_of_their_formula() -> None:
     potential = parse_formula(f"{DE_LEON_BERNE}; well (0, 0.7)")
     assert review_potential(potential).refusal is None
-    # Their saddle is at (0, 0), with V = 1.
+    # In the authors' formula the saddle is at (0, 0), with V = 1.
     assert potential.escape_energy == pytest.approx(1.0, abs=1e-14)
     lowest = potential.saddles[np.argmin(potential.well.saddle_energies)]
     np.testing.assert_allclose(lowest + potential.origin, 0.0, atol=1e-14)
 
 
-def test_v_is_the_same_at_the_same_place() -> None:
+def test_moved_axes_leave_v_at_each_place_unchanged() -> None:
     formula = MUELLER_BROWN
     typed, moved = parse_formula(formula), parse_formula(f"{formula}; well (0, 0)")
     x, y = np.random.default_rng(3).uniform(-0.7, 0.7, (2, 50))

@@ -1,4 +1,4 @@
-"""Outcomes: order, words, and as attributes of files."""
+"""Outcomes have an order, words, and a form in files."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def test_exits_come_first_then_centres_then_the_escape_radius() -> None:
     assert [outcome.kind for outcome in ALL] == [Exit, Exit, Centre, Centre, EscapeCircle]
 
 
-def test_each_has_a_sentence_and_what_an_orbit_does() -> None:
+def test_each_outcome_has_a_sentence_and_a_verb() -> None:
     channel, _, moon, _, escape = ALL
     assert [each.sentence for each in (channel, moon, escape)] == [
         "Escaped through exit 1.", "Collided with the Moon.", "Escaped beyond the escape radius.",

@@ -1,3 +1,5 @@
+"""Potentials have the derivatives, saddles and symmetries of their formulas."""
+
 from __future__ import annotations
 
 import numpy as np

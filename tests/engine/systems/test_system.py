@@ -1,4 +1,4 @@
-"""The selected system: its potential, name and energy range."""
+"""A system has a potential, a formula, parameters and an energy range."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_the_formula_contains_the_parameters() -> None:
     )
 
 
-def test_letters_are_parameters_beside_those_of_the_well() -> None:
+def test_letters_are_parameters_in_addition_to_those_of_the_well() -> None:
     system = System(TYPED, "½r² − a x y² + b₂ x³", {"a": 1.5, "b2": 1.0, "omega_1": 1.1})
     assert system.parameters == {"omega_1": 1.1, "a": 1.5}
     assert system.letters == {"a": 1.5, "b2": 1.0}
@@ -65,7 +65,7 @@ def test_the_system_of_a_formula_has_its_letters_and_its_rotation() -> None:
 @pytest.mark.parametrize(
     "system", [System.from_formula("½r² − a x y²", a=1.5), System("Earth-Moon"), System("I", "", {"epsilon": 2.0})]
 )
-def test_a_potential_knows_the_system_that_it_is_of(system: System) -> None:
+def test_a_potential_knows_its_system(system: System) -> None:
     assert system.potential.system == system
     assert ParameterAxis(system.parameter_names[-1], 0.5, 2.0, system.potential).system == system
 

@@ -44,7 +44,7 @@ def late_escape() -> tuple[np.ndarray, Orbit]:
 # Digits by window length.
 
 
-def test_digits_of_a_torus_rise_to_those_of_evidence() -> None:
+def test_digits_of_a_torus_rise_to_the_number_that_is_evidence() -> None:
     found = compute_birkhoff_digits(CASES["I"], start_states(CASES["I"], Plane.X_PX, 0.12, np.array([-0.2]), np.zeros(1))[0], 1e5)
     assert found.digits.size > 1
     assert np.all(np.diff(found.digits) > 1.0)
@@ -52,14 +52,14 @@ def test_digits_of_a_torus_rise_to_those_of_evidence() -> None:
 
 
 @pytest.mark.parametrize(("t_max", "count"), [(1999.0, 0), (2000.0, 1), (8000.0, 2)])
-def test_two_windows_must_fit_into_t_max(t_max: float, count: int) -> None:
+def test_two_windows_of_digits_must_fit_into_t_max(t_max: float, count: int) -> None:
     assert compute_birkhoff_digits(CASES["II"], SEA, t_max).windows.tolist() == list(WINDOWS[:count])
 
 
 # Conclusions.
 
 
-# Of SALI, the exponent, the digits of halves, and the digits.
+# Conclusions of SALI, the exponent, the digits of halves, and the digits.
 TORUS = [Verdict.NO_SIGN, Verdict.NO_SIGN, Verdict.REGULAR, Verdict.REGULAR]
 
 

@@ -23,13 +23,13 @@ from engine.exits.interior import find_outside_channels
 COUNT = 4000
 # Standard errors by which a mean or a share may be off: the probability of a false alarm is 6e-7 for each.
 LARGEST_DEVIATION = 5.0
-# Without islands, so that all of the volume is passed.
+# A well without islands, so that orbits pass all of the volume.
 OPEN = [(CASES["III"], 0.6), (POTENTIALS["HH"], 0.3)]
 UNEQUAL = Potential("unequal", ((2, 0, 0.5), (0, 2, 0.6), (1, 2, -1.0), (3, 0, 0.3)))
 
 
 def times_inside(potential: Potential, energy: float, states: np.ndarray, t_max: float) -> np.ndarray:
-    """(n,) times until orbits leave; t_max for those that stay, which have no escape time."""
+    """Return the times until orbits leave, (n,), or t_max for orbits that stay."""
     return np.fmin(classify_orbits(potential, energy, states, t_max).escape_time, t_max)
 
 
@@ -62,7 +62,7 @@ def test_entrances_are_inside_and_go_inward(potential: Potential, energy: float)
     for duration, outside in ((1e-4, False), (-1e-4, True)):
         x, y = (states[:, :2] + duration * states[:, 2:]).T.copy()
         beyond = find_outside_channels(potential, energy, x, y) > 0
-        # Those that move almost along the exit have hardly left it.
+        # Orbits that move almost along the exit have hardly left it.
         assert (beyond == outside).mean() > 0.9
 
 

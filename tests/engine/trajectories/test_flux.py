@@ -1,4 +1,4 @@
-"""Flux through the exits and volume inside: against quadrature, the limit at the saddle, escapes of random starts, and units."""
+"""Flux and volume agree with quadrature, the limit at the saddle and escapes of random starts, in any units."""
 
 from __future__ import annotations
 

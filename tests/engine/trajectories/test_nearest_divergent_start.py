@@ -1,3 +1,5 @@
+"""The nearest divergent start has another fate, and no nearer start has."""
+
 from __future__ import annotations
 
 from functools import cache
@@ -41,7 +43,7 @@ def divergent_of(start: tuple[Any, ...]) -> DivergentStart:
 
 
 @pytest.mark.parametrize("start", STARTS, ids=str)
-def test_it_escapes_through_another_channel(start: tuple[Any, ...]) -> None:
+def test_the_divergent_start_escapes_through_another_channel(start: tuple[Any, ...]) -> None:
     divergent = divergent_of(start)
     if start[1] is Plane.X_H:
         assert divergent.ordinate == start[4]

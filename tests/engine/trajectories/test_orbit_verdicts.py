@@ -29,7 +29,7 @@ def digits_of(value: float) -> BirkhoffDigits:
 
 
 def with_end(orbit: Orbit, *, sali: float, growth: float, halves: float) -> Orbit:
-    """The orbit with another final SALI, deviations that grow like t to a power, and digits of its halves."""
+    """Return a copy of an orbit with another final SALI, power of growth of the deviations, and digits of halves."""
     with np.errstate(divide="ignore", invalid="ignore"):
         changed = replace(orbit, sali=np.full_like(orbit.t, sali), lyapunov_exponent=growth * np.log(orbit.t) / orbit.t)
     changed.__dict__["digits_of_halves"] = halves

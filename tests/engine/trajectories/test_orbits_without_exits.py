@@ -14,7 +14,7 @@ from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import compute_orbit_curves
 
 HILL = POTENTIALS["Hill"]
-# On a distant retrograde orbit, high above the necks.
+# A distant retrograde orbit, high above the energy of the necks.
 RETROGRADE = (1.2, 0.0, 0.0, -2.7)
 RING = parse_formula("½(x² + y²) − ¼(x² + y²)² + 0.01(x⁴ + y⁴ − 6x²y²)")
 
@@ -68,7 +68,7 @@ def test_an_exit_all_around_a_well_is_not_needed() -> None:
     assert "it leads all around the well" in orbit.exits_unknown
     assert orbit.fate == Fate.FAILED
     assert compute_birkhoff_digits(RING, (0.0, 0.0, 0.6 * speed, 0.8 * speed), 3000.0).digits.size == 0
-    # It has run far away.
+    # The orbit has run far away.
     assert compute_orbit_curves(RING, orbit).window.x_high < 20.0 < np.abs(orbit.x).max()
 
 
@@ -80,7 +80,7 @@ def test_an_exit_all_around_a_well_is_not_needed() -> None:
         ("III", (0.1, 0.0, 0.3, 0.0), 3000.0, "the orbit runs along an axis"),
     ],
 )
-def test_why_there_are_no_digits_is_true(name: str, state: tuple[float, ...], t_max: float, reason: str) -> None:
+def test_the_reason_for_missing_digits_is_true(name: str, state: tuple[float, ...], t_max: float, reason: str) -> None:
     potential = POTENTIALS[name]
     orbit, digits = integrate_orbit(potential, state, t_max), compute_birkhoff_digits(potential, state, t_max)
     assert orbit.fate == Fate.BOUNDED

@@ -1,3 +1,5 @@
+"""Arcs of stable manifolds separate escaping orbits from orbits that turn back."""
+
 from __future__ import annotations
 
 import math
@@ -31,7 +33,7 @@ def manifolds(potential: Potential, energy: float, images: int = 2) -> StableMan
 
 
 def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.ndarray:
-    """(n, 4) points x, px of the arcs, without their ends, and unit normals."""
+    """Return the points x, px of the arcs, without their ends, and unit normals, of shape (n, 4)."""
     rows = [np.empty((0, 4))]
     for arc in found.arcs:
         if (arc.channel, arc.image) == (channel, image):
@@ -45,7 +47,7 @@ def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.
 
 
 def separating_share(potential: Potential, energy: float, channel: int, image: int, most: int = 60) -> float:
-    """Share of the points of an image where orbits `STEP` to one side escape and those `STEP` to the other turn back."""
+    """Return the share of points of an image where orbits `STEP` to one side escape and `STEP` to the other side turn back."""
     points = points_with_normals(manifolds(potential, energy), channel, image)
     points = points[:: math.ceil(len(points) / most)]
     sides = []
@@ -61,7 +63,7 @@ def separating_share(potential: Potential, energy: float, channel: int, image: i
 
 
 def crosses_axis(name: str, channel: int) -> bool:
-    """Whether the channel's Lyapunov orbit crosses y = 0."""
+    """Return whether the channel's Lyapunov orbit crosses y = 0."""
     return name == "II" and channel == 1
 
 
@@ -76,7 +78,7 @@ def test_arcs_separate_escapes_after_n_crossings_from_orbits_that_turn_back(name
             assert separating_share(CASES[name], energy, channel, image) >= 0.99
 
 
-def test_arcs_of_a_channel_on_the_axis_separate_earlier_escapes_from_later_ones() -> None:
+def test_arcs_of_a_channel_on_the_axis_separate_earlier_from_later_escapes() -> None:
     image = 2
     points = points_with_normals(manifolds(CASES["II"], 0.2), 1, image)
     times = []
@@ -167,7 +169,7 @@ def test_result_does_not_depend_on_the_executor() -> None:
 
 
 def window_on_an_arc(half: float) -> Window:
-    """A square of side 2 `half` around a point of an arc of I at h = 0.19."""
+    """Return a square of side 2 `half` around a point of an arc of I at h = 0.19."""
     arc = next(arc for arc in find_stable_manifolds(CASES["I"], 0.19, images=1).arcs if arc.channel == 1)
     x, px = float(arc.x[arc.x.size // 3]), float(arc.px[arc.x.size // 3])
     return Window(x - half, x + half, px - half, px + half)

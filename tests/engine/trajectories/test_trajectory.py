@@ -1,3 +1,5 @@
+"""Single orbits agree with SciPy and with orbits of batches, in path, outcome and indicators."""
+
 from __future__ import annotations
 
 from dataclasses import replace

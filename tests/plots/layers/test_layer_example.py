@@ -1,4 +1,4 @@
-"""The layer of the example in docs/extending.md is drawn, explained and stored like those of the page."""
+"""The layer of the example in docs/extending.md is drawn, explained and stored like the page's layers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""First images, and curves that bound a basin, are drawn over what winds around them."""
+"""First images, and curves around a basin, are drawn over the spirals around them."""
 
 from __future__ import annotations
 

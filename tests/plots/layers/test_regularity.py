@@ -1,4 +1,4 @@
-"""Regular and chaotic orbits have colours of their own, before and after they are judged."""
+"""Regular and chaotic orbits have different colours, before and after they are judged."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def colour_of(character: Regularity) -> str:
 
 
 def painted(frame: EscapeMap, regularity: RegularityMap | None = None) -> np.ndarray:
-    """The colours of the pixels of the layer."""
+    """Return the colours of the pixels of the layer."""
     assert REGULARITY.pixels is not None
     known = layer_columns(frame, {"judge"}) if regularity is None else result_columns("judge", frame, regularity)
     return np.array(REGULARITY.pixels.colours(PAPER))[known["character"][0]]
@@ -48,7 +48,7 @@ def test_the_legend_has_orbits_that_are_not_judged_while_there_may_be_some() -> 
     assert [unjudged in each for each in labels] == [True, True, False]
 
 
-def test_tori_are_regular() -> None:
+def test_orbits_on_tori_are_regular_before_they_are_judged() -> None:
     whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.28, (41, 41), t_max=1e4))
     colours = painted(whole)
     tori = whole.evidence == Evidence.QUASI_PERIODIC

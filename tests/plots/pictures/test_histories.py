@@ -1,4 +1,4 @@
-"""Reduced histories look like the curve: itself where it can be seen, elsewhere its envelope and its mean."""
+"""Reduced histories look like the curve, or, where it oscillates too fast, are its envelope and mean."""
 
 from __future__ import annotations
 

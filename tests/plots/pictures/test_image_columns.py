@@ -73,7 +73,7 @@ def test_a_coarse_frame_fills_the_window() -> None:
 def columns_of(
     fate: list[list[int]], window: tuple[float, float, float, float], *, complete: bool = False
 ) -> dict[str, list[Any]]:
-    """Columns of a frame with these codes of fates in all images, row 0 lowest."""
+    """Return columns of a frame with these codes of fates in all images, row 0 lowest."""
     codes, (low, high, bottom, top) = np.array(fate, np.uint8), window
     images = {name: [codes] for name in ("fate", "crossing_class", "crossings", "escape_time")}
     return {**images, "x": [low], "y": [bottom], "dw": [high - low], "dh": [top - bottom], "complete": [complete]}
@@ -85,7 +85,7 @@ def test_undecided_pixels_show_those_of_an_earlier_map() -> None:
     assert draw_over(frame, earlier, (2, 2))["fate"][0].tolist() == [[5, 8], [9, 6]]
 
 
-def test_coarse_pixels_do_not_replace_finer_ones_of_the_same_place() -> None:
+def test_coarse_pixels_do_not_replace_finer_pixels_of_the_same_place() -> None:
     earlier = columns_of([[7, 8], [9, 6]], (0.0, 2.0, 0.0, 2.0))
     frame = columns_of([[5]], (0.0, 2.0, 0.0, 2.0))
     assert draw_over(frame, earlier, (4, 4))["fate"][0].tolist() == [[7, 8], [9, 6]]
@@ -99,7 +99,7 @@ def test_pixels_beyond_the_earlier_window_are_those_of_the_frame() -> None:
 
 
 def class_of_difference(one: int, other: int) -> int:
-    """The code of a pixel whose orbits have these fates in two views, written out case by case."""
+    """Return the code of a pixel whose orbits have these fates in two views, written out case by case."""
     first = len(OUTCOMES)
     if Fate.NOT_COMPUTED in (one, other):
         return list(OUTCOMES).index(Fate.NOT_COMPUTED)

@@ -25,7 +25,7 @@ for_each_vision = pytest.mark.parametrize("vision", VISIONS)
 
 
 def closest(colours: list[str] | tuple[str, ...], vision: str = "normal") -> float:
-    """The least difference of two of the colours."""
+    """Return the least difference of two of the colours."""
     apart = differences(colours, colours, vision)
     return float(apart[np.triu_indices(len(colours), 1)].min())
 

@@ -1,4 +1,4 @@
-"""The line of text that says how a map was made."""
+"""A line of text tells how a map was made."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def test_the_scale_begins_and_ends_at_round_numbers(times: Sequence[float], expe
     assert fitted_scale(frame_of(times)) == expected
 
 
-def test_one_percent_is_left_out_at_both_ends() -> None:
+def test_one_percent_of_the_times_is_left_out_at_both_ends() -> None:
     assert fitted_scale(frame_of([0.5] + [3.0] * 100 + [60.0] * 100 + [9000.0])) == TimeScale(2.0, 100.0)
 
 

@@ -1,4 +1,4 @@
-"""Figures are the same bytes each time, have text and provenance, and are as wide as asked."""
+"""Files of figures are the same bytes each time, with text, provenance and the requested width."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The numbers of a style are checked, and decide the columns of a figure."""
+"""The numbers of a style are checked, and determine the columns of a figure."""
 
 from __future__ import annotations
 

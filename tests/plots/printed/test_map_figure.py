@@ -1,4 +1,4 @@
-"""Picture files of maps: colours, positions and texts."""
+"""Picture files of maps have the right colours, positions and texts."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def escape_map() -> EscapeMap:
 
 
 def draw(frame: EscapeMap, picture: str, palette: Palette, **options: Any) -> tuple[Image.Image, np.ndarray]:
-    """A figure of one picture, and the pixels (rows, columns, 3) inside the frame of its map."""
+    """Return a figure of one picture, and the pixels (rows, columns, 3) inside the frame of its map."""
     figure = draw_map_figure(frame, [picture], palette, STYLE, **options)
     image = Image.open(BytesIO(save_figure(figure, FigureFormat.PNG, {}))).convert("RGB")
     box = figure.axes[0].get_window_extent()
@@ -73,7 +73,7 @@ def on_white(colour: str) -> tuple[int, ...]:
 
 
 def share_shown(square: np.ndarray, frame: EscapeMap, picture: str, palette: Palette) -> float:
-    """Share of the starts whose pixel has its colour at its centre; curves and marks cover a few of them."""
+    """Return the share of the starts whose pixel has its colour at its centre; curves and marks cover a few of them."""
     bare = picture_pixels(frame, picture, palette).astype(float)
     expected = 255 + (bare[..., :3] - 255) * bare[..., 3:] / 255
     rows, columns = (

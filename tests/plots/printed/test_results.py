@@ -1,3 +1,5 @@
+"""Results are drawn on axes, in notebooks and as HoloViews elements."""
+
 from __future__ import annotations
 
 import base64

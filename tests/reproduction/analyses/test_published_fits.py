@@ -1,3 +1,5 @@
+"""The published fits have the values of their formulas."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -11,7 +13,7 @@ from reproduction.analyses.published_fits import PAPER_FITS, HyperbolicTangent, 
     ("name", "energy", "twice_u"),
     [("I", 0.15, 1.0), ("I", 0.2, 4.0), ("II", 0.18, 4.64), ("III", 0.3, -0.35), ("III", 0.4, 2.82)],
 )
-def test_published_shares_of_escapes(name: str, energy: float, twice_u: float) -> None:
+def test_fits_of_escapes_have_the_values_of_their_formula(name: str, energy: float, twice_u: float) -> None:
     assert PAPER_FITS[name].escaped(energy) == pytest.approx(1.0 / (1.0 + np.exp(-twice_u)), rel=1e-12)
 
 
@@ -26,7 +28,7 @@ def test_published_shares_of_escapes(name: str, energy: float, twice_u: float) -
         ("III", 0.3, 0.24508),
     ],
 )
-def test_published_shares_of_direct_escapes(name: str, energy: float, share: float) -> None:
+def test_fits_of_direct_escapes_have_the_values_of_their_polynomials(name: str, energy: float, share: float) -> None:
     assert PAPER_FITS[name].direct(energy) == pytest.approx(share, rel=1e-12)
 
 

@@ -1,3 +1,5 @@
+"""Fits of shares recover curves, and their intervals cover the true parameters."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -13,7 +15,7 @@ PARABOLA = Polynomial((-1.496, 7.585, -5.938))
 
 
 def drawn(shares: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Shares of 9000 random starts."""
+    """Return shares of 9000 random starts."""
     return rng.binomial(9000, shares) / 9000
 
 
@@ -48,7 +50,7 @@ def test_the_interval_of_a_line_is_the_sandwich_formula() -> None:
 
 
 def in_sample(share: float, count: int, low: float, high: float) -> bool:
-    """Whether a sample with a true share from `low` to `high` has this one, but for a probability of 1e-7 on each side."""
+    """Return whether a sample with a true share from `low` to `high` may have this share, with a risk of 1e-7 on each side."""
     return bool(binom.ppf(1e-7, count, low) <= share * count <= binom.isf(1e-7, count, high))
 
 

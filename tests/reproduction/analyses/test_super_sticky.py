@@ -1,3 +1,5 @@
+"""The search continues exactly the chaotic bounded orbits of a map."""
+
 from __future__ import annotations
 
 import threading
@@ -18,7 +20,7 @@ LONG = 2e4
 
 @cache
 def map_and_regularity(name: str = "III", energy: float = 0.35, side: int = 17) -> tuple[EscapeMap, RegularityMap]:
-    """A map with so short a t_max that many chaotic orbits have not escaped yet."""
+    """Return a map with so short a t_max that many chaotic orbits have not escaped yet."""
     whole = compute_map(MapSpec(CASES[name], Plane.X_PX, energy, (side, side), t_max=400.0))
     return whole, compute_regularity(whole)
 

@@ -58,7 +58,7 @@ def rgba(colours: list[str]) -> np.ndarray:
 
 
 def pixels_of(axes: Axes) -> np.ndarray:
-    """Row 0 lowest, as in the map."""
+    """Return the pixels of a panel, row 0 lowest, as in the map."""
     return np.asarray(axes.images[0].get_array())[::-1]
 
 

@@ -95,7 +95,7 @@ def test_direct_escapes_have_no_crossing() -> None:
     assert measure(DIRECT).computed == pytest.approx((100.0 * direct,))
 
 
-def test_the_search_gives_the_last_escape_and_the_nearest_to_the_stated_one() -> None:
+def test_the_search_gives_the_last_escape_and_the_escape_nearest_to_the_stated_time() -> None:
     last = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_ESCAPE, Relation.ABOUT, 3.5e6)
     nearest = replace(last, quantity=Quantity.NEAREST_ESCAPE, value=851e3, channels=(2,))
     chaotic = replace(last, quantity=Quantity.CHAOTIC, value=10.0)
@@ -155,7 +155,7 @@ def test_escape_energy_and_lyapunov_orbits_are_computed() -> None:
     escape = StatedNumber("II", None, (), "", Quantity.ESCAPE_ENERGY, Relation.EXACTLY, 1 / 6)
     r2 = StatedNumber("III", Plane.X_Y, (0.26,), "", Quantity.LYAPUNOV_R2, Relation.ABOUT, 1.26)
     assert measure(escape).agrees
-    # Known from an independent computation of these orbits.
+    # This number is known from an independent computation of the orbits.
     assert measure(r2).computed == pytest.approx((1.004, 1.016), abs=5e-4)
 
 
@@ -165,7 +165,7 @@ def test_the_orbit_along_the_y_axis_is_not_an_island() -> None:
 
 
 def counted(window: Window) -> dict[tuple[int, ...], float]:
-    """Percentages with starts outside counted, from a finer independent map."""
+    """Return percentages with starts outside counted, from a finer independent map."""
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=300.0))
     return {(k,): 100.0 * share for k, share in whole.fractions(count_outside=True).items() if k >= 1}
 
@@ -180,7 +180,7 @@ def test_a_window_is_recovered_from_its_percentages(window: Window) -> None:
     assert found.share((1,)) == pytest.approx(counted(window)[1,], abs=2.0)
 
 
-def test_percentages_in_a_window_are_reported_beside_those_inside() -> None:
+def test_percentages_in_a_window_are_reported_in_addition_to_those_inside() -> None:
     number = replace(
         share_of((1,)), case="II", plane=Plane.X_PX, counting=Counting.WINDOW, value=70.0, quantity=Quantity.ESCAPED_BY
     )

@@ -19,7 +19,7 @@ def computed() -> EscapeMap:
 
 
 def with_fates(computed: EscapeMap, columns: list[int]) -> EscapeMap:
-    """The map with one fate per column."""
+    """Return the map with one fate per column."""
     fate = np.tile(np.array(columns, np.int8), (SIDE, 1))
     return replace(computed, fate=fate, outside=np.where(fate == Fate.OUTSIDE, np.int8(2), np.int8(0)))
 

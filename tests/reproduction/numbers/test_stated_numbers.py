@@ -15,7 +15,7 @@ SHARES = [number for number in STATED_NUMBERS if number.is_share]
 
 
 def share_outside(number: StatedNumber, energy: float) -> float:
-    """Share of the starts of a wide square that are outside."""
+    """Return the share of the starts of a wide square that are outside."""
     assert number.plane is not None
     wide = compute_map(
         MapSpec(CASES[number.case], number.plane, energy, (60, 60), Window(-3.0, 3.0, -3.0, 3.0), 1e-9, use_evidence=False)

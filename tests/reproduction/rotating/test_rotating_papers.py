@@ -1,4 +1,4 @@
-"""Comparisons with papers on rotating systems: the measures, and what they show."""
+"""Maps of rotating systems have the measures that are compared with papers."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ def computed() -> EscapeMap:
 
 
 def with_fates(computed: EscapeMap, columns: list[int]) -> EscapeMap:
-    """The map with one fate per column, and the number of the column as the escape time."""
+    """Return the map with one fate per column, and the number of the column as the escape time."""
     times = np.tile(np.arange(SIDE, dtype=float), (SIDE, 1))
     return replace(computed, fate=np.tile(np.array(columns, np.int8), (SIDE, 1)), escape_time=times)
 
 
-def test_shares_of_outcomes_add(computed: EscapeMap) -> None:
+def test_shares_of_several_outcomes_add_up(computed: EscapeMap) -> None:
     frame = with_fates(computed, [1] * 6 + [2] * 3 + [BOUNDED] * 3)
     assert outcome_share(frame, 1) == 50.0
     assert outcome_share(frame, 2, BOUNDED) == 50.0
@@ -61,7 +61,7 @@ def test_starts_next_to_islands_are_at_no_boundary_of_basins(computed: EscapeMap
     assert times.inside == 2.0
 
 
-def test_late_ends_are_those_with_the_longest_times(computed: EscapeMap) -> None:
+def test_late_orbits_have_the_longest_times(computed: EscapeMap) -> None:
     frame = with_fates(computed, [1] * 10 + [BOUNDED] * 2)
     assert share_next_to_islands(frame, late=False) == pytest.approx(20.0)
     assert share_next_to_islands(frame, late=True) == 100.0

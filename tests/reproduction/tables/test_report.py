@@ -1,3 +1,5 @@
+"""The report counts agreements, lists differences and states its quality."""
+
 from __future__ import annotations
 
 import csv

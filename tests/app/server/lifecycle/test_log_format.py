@@ -1,4 +1,4 @@
-"""Log records as text and JSON."""
+"""Log records are one printable line, as text or JSON."""
 
 from __future__ import annotations
 

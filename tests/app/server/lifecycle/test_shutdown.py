@@ -30,7 +30,7 @@ def compute_in_python() -> None:
 
 
 def call_into_c() -> None:
-    """One call of C, which releases the interpreter lock, for minutes."""
+    """Stay for minutes in one call of C, which releases the interpreter lock."""
     hashlib.pbkdf2_hmac("sha512", b"password", b"salt", 2**30)
 
 
@@ -39,7 +39,7 @@ def do_nothing() -> None:
 
 
 def serve(started: Event, stopped: Event, occupy: Callable[[], None]) -> None:
-    """What `panel serve` does, without its server; the event loop is occupied as soon as it runs."""
+    """Do what `panel serve` does, without a server, and occupy the event loop as soon as it runs."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     asyncio.run(_serve(started, stopped, occupy))
 

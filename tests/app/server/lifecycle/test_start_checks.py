@@ -1,4 +1,4 @@
-"""What the server refuses before it starts."""
+"""The server refuses several processes before it starts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kernels are compiled in the background."""
+"""Kernels are compiled in the background, beginning with those of the opened page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The measures of the basins are a table that names their region; the box can be removed where they stand."""
+"""Measures of the basins are a table that names their region, and offers to remove the box."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Curves against energy have axes only when there are curves."""
+"""The figure of curves has axes only when there are curves."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from plots.pictures.charts import CURVE_PANELS
 
 
 def curves(*energies: float) -> Sweep:
-    """All measures; only the largest energy has an exponent, which is made up, as it takes seconds to measure."""
+    """Return a sweep with all measures. Its only exponent is invented, because measuring exponents takes seconds."""
     quick = tuple(name for name in CURVES if name != "uncertainty_exponent")
     found = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, energies, (20, 20), t_max=100.0, measures=quick)).dataset
     missing = np.full(len(energies) - 1, np.nan)

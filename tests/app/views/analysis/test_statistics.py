@@ -1,4 +1,4 @@
-"""Statistics of a map are counted while they are on the page, of the whole view or of a box."""
+"""Statistics of the whole view or of a box are counted while they are on the page."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def view(state: ViewState, results: ShownResults, frame: EscapeMap) -> Statistic
 
 @pytest.fixture(autouse=True)
 def charts(view: StatisticsView) -> list[figure]:
-    """The figures of the section, which is built."""
+    """The figures of the section after building it."""
     return [part.object for part in view.build() if isinstance(part, pn.pane.Bokeh)]
 
 

@@ -1,4 +1,4 @@
-"""Sections are built when they are first shown, and stand on the page only while they are shown."""
+"""Sections are built when first shown, and are on the page only while shown."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.views.components.collapsible_section import Drawers, Stack
 
 
 class Builds:
-    """Makers of contents that record their calls."""
+    """Makes contents of sections, and records the calls."""
 
     def __init__(self) -> None:
         self.made: list[str] = []
@@ -50,7 +50,7 @@ def drawers(builds: Builds) -> Drawers:
     return Drawers({name: (label, f"Title {name}", builds.maker(name)) for name, label in labels.items()})
 
 
-def test_a_drawer_without_a_button_is_replaced_by_one_that_has(drawers: Drawers) -> None:
+def test_a_drawer_without_a_button_is_replaced_by_a_drawer_with_a_button(drawers: Drawers) -> None:
     drawers.buttons.value = ["a"]
     drawers.show("plain")
     assert (drawers.shown, drawers.buttons.value) == ("plain", [])

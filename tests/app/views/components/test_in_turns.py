@@ -1,4 +1,4 @@
-"""Parts of the page are made one in each turn of the event loop."""
+"""Each turn of the event loop makes one part of the page."""
 
 from __future__ import annotations
 

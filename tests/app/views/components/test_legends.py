@@ -1,4 +1,4 @@
-"""The legend of a map has the colours of its palette, and what the map shows."""
+"""The legend of a map names its outcomes and layers, in the colours of the palette."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ ALL = frozenset(int(fate) for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSID
 
 
 def legend(picture: str, potential: Potential = CASES["II"], **changes: Any) -> str:
-    """HTML of the legend of a picture."""
+    """Return HTML of the legend of a picture."""
     values: dict[str, Any] = {"palette": PAPER, "times": TimeScale(2.5, 100.0), "fates": ALL}
     return picture_legend(map_legend(picture, ShownMap(MapSpec(potential, Plane.X_PX, 0.19), **(values | changes))))
 
 
 def entries(html: str) -> list[tuple[str, str]]:
-    """Label and colour of each entry."""
+    """Return the label and colour of each entry."""
     return [(label.replace("&gt;", ">"), colour) for colour, label in PATCH.findall(html)]
 
 
-def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whole_ones_as_titles() -> None:
+def test_legends_name_only_outcomes_of_the_map_and_short_labels_have_the_whole_labels_as_titles() -> None:
     labels = [label for label, _ in entries(legend("basins", fates=frozenset({int(Fate.BOUNDED)})))]
     assert labels == ["1", "2", "3", "bounded"]
     html = legend("basins")
@@ -39,7 +39,7 @@ def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whol
     assert "title='exit 2'" in html
 
 
-def test_crossings_have_their_classes_and_what_is_drawn_over_them() -> None:
+def test_the_legend_of_crossings_has_their_classes_and_the_layers_over_them() -> None:
     expected = [(entry.label, entry.colour) for entry in PAPER.crossing_entries]
     assert entries(legend("crossings")) == expected
     html = legend("crossings", results={"trust": None})

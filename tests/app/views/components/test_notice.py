@@ -29,7 +29,7 @@ def test_a_warning_is_text_in_an_alert_until_it_is_cleared() -> None:
 
 def test_the_server_finds_the_notice_in_a_document() -> None:
     document = Document()
-    # Without a notice it is left alone.
+    # Without a notice the document stays unchanged.
     show_lasting_notice(document, "restart")
     pn.Column(Notice().layout()).server_doc(document)
     show_lasting_notice(document, "<i>restart</i>")

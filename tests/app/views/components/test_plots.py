@@ -1,4 +1,4 @@
-"""Figures keep their callbacks, and several models are added with one search of the page's models."""
+"""Figures keep their callbacks, and models are added with one search of the page's models."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bokeh.models import Scatter
 from app.views.components.plots import HOVER_FORMATS, FigurePane, annotate_picture, batched_additions, chart_hover, square_figure
 
 
-def test_a_figure_that_comes_back_to_the_page_hears_each_event_once() -> None:
+def test_a_figure_shown_again_handles_each_event_once() -> None:
     heard: list[float] = []
     pane = FigurePane(square_figure("r2", "R²"), {Tap: lambda event: heard.append(event.x)})
     column, document = pn.Column(pane), Document()

@@ -15,7 +15,7 @@ from app.views.components.texts import StatusPane, TextPane, percent, percent_ra
 @pytest.mark.parametrize("is_on_the_page", [True, False])
 def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: bool) -> None:
     pane, document = kind("before"), Document()
-    # As in a document of the server.
+    # A pane in a document of the server.
     document.template_variables["dist_url"] = LOCAL_DIST
     column = pn.Column(pane)
     root = column.get_root(document)
@@ -44,9 +44,9 @@ def test_lines_do_not_break_inside_a_number(text: str, whole: str) -> None:
     assert typeset(text) == whole.replace("~", "\N{NO-BREAK SPACE}").replace("_", "\N{NARROW NO-BREAK SPACE}")
 
 
-def test_percentages() -> None:
+def test_percentages_have_a_unit_and_a_fixed_number_of_digits() -> None:
     assert (percent(0.0333), percent(0.5, 0), percent(1.0, 2)) == ("3.3 %", "50 %", "100.00 %")
 
 
-def test_a_range_of_percentages() -> None:
+def test_a_range_of_percentages_has_one_sign() -> None:
     assert percent_range(0.0321, 0.034) == "3.21 to 3.40 %"

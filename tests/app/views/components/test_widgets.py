@@ -51,7 +51,7 @@ def test_an_orbit_is_copied_with_its_indicators(copied: list[str]) -> None:
     assert {len(row) for row in rows} == {3}
 
 
-def test_measures_are_copied_and_those_of_another_map_are_not(copied: list[str]) -> None:
+def test_measures_of_the_shown_map_only_are_copied(copied: list[str]) -> None:
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (30, 30), t_max=100.0))
     entropy = compute_basin_entropy(frame)
     view = BasinMeasuresView(ViewState(), lambda name: None, copied.append)

@@ -1,4 +1,4 @@
-"""The text of a pixel has words for every code of the layers."""
+"""The text of a pixel describes every code of the layers."""
 
 from __future__ import annotations
 

@@ -43,19 +43,19 @@ def test_the_mode_chooses_the_active_tool(maps: MapsView, drag: Drag, kind: type
     for mode in (drag, Drag.PAN, drag):
         maps.set_drag(mode)
     assert isinstance(maps.figures["basins"].toolbar.active_drag, kind)
-    # Made once, when it is first chosen.
+    # The tool is made once, when it is first chosen.
     assert len(tools(maps, BoxZoomTool)) == (drag is Drag.ZOOM)
     assert len(tools(maps, BoxSelectTool)) == (drag is Drag.COUNT)
 
 
-def test_on_touch_screens_the_tool_of_the_wheel_leaves_two_fingers_alone(maps: MapsView) -> None:
+def test_on_touch_screens_the_wheel_tool_ignores_two_fingers(maps: MapsView) -> None:
     assert tools(maps, WheelZoomTool)
     maps.begin_touch()
     assert not tools(maps, WheelZoomTool)
 
 
 def clicks(*points: tuple[float, float]) -> list[tuple[str, float, float]]:
-    """What is called when points of a map are clicked quickly one after the other."""
+    """Return the calls after quick clicks on points of a map, one after the other."""
     called: list[tuple[str, float, float]] = []
     view = make_maps(tap=lambda x, y: called.append(("tap", x, y)), dive=lambda x, y: called.append(("dive", x, y)))
     view.show_pictures(PICTURES_ALONE)

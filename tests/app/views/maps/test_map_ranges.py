@@ -1,4 +1,4 @@
-"""Ranges report the window where the user leaves them, and end at double precision."""
+"""Ranges report the window after a gesture, and end at double precision."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HOME = MapSpec(CASES["I"], Plane.X_PX, 0.19)
 
 
 class RangesOnPage:
-    """Ranges in a document, at the window of the whole interior, what they report, and how often a gesture ends."""
+    """Ranges in a document at the window of the whole interior, with their reports and the number of gestures."""
 
     def __init__(self) -> None:
         self.zooms: list[Window | None] = []
@@ -27,7 +27,7 @@ class RangesOnPage:
         self.ends += 1
 
 
-def test_reversed_ranges_are_no_window() -> None:
+def test_reversed_ranges_do_not_give_a_window() -> None:
     zooms: list[Window | None] = []
     ranges = MapRanges(zooms.append, lambda: None)
     ranges.follow(HOME.find_window())
@@ -50,7 +50,7 @@ def test_the_window_of_the_whole_interior_is_no_zoom() -> None:
 
 
 @pytest.mark.parametrize("corner", [(0.0, 0.0), (0.1149, 0.3006), (-0.45, -0.4)])
-def test_the_smallest_window_can_be_computed_and_one_a_tenth_of_it_cannot(corner: tuple[float, float]) -> None:
+def test_the_smallest_window_can_be_computed_and_a_tenth_of_it_cannot(corner: tuple[float, float]) -> None:
     ranges = MapRanges(lambda window: None, lambda: None)
     ranges.set_home(HOME)
 
@@ -76,7 +76,7 @@ def test_a_chosen_window_drops_a_move_that_is_not_reported() -> None:
     assert ranges.x.start == home.x_low
 
 
-def test_a_window_that_is_shown_late_does_not_undo_what_the_hand_did_since() -> None:
+def test_a_window_that_is_shown_late_does_not_undo_later_gestures() -> None:
     page = RangesOnPage()
     ranges = page.ranges
     ranges.x.update(start=-0.2, end=0.2)

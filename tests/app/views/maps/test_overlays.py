@@ -1,4 +1,4 @@
-"""Overlays have the colours of what they show."""
+"""Overlays have the colours of their channels and marks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures stand side by side, or one of them large above the others."""
+"""Pictures stand side by side, or one is large above the others."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
         assert pane.object.below[0].visible == pane.object.left[0].visible == (pane.object.name == "times")
 
 
-def test_of_many_pictures_one_is_twice_as_large_and_the_others_have_no_axes() -> None:
+def test_one_of_many_pictures_is_twice_as_large_and_the_rest_have_no_axes() -> None:
     pictures = grid(*LAYER_OF)
     assert "many" in pictures.layout().css_classes
     last = [*LAYER_OF][-1]
@@ -66,7 +66,7 @@ def test_of_many_pictures_one_is_twice_as_large_and_the_others_have_no_axes() ->
 
 
 @pytest.mark.parametrize(("on_demand", "largest"), [((), "basins"), (("characters",), "characters"), (("origins",), "origins")])
-def test_the_largest_picture_is_that_of_the_layer_that_is_on(on_demand: tuple[str, ...], largest: str) -> None:
+def test_the_picture_of_an_active_layer_is_the_largest(on_demand: tuple[str, ...], largest: str) -> None:
     assert named(grid(*on_demand), "picked") == [largest]
 
 
@@ -77,7 +77,7 @@ def test_an_enlarged_picture_stands_above_a_row_of_many_others() -> None:
     assert len(named(pictures, "small")) == len(ALWAYS) + len(LAYER_OF) - 1
 
 
-def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_comes() -> None:
+def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_appears() -> None:
     maps = make_maps()
     maps.show_pictures(PICTURES_ALONE)
     maps.grid.enlarge("origins")

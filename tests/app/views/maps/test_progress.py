@@ -1,4 +1,4 @@
-"""The status has the shares of the outcomes in their colours, and says how far a map is."""
+"""The status shows the shares of outcomes in their colours, and the progress of a map."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_te
     view.show(replace(escape_map, rounded_share=0.273))
     assert "about 27 % of the pixels depend on rounding errors" in re.sub(r"<[^>]*>", "", view.text.object)
     assert (view.button.label, view.button.styles["visibility"]) == (LAYERS["trust"].title, "visible")
-    # The text is long: the button does not stand in it.
+    # The text is long, so the button stands outside the text.
     assert "stop" not in view.button.css_classes
     view.button.clicks += 1
     assert calls == ["trust"]

@@ -86,7 +86,7 @@ def test_the_points_move_along_the_orbits() -> None:
     assert source(well, "points").data["y"] == [drawing.orbit.y[0]]
 
 
-def test_along_an_axis_h_the_well_is_that_of_the_chosen_orbit() -> None:
+def test_on_a_slice_along_h_the_well_has_the_energy_of_the_chosen_orbit() -> None:
     well, spec = WellView(), MapSpec(CASES["III"], Plane.X_H, (0.2, 0.6))
     well.show_map(spec)
     highest = edges(well)
@@ -98,7 +98,7 @@ def test_along_an_axis_h_the_well_is_that_of_the_chosen_orbit() -> None:
     assert edges(well) == highest
 
 
-def test_along_a_parameter_the_well_is_that_of_the_chosen_orbit() -> None:
+def test_on_a_slice_along_a_parameter_the_well_is_that_of_the_chosen_orbit() -> None:
     well, along = WellView(), Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))
     stronger = CASES["I"].with_parameters(epsilon=1.5)
     drawings = [

@@ -1,4 +1,4 @@
-"""The player gives times of the interval in view."""
+"""The player steps through the visible interval of time."""
 
 from __future__ import annotations
 

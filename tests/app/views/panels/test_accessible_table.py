@@ -1,4 +1,4 @@
-"""The page as a table is written while it is open."""
+"""The table of the page is updated while it is open."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keys of the browser and links to its address."""
+"""Keys and addresses pass between the browser and the page."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.app.browser_messages import send
 
 
 def events_of(*keys: str) -> tuple[BrowserEvents, list[tuple[Any, ...]]]:
-    """Events, and the arguments of what they call."""
+    """Return events, and the recorded arguments of their listeners."""
     calls: list[tuple[Any, ...]] = []
     actions = BrowserActions(*[lambda *values: calls.append(values) for _ in fields(BrowserActions)])
     return BrowserEvents(actions, list(keys) or list(KEYS)), calls
@@ -23,7 +23,7 @@ def test_keys_that_a_page_does_not_use_are_left_to_the_browser() -> None:
     assert events.layout().keys == ["h"]
 
 
-def test_each_address_is_a_change_that_says_which_steps_through_the_history_it_knows() -> None:
+def test_each_change_of_the_address_names_the_last_known_steps_through_the_history() -> None:
     events, _ = events_of()
     written: list[Any] = []
     events.layout().param.watch(lambda event: written.append(event.new), "address")

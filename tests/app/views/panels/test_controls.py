@@ -53,7 +53,7 @@ def test_the_controls_follow_a_preset(page: Page) -> None:
 
 
 def open_quality(page: Page) -> dict[str, Widget]:
-    """The widgets of the closed fold, by label."""
+    """Return the widgets of the closed fold, by label."""
     parts = page.controls.layout()
     fold = next(part for part in parts if isinstance(part, pn.widgets.Button) and "Quality" in part.label)
     assert fold.label == "▸ Quality and colours"

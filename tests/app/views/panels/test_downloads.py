@@ -1,4 +1,4 @@
-"""Files hold the state at the moment of the click, and are made without blocking the event loop."""
+"""Files contain the state at the click, and are made without blocking the event loop."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def results(escape_map: EscapeMap) -> ShownResults:
 
 @pytest.fixture
 def downloads_view(results: ShownResults) -> Downloads:
-    """With a complete map and one orbit."""
+    """Return the view of downloads, with a complete map and one orbit."""
     state = ViewState(system=System("I"), energy=0.19)
     return Downloads(state, results, lambda: None, lambda: None, lambda copied: None)
 

@@ -1,4 +1,4 @@
-"""The code that embeds a view, and the link that leads from the frame to the whole page."""
+"""The code to embed a view shows one picture, with a link to the whole page."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ADDRESS = "https://maps.example.org/deep/app"
 
 
 def source(code: str) -> str:
-    """The address in the code of a frame."""
+    """Return the address in the code of a frame."""
     found = re.fullmatch(r'<iframe src="([^"]*)" [^>]*></iframe>', code)
     assert found is not None
     return unescape(found[1])
@@ -36,7 +36,7 @@ def test_the_frame_shows_the_view_and_its_large_picture_or_else_the_basins(focus
     assert (values["focus"], values["starts"], values["layers"]) == (picture, ((0.1, 0.2),), {"judge"})
 
 
-def test_texts_are_no_markup() -> None:
+def test_texts_are_escaped() -> None:
     link = OpenLink()
     link.show('?V="><script>')
     assert "<script>" not in link.pane.object

@@ -1,4 +1,4 @@
-"""The figure of the moment of the click is made without blocking the event loop; what is wrong is said in a sentence."""
+"""Figures of the state at the click are made without blocking the event loop, and faults are told in a sentence."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def escape_map() -> EscapeMap:
 
 @pytest.fixture(scope="module")
 def shown(escape_map: EscapeMap) -> ShownResults:
-    """Everything that can be drawn."""
+    """Results of every kind that can be drawn."""
     curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
     analyses = MapAnalyses({"judge": compute_regularity(escape_map)})
@@ -65,7 +65,7 @@ def saved() -> KeptFiles:
 
 @pytest.fixture
 def results(shown: ShownResults) -> ShownResults:
-    """The same for a test that changes it."""
+    """The same results, for a test that changes them."""
     return ShownResults(frame=shown.frame, analyses=shown.analyses, orbits=shown.orbits, curves=shown.curves)
 
 
@@ -75,7 +75,7 @@ def form(results: ShownResults, saved: KeptFiles) -> FigureForm:
     return FigureForm(state, results, saved, lambda ending: f"escapes{ending}", lambda copied: None)
 
 
-def test_what_is_shown_can_be_drawn(shown: ShownResults) -> None:
+def test_figures_are_offered_for_the_shown_results(shown: ShownResults) -> None:
     state = ViewState(system=System("I"), energy=0.19)
     assert list(figure_choices(ShownResults(), state)) == []
     maps = [ALL_MAPS, "Basins of escape", "Escape time", "Crossings of y = 0"]

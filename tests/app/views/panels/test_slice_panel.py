@@ -31,7 +31,7 @@ class Drawer:
         return {box.label: box for row in rows for box in row.objects}
 
     def type(self, label: str, number: float) -> None:
-        """A number that is typed into a box."""
+        """Type a number into a box."""
         send(self.boxes[label], {"value": number, "count": 1, "done": True})
 
 
@@ -65,7 +65,7 @@ def test_axes_ranges_and_held_coordinates_are_chosen(drawer: Drawer) -> None:
     assert drawer.state.plane == Slice(C.X, ParameterAxis("epsilon", 0.5, 1.5, System("I")))
 
 
-def test_an_illegal_slice_is_refused_with_its_reason_and_the_last_one_stays(drawer: Drawer) -> None:
+def test_an_illegal_slice_is_refused_with_its_reason_and_the_last_slice_stays(drawer: Drawer) -> None:
     drawer.panel.axes[1].value = "epsilon"
     drawer.type("to", -3.0)
     assert "the lower end must be below the upper end" in drawer.panel.message.object
@@ -78,7 +78,7 @@ def test_a_parameter_slice_follows_another_system_that_has_the_parameter(drawer:
     assert drawer.state.plane == Slice(C.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))
 
 
-def test_letters_of_a_formula_are_axes_which_another_system_does_not_have(drawer: Drawer) -> None:
+def test_letters_of_a_formula_are_axes_of_this_system_only(drawer: Drawer) -> None:
     reviewed = review_system(System(TYPED, "0.5(x^2+y^2) - a x y^2"))
     drawer.state.show_system(reviewed)
     drawer.panel.axes[1].value = "a"

@@ -1,4 +1,4 @@
-"""Compiled code is limited in its amount, since it is never unloaded."""
+"""The amount of compiled code is limited, because code is never unloaded."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_compilation_beyond_the_limit_is_refused_with_a_sentence() -> None:
     assert compiled_operations.used == generate_code(terms, 0).operations
 
 
-def test_what_is_reserved_is_compiled_at_the_limit_and_does_not_count(limited: CompiledOperations) -> None:
+def test_reserved_code_is_compiled_at_the_limit_and_does_not_count(limited: CompiledOperations) -> None:
     limited.reserve(["reserved"])
     limited.add("first", MOST)
     limited.add("reserved", 2 * LARGEST_CODE)
@@ -65,14 +65,14 @@ def test_a_code_that_is_too_large_is_refused_where_there_is_a_limit() -> None:
         operations.add("other", LARGEST_CODE + 1)
 
 
-def test_an_account_has_a_share(limited: CompiledOperations) -> None:
+def test_an_account_has_a_share_of_the_limit(limited: CompiledOperations) -> None:
     with charged_to("one"):
         limited.add("first", SHARE)
         with pytest.raises(CompiledCodeLimitError, match="your address"):
             limited.add("second", 1)
     with charged_to("other"):
         limited.add("second", SHARE)
-    # Nobody's.
+    # Code without an account.
     limited.add("third", 2 * SHARE)
     assert limited.used == MOST
 
@@ -87,7 +87,7 @@ def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool
     assert ["your address" in str(error) for error in inbox.errors] == [True] * is_refused
 
 
-def test_the_catalogue_can_be_compiled_whatever_others_have_compiled(limited: CompiledOperations) -> None:
+def test_the_catalogue_can_be_compiled_even_at_the_limit(limited: CompiledOperations) -> None:
     potential = POTENTIALS["Copenhagen"].in_well_units
     limited.add("of others", MOST)
     code = generate_code(potential.form.definition, **potential.well.setting._asdict())

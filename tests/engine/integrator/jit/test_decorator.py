@@ -1,4 +1,4 @@
-"""Kernels and their subroutines."""
+"""The file of a kernel contains its subroutines."""
 
 from __future__ import annotations
 

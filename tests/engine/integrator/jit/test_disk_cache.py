@@ -1,4 +1,4 @@
-"""Kernels that another process compiles."""
+"""Processes share compiled kernels on disk."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     compile_in(None)
 
 
-def test_another_process_stores_what_this_one_loads(folder: Path) -> None:
+def test_this_process_loads_kernels_that_another_process_stored(folder: Path) -> None:
     stored = list[str]()
     with ProcessPoolExecutor(1) as other:
 
@@ -36,7 +36,7 @@ def test_another_process_stores_what_this_one_loads(folder: Path) -> None:
     assert [name.partition(".")[2].partition(".")[0] for name in stored] == ["potential_value"]
 
 
-def test_this_process_compiles_what_the_other_one_cannot(folder: Path) -> None:
+def test_this_process_compiles_kernels_that_the_other_process_cannot(folder: Path) -> None:
     def refuse(_: Callable[[], None]) -> None:
         raise ValueError("it takes too long")
 

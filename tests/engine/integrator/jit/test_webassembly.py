@@ -1,4 +1,4 @@
-"""The WebAssembly modules: small, and their steps are the native ones to rounding."""
+"""The WebAssembly modules are small, and their steps equal native steps to rounding."""
 
 from __future__ import annotations
 
@@ -45,14 +45,14 @@ def test_the_kernels_have_at_most_16_kb() -> None:
 
 
 def starts(potential: Potential) -> np.ndarray:
-    """(n, 4) x, y, px, py."""
+    """Return x, y, px, py, of shape (n, 4)."""
     chance = np.random.default_rng(1)
     x, px = chance.uniform(-0.3, 0.3, 9), chance.uniform(-0.3, 0.3, 9)
     return start_states(potential, Plane.X_PX, ENERGY, x, px)
 
 
 def native(potential: Potential, state: np.ndarray, curves: np.ndarray) -> dict[str, np.ndarray]:
-    """The first steps of an orbit by the kernels for this machine, its crossings, and the series of the first step."""
+    """Return the first steps of an orbit by the kernels for this machine, its crossings, and the series of the first step."""
     kernels, steps = kernels_of(potential), np.zeros((STEPS, 5))
     batch = OrbitBatch.from_starts(state[None], np.zeros(1, np.int64))
     exits = Exits(exit_gates(curves), curves[None], batch.curve_row)
@@ -65,7 +65,7 @@ def native(potential: Potential, state: np.ndarray, curves: np.ndarray) -> dict[
 
 @needs_node
 @pytest.mark.parametrize("name", ["III", "typed", "rotating", "body", pytest.param("functions", marks=pytest.mark.slow)])
-def test_the_first_steps_are_the_native_ones_to_rounding(name: str, tmp_path: Path) -> None:
+def test_the_first_steps_equal_native_steps_to_rounding(name: str, tmp_path: Path) -> None:
     potential = POTENTIALS[name].in_well_units
     states, curves = starts(potential), exit_curves(potential, ENERGY)
     portable = make_portable_system(potential, 2.0 * ENERGY)

@@ -1,3 +1,5 @@
+"""The stored steps of an orbit follow each other without gaps."""
+
 from __future__ import annotations
 
 import numpy as np

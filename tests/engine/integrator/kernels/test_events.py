@@ -35,7 +35,7 @@ def crossings(polynomial: Polynomial, duration: float = 1.0) -> int:
 
 
 def points_of(y: Polynomial, direction: int) -> np.ndarray:
-    """(n, 3) x, px and time of the crossings of a step that begins at t = 5, whose x is the polynomial `X`."""
+    """Return x, px and time, (n, 3), of the crossings of a step that begins at t = 5 and whose x is the polynomial `X`."""
     points, found = np.full((2, 8, 3), np.nan), np.zeros(2, np.int64)
     append_crossings(jet_of(X), jet_of(y), 0, float(direction), 5.0, 1.0, points, found, 1)
     assert found[0] == 0
@@ -47,7 +47,7 @@ def with_roots(*roots: float) -> Polynomial:
 
 
 def random_series(seed: int, direction: int) -> tuple[Polynomial, np.ndarray]:
-    """A polynomial, and its roots in (0, 1) whose slope has the sign of `direction`."""
+    """Return a polynomial, and its roots in (0, 1) whose slope has the sign of `direction`."""
     polynomial = Polynomial(np.random.default_rng(seed).normal(size=7) * [0.3, 1, 2, 2, 1, 1, 1])
     roots = polynomial.roots()
     real = np.sort(roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)])

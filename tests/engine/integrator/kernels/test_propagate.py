@@ -21,7 +21,7 @@ POTENTIAL, ENERGY = CASES["III"], 0.4
 
 
 def single_steps(potential: Potential, states: np.ndarray, horizon: float = np.inf) -> tuple[np.ndarray, ...]:
-    """(6, n) states, times and step sizes, (n,) flags and (n,) crossings after a step."""
+    """Return (6, n) states, times and step sizes, (n,) flags and (n,) crossings after a step."""
     gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
     kernels = load_kernels(potential.terms, potential.channels)
     parts = []
@@ -35,7 +35,7 @@ def single_steps(potential: Potential, states: np.ndarray, horizon: float = np.i
 
 
 def sampled_y(potential: Potential, states: np.ndarray, h: np.ndarray) -> np.ndarray:
-    """(n, 2001) y over each step."""
+    """Return y over each step, of shape (n, 2001)."""
     jets = np.empty((2, ORDER + 1, len(states)))
     load_kernels(potential.terms, potential.channels).jets(len(states), *states.T.copy(), *jets)
     tau = np.linspace(0, 1, 2001) * h[:, None]
@@ -70,7 +70,7 @@ def test_some_steps_do_hide_crossings() -> None:
 
 
 def start_orbits(count: int) -> Orbits:
-    """Orbits of case III at energy 0.4."""
+    """Return orbits of case III at energy 0.4."""
     x, px = np.random.default_rng(2).uniform(-0.4, 0.4, (2, count))
     state = start_states(POTENTIAL, Plane.X_PX, ENERGY, x, px)
     assert np.isfinite(state).all()

@@ -23,7 +23,7 @@ _OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul}
 
 
 def run(program: StraightLine, inputs: dict[str, float], table: np.ndarray) -> np.ndarray:
-    """The results of a program that adds and multiplies."""
+    """Return the results of a program that adds and multiplies."""
     values: list[float] = []
     for symbol, operands in program.operations:
         match symbol:
@@ -39,7 +39,7 @@ def run(program: StraightLine, inputs: dict[str, float], table: np.ndarray) -> n
 
 
 def derivative_series(terms: Terms, orders: tuple[int, int], x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The series of a derivative of V from those of x and y, to their length."""
+    """Return the series of a derivative of V from those of x and y, to their length."""
     total = np.zeros(len(x))
     for *powers, c in terms:
         for k, order in enumerate(orders):
@@ -53,7 +53,7 @@ def derivative_series(terms: Terms, orders: tuple[int, int], x: np.ndarray, y: n
 
 
 def plain_series(terms: Terms, start: np.ndarray, deviation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(2, ORDER + 1) the series of x and y, and those of a deviation in x and y."""
+    """Return the series of x and y, and of a deviation in x and y, each of shape (2, ORDER + 1)."""
     orbit, tangent = np.zeros((2, ORDER + 1)), np.zeros((2, ORDER + 1))
     orbit[:, 0], orbit[:, 1], tangent[:, 0], tangent[:, 1] = start[:2], start[2:], deviation[:2], deviation[2:]
     for k in range(ORDER - 1):
@@ -68,7 +68,7 @@ def plain_series(terms: Terms, start: np.ndarray, deviation: np.ndarray) -> tupl
 
 
 def step_of(series: np.ndarray) -> np.ndarray:
-    """(4,) positions and their time derivatives after DURATION."""
+    """Return the positions and their time derivatives after DURATION, of shape (4,)."""
     slopes = series[:, 1:] * np.arange(1, ORDER + 1)
     return np.concatenate([each @ DURATION ** np.arange(each.shape[1]) for each in (series, slopes)], axis=None)
 
@@ -78,7 +78,7 @@ def relative_error(computed: np.ndarray, expected: np.ndarray) -> float:
 
 
 def check(terms: Terms, rng: np.random.Generator) -> None:
-    """Gradient, Hessian and one step of an orbit and a deviation vector agree with plain evaluation."""
+    """Check gradient, Hessian and one step of an orbit and a deviation vector against plain evaluation."""
     code = generate_code(terms, 0)
     table, programs = code.tabulate(terms), {function.name: function.program for function in code.functions}
     start, deviation = rng.uniform(-0.6, 0.6, 4), rng.uniform(-1.0, 1.0, 4)

@@ -1,4 +1,4 @@
-"""Functions written in operations of straight-line programs, compared with many digits, for any lane."""
+"""Functions written as straight-line programs agree with many-digit values in any lane."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WIDE = (-500.0, 500.0)
 
 
 def compiled(function: Callable[[Value], Value]) -> Callable[[np.ndarray], np.ndarray]:
-    """The function for arrays."""
+    """Return the function for arrays."""
     program = StraightLine("_f", {})
     program.results = [function(program.input("u")).index]
     call, read = straight_line(program), table_reader(0)

@@ -18,7 +18,7 @@ from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.source.recurrence import LANES, ROWS, TOLERANCE
 from engine.integrator.source.series import ORDER
 
-# Together all kinds of nodes.
+# Together these formulas have all kinds of nodes.
 TEXTS = (
     "½r² − x²y exp(−y²)",
     "−1/√(x² + 0.7y² + 0.3) + 0.2 x² y log(2 + x)",
@@ -29,7 +29,7 @@ TEXTS = (
 
 
 def texts_of(fast: int) -> pytest.MarkDecorator:
-    """The texts; only some are in the fast suite, because compilation takes up to seconds for each kernel."""
+    """Return the texts, of which the fast suite tests only some, because compiling a kernel takes up to seconds."""
     return pytest.mark.parametrize(
         "text", [*TEXTS[:fast], *(pytest.param(text, marks=pytest.mark.slow) for text in TEXTS[fast:])]
     )
@@ -91,7 +91,7 @@ def test_the_tangent_map_is_the_derivative_of_the_flow(text: str) -> None:
 
 
 @texts_of(fast=2)
-def test_values_and_slopes_are_those_of_numpy(text: str) -> None:
+def test_values_and_slopes_agree_with_numpy(text: str) -> None:
     potential, kernels = parse_formula(text), kernels_of(text)
     for x, y in states_of(5)[:, :2].tolist():
         expected = (potential.value(x, y), *potential.gradient(x, y))

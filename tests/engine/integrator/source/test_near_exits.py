@@ -34,7 +34,7 @@ SHAPES = {
 
 
 def step(kernels: Any, states: np.ndarray, row: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Flags of a step, and x and y (TIMES, LANES) along it."""
+    """Return flags of a step, and x and y (TIMES, LANES) along it."""
     now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
     flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     now[:4] = states

@@ -29,14 +29,14 @@ def some_states(count: int) -> np.ndarray:
 
 
 def jets_of(potential: Potential, states: np.ndarray) -> np.ndarray:
-    """(2, ORDER + 1, n) coefficients of x and y."""
+    """Return the coefficients of x and y, of shape (2, ORDER + 1, n)."""
     jets = np.empty((2, ORDER + 1, len(states)))
     load_kernels(potential.terms, potential.channels).jets(len(states), *states.T.copy(), *jets)
     return jets
 
 
 def flowed(potential: Potential, states: np.ndarray, h: float) -> np.ndarray:
-    """(n, 4) states a time h later, by the series."""
+    """Return states a time h later, by the series, of shape (n, 4)."""
     jets = jets_of(potential, states)
     powers = h ** np.arange(ORDER + 1)[:, None]
     slopes = np.arange(1, ORDER + 1)[:, None] * powers[:-1]
@@ -46,7 +46,7 @@ def flowed(potential: Potential, states: np.ndarray, h: float) -> np.ndarray:
 
 
 def stepped(potential: Potential, states: np.ndarray, tolerance: float, count: int = LANES) -> np.ndarray:
-    """(ROWS, LANES) states, times and step sizes after one step of the first `count` states (LANES, 4); 0 for the others."""
+    """Return states, times and step sizes, (ROWS, LANES), after one step of the first `count` states (LANES, 4); else 0."""
     now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
     now[:4] = states.T
     gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
@@ -62,7 +62,7 @@ def transition_matrix(potential: Potential, state: np.ndarray, h: float) -> np.n
 
 
 @each_potential
-def test_series_equal_those_of_heyoka(name: str) -> None:
+def test_series_agree_with_heyoka(name: str) -> None:
     for state, series in zip(some_states(6), np.moveaxis(jets_of(POTENTIALS[name], some_states(6)), -1, 0), strict=True):
         expected = taylor_heyoka.taylor_coefficients(POTENTIALS[name], state)[:, : ORDER + 1]
         np.testing.assert_allclose(series, expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())

@@ -57,7 +57,7 @@ def integrate(potential: Potential, state: np.ndarray, end: float, power: float)
 
 @pytest.mark.parametrize(("direction", "power"), [(TimeDirection.FORWARD, 0.5), (TimeDirection.BACKWARD, 1.0)])
 @pytest.mark.parametrize("name", SPECS)
-def test_the_integral_is_that_of_another_method_until_the_exit(name: str, direction: TimeDirection, power: float) -> None:
+def test_the_integral_until_the_exit_agrees_with_another_method(name: str, direction: TimeDirection, power: float) -> None:
     spec = SPECS[name]
     frame = compute_map(spec)
     found = compute_lagrangian_descriptor(frame, power=power, direction=direction)
@@ -96,7 +96,7 @@ def test_an_orbit_that_stops_and_returns_has_the_integral_over_its_path(power: f
     np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
-def test_both_directions_are_the_sum_of_each() -> None:
+def test_the_descriptor_of_both_directions_is_the_sum_of_each() -> None:
     frame = compute_map(SPECS["in a rotating frame"])
     both, *ways = (compute_lagrangian_descriptor(frame, direction=way).descriptor for way in ("both", "forward", "backward"))
     np.testing.assert_array_equal(both, ways[0] + ways[1])
@@ -121,7 +121,7 @@ def test_a_map_along_a_parameter_has_the_descriptors_of_its_potentials() -> None
     np.testing.assert_allclose(found.descriptor[row, column], alone.descriptor[0, 0], rtol=ACCURACY)
 
 
-def test_a_cancelled_computation_has_what_was_computed() -> None:
+def test_a_cancelled_computation_returns_what_was_computed() -> None:
     cancel = Event()
     frame = compute_map(replace(SPECS["II"], resolution=(40, 40)))
     found = compute_lagrangian_descriptor(frame, on_frame=lambda _: cancel.set(), execution=Execution(cancel=cancel))

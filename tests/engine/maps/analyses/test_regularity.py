@@ -1,3 +1,5 @@
+"""Bounded pixels are judged as single orbits are."""
+
 from __future__ import annotations
 
 import threading
@@ -71,7 +73,7 @@ def test_sali_is_the_smallest_of_the_orbit_and_decides_the_character() -> None:
     for row, column in zip(rows, columns, strict=True):
         state = start_states(CASES["I"], Plane.X_PX, 0.12, whole.x[[column]], whole.ordinate[[row]])[0]
         smallest = integrate_orbit(CASES["I"], state, 1500.0).sali.min()
-        # It is looked at every few units of time only.
+        # SALI is computed only every few units of time.
         assert 0.99 * smallest <= regularity.sali[row, column] <= 1.3 * smallest
     assert not regularity.sali.flags.writeable
     assert regularity.to_xarray()["sali"].attrs == {"units": "1"}

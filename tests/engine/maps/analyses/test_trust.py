@@ -1,3 +1,5 @@
+"""Doubtful pixels are those whose outcome changes in direct reruns, and heyoka agrees on the others."""
+
 from __future__ import annotations
 
 import threading
@@ -39,7 +41,7 @@ def map_and_trust(
 
 
 def rerun(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: float) -> tuple[OrbitBatch, np.ndarray]:
-    """Orbits integrated directly to t_max, and their states (n, 4) at their escape or at t_max."""
+    """Return orbits integrated directly to t_max, and their states (n, 4) at their escape or at t_max."""
     potential, t_max = whole.spec.potential, whole.spec.t_max
     energies, row = np.unique(
         ordinate if whole.spec.plane is Plane.X_H else np.full(x.size, whole.spec.energy), return_inverse=True
@@ -93,7 +95,7 @@ def test_bounded_orbits_of_a_slow_chaotic_sea_are_doubtful() -> None:
 
 
 @pytest.mark.slow
-def test_shifts_do_not_free_trusted_bounded_orbits() -> None:
+def test_shifted_trusted_bounded_orbits_stay_bounded() -> None:
     spec = MapSpec(CASES["III"], Plane.X_Y, 0.3, (57, 57))
     whole = compute_map(spec)
     trusted = np.isin(compute_trust(whole).trust, (Trust.LIKE_NEIGHBOURS, Trust.CONFIRMED))

@@ -1,3 +1,5 @@
+"""Uncertainty exponents of maps agree with known boundaries and with independent estimates."""
+
 from __future__ import annotations
 
 import threading

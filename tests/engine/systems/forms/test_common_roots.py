@@ -1,4 +1,4 @@
-"""Common roots of two polynomials: known ones, exact counts, multiplicities."""
+"""Common roots of two polynomials are found with their exact number and multiplicity."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def roots_of(first: sympy.Expr, second: sympy.Expr) -> np.ndarray:
 
 
 def intersections(first: list[tuple[int, int, int]], second: list[tuple[int, int, int]]) -> np.ndarray | None:
-    """Intersections of lines of two families; None if two lines are parallel or two points are equal."""
+    """Return intersections of lines of two families; None if two lines are parallel or two points are equal."""
     points = []
     for (a, b, c), (d, e, f) in product(first, second):
         if a * e == b * d:
@@ -53,7 +53,7 @@ def test_products_of_lines_vanish_at_the_intersections(first: list, second: list
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_the_number_of_roots_is_that_of_sturms_theorem(seed: int) -> None:
+def test_the_number_of_roots_agrees_with_sturms_theorem(seed: int) -> None:
     rng = np.random.default_rng(seed)
     degree = 3 + seed % 2
     value = sum(int(rng.integers(-9, 10)) * X**i * Y**j for i, j in product(range(degree + 1), repeat=2) if 0 < i + j <= degree)
@@ -80,7 +80,7 @@ def test_complex_roots_are_left_out() -> None:
         ((X - 1) ** 2 * (X - 3), Y - X, [(1, 1, 2), (3, 3, 1)]),
     ],
 )
-def test_multiplicities(p: sympy.Expr, q: sympy.Expr, expected: list[tuple[int, int, int]]) -> None:
+def test_common_roots_have_their_multiplicities(p: sympy.Expr, q: sympy.Expr, expected: list[tuple[int, int, int]]) -> None:
     np.testing.assert_array_equal(roots_of(p, q), expected)
 
 

@@ -1,4 +1,4 @@
-"""Critical points of polynomials: exact ones, indices, units, common curves."""
+"""Critical points of polynomials are exact, complete, independent of units, and refused along curves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def random_terms(seed: int, degree: int) -> dict[tuple[int, int], float]:
 
 
 def count_turns(potential: Potential, radius: float) -> int:
-    """Turns of the gradient along a circle about the origin."""
+    """Count the turns of the gradient along a circle about the origin."""
     angle = np.linspace(0.0, 2.0 * np.pi, 200_001)
     along_x, along_y = potential.gradient(radius * np.cos(angle), radius * np.sin(angle))
     direction = np.unwrap(np.arctan2(along_y, along_x))
@@ -89,7 +89,7 @@ def test_a_circle_with_rounding_errors_is_refused() -> None:
 
 
 @pytest.mark.parametrize(("seed", "distance", "count", "exits"), [(702, 858.47, 5, 3), (681, 7506.9, 6, 3)])
-def test_a_point_far_from_the_others_is_found_in_any_units(seed: int, distance: float, count: int, exits: int) -> None:
+def test_a_point_far_from_other_points_is_found_in_any_units(seed: int, distance: float, count: int, exits: int) -> None:
     unit = 0.018
     potential = Potential("", tuple((i, j, c / unit ** (i + j)) for i, j, c in random_well(seed, 10).terms))
     assert len(potential.critical_points) == count

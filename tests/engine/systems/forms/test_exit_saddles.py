@@ -1,4 +1,4 @@
-"""Saddles that lead out of the well at the origin, and the maxima beside them."""
+"""The saddles that lead out of the well at the origin are exits."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4
 
 
 def exits(potential: Potential) -> np.ndarray:
-    """(n, 2) the saddles that lead out."""
+    """Return the saddles that lead out, of shape (n, 2)."""
     points = potential.critical_points
     return points[leads_out_of_well(potential.form.downhill, potential.hessian, points, potential.well.critical_indices)]
 

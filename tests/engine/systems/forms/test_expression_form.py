@@ -1,4 +1,4 @@
-"""Potentials that are expressions: the same results as polynomials where both are possible, units, parameters."""
+"""Potentials as expressions have the same results as polynomials, and units and parameters."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_parameters_change_the_quadratic_terms_and_the_rest() -> None:
 @pytest.mark.parametrize(
     ("text", "n"), [("½r² − 0.2(x⁴ + y⁴)exp(−r²)", 4), ("log(1 + r²)", 0), (TEXT, 1), ("cos(x) + cos(2y)", 2)]
 )
-def test_rotations(text: str, n: int) -> None:
+def test_formulas_have_their_number_of_rotations(text: str, n: int) -> None:
     assert parse_formula(text).form.count_rotations() == n
 
 
@@ -84,7 +84,7 @@ def test_a_constant_shifts_the_range_of_energies() -> None:
 
 
 def test_nested_roots_are_searched_once_each() -> None:
-    # With a search for each way that leads to an inner root, this takes half a minute instead of a second.
+    # With a separate search for each path to an inner root, this would take half a minute instead of a second.
     text = "1+y²"
     for k in range(1, 7):
         text = f"({text}+x^{k})^.5"

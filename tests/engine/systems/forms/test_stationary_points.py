@@ -1,4 +1,4 @@
-"""Critical points of expressions: known ones, those of polynomials, scales, and refusals."""
+"""Critical points of expressions agree with known points and with polynomials, in any unit, or are refused."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from engine.systems.potential import Potential
 
 
 def points_of(potential: Potential) -> np.ndarray:
-    """Those of the potential as an expression, also if it is a polynomial."""
+    """Return the critical points of a potential as an expression, also of a polynomial."""
     form = potential.form
     expression = ExpressionForm(from_terms(form.coefficients)) if isinstance(form, PolynomialForm) else form
     points = expression.find_critical_points()[:, :2]
@@ -24,7 +24,7 @@ def points_of(potential: Potential) -> np.ndarray:
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("scale", [2.0**-10])
-def test_those_of_a_polynomial_are_found_in_any_unit(name: str, scale: float) -> None:
+def test_critical_points_of_a_polynomial_are_found_in_any_unit(name: str, scale: float) -> None:
     scaled = Potential("", CASES[name].form.scaled(1.0 / scale, 1.0))
     expected = scaled.critical_points
     np.testing.assert_allclose(points_of(scaled), expected[np.lexsort(expected.round(9).T)], rtol=1e-10, atol=1e-14 * scale)
@@ -61,12 +61,12 @@ def test_a_region_in_which_v_is_not_defined_is_refused() -> None:
         ("1e4(x² + y²) + 1e4(x⁴ + y⁴)", "No saddle leads out"),
     ],
 )
-def test_reasons_for_refusal(text: str, reason: str) -> None:
+def test_refusals_have_reasons(text: str, reason: str) -> None:
     assert reason in str(review_potential(parse_formula(text)).refusal)
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_points_are_those_of_newtons_method_from_many_starts(seed: int) -> None:
+def test_points_agree_with_newtons_method_from_many_starts(seed: int) -> None:
     chance = np.random.default_rng(seed)
     bumps = [(*chance.uniform(-2.0, 2.0, 2), chance.uniform(0.5, 3.0), chance.uniform(-1.0, 1.0)) for _ in range(3)]
     text = "½(x² + y²)" + "".join(f"{h:+.3f}exp(−{w:.3f}((x − {a:.3f})² + (y − {b:.3f})²))" for a, b, w, h in bumps)
@@ -86,7 +86,7 @@ def test_points_are_those_of_newtons_method_from_many_starts(seed: int) -> None:
 @pytest.mark.parametrize(
     ("text", "points", "minima"),
     [
-        # Softened bodies, and bumps: what is divided by is small, and 0 nowhere.
+        # Softened bodies, and bumps. Divisors are small, but nowhere 0.
         ("½(x² + y²) − x²y² + 0.001/((x² − 0.5)² + (y² − 0.5)² + 1e-3)", 13, 1),
         ("½(x² + y²) − 1/√((x − 0.5)² + y² + 0.02²) − 1/√((x + 0.5)² + y² + 0.02²)", 3, 2),
         # A minimum so narrow that no start of Newton's method finds it, and a saddle beside it.
@@ -105,5 +105,5 @@ def test_points_in_narrow_places_are_found(text: str, points: int, minima: int) 
         "½(x² + y²) − x²y² + 1e-4exp(−2.5e7(x² + y² − 0.0025)²)",
     ],
 )
-def test_what_is_not_proved_is_refused(text: str) -> None:
+def test_unproved_critical_points_are_refused(text: str) -> None:
     assert "is not decided within the limit on the work" in str(review_potential(parse_formula(text)).refusal)

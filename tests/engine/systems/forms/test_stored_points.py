@@ -1,3 +1,5 @@
+"""Critical points are stored on disk, and damaged files are replaced."""
+
 from __future__ import annotations
 
 import logging

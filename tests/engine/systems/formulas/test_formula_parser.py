@@ -1,3 +1,5 @@
+"""Formulas are parsed exactly, written readably, and refused with position and reason."""
+
 from __future__ import annotations
 
 import math

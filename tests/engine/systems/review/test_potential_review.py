@@ -1,3 +1,5 @@
+"""Reviews accept unusual wells, and refuse others with a reason."""
+
 from __future__ import annotations
 
 import time
@@ -51,13 +53,13 @@ def test_degenerate_point_outside_the_well_is_refused() -> None:
 
 
 @pytest.mark.parametrize("n", [5, 8])
-def test_family_symmetries(n: int) -> None:
+def test_the_family_has_its_symmetries(n: int) -> None:
     review = review_potential(channel_family(n))
     assert (review.mirror_in_x, review.mirror_in_y, review.rotations) == (n % 2 == 0, True, n)
 
 
 def test_a_far_saddle_in_a_narrow_valley_is_reviewed() -> None:
-    # It is 27 000 units away, and the curvatures across and along the valley have the ratio 550.
+    # The saddle is 27 000 units away, and the curvatures across and along the valley have the ratio 550.
     terms = (
         *((2, 0, 0.5303), (0, 2, 0.7672), (1, 1, -0.1449), (2, 1, -0.4607), (1, 4, -0.0938), (1, 3, -0.2776), (0, 5, -0.0645)),
         *((3, 0, 0.3398), (4, 0, 0.3995), (2, 3, -0.2132), (0, 4, 0.0443), (1, 2, -0.7503), (3, 2, 0.0155)),
