@@ -63,7 +63,7 @@ def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], side
     ----------
     columns, earlier
         Columns of `map_columns`; their windows may differ.
-    (columns, rows) of the finished map, the largest size of the images; smaller images have the finer pixels of both maps.
+    sides
         (columns, rows) of the finished map, the largest size of the images; smaller images have the finer pixels of both maps.
     """
     if columns["complete"][0]:

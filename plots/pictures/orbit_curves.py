@@ -44,9 +44,9 @@ class OrbitCurves:
         The history of each of `ORBIT_QUANTITIES` by name.
     section
         (n, 2) x and px of its upward crossings of y = 0.
-    (n, n) uint8 opacity of the density of a long path over the window, row 0 lowest; None for a shorter path.
+    visits
         (n, n) uint8 opacity of the density of a long path over the window, row 0 lowest; None for shorter paths.
-    Samples of the orbit that path and histories show; by default all.
+    part
         Samples of the orbit that path and histories show; all by default.
     """
 
