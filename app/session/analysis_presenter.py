@@ -52,6 +52,8 @@ class AnalysisPresenter:
         self._state, self._results, self._maps = state, context.results, maps
         self._map_spec: MapSpec | None = None
         self._sweep_spec: SweepSpec | None = None
+        # The request of the curves that are shown, until curves of the next request arrive.
+        self._shown_spec: SweepSpec | None = None
         self._results_by_layer: dict[str, _LayerResult] = {}
         self._sentences_by_name: dict[str, str] = {}
         self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
@@ -253,12 +255,13 @@ class AnalysisPresenter:
     def _show_curves(self, curves: Sweep | None) -> None:
         if curves is not None and curves.complete:
             self._stop_sweep()
+        self._shown_spec = self._sweep_spec
         self.curves.show(curves)
         self._results.curves = curves
 
     def _open_value(self, value: float) -> None:
         """Show the map of an energy, or of a value of the parameter, on the plane of the curves."""
-        spec = self._sweep_spec
+        spec = self._shown_spec
         if self.curves.shown is None or spec is None:
             return
         if spec.along is None:

@@ -43,11 +43,11 @@ class Islands(RecordedResult):
         """Return the areas in a sentence."""
         if not self.area:
             return "No start is bounded."
-        parts = format_count(self.count, "island")
-        return (
-            f"The bounded starts cover {self.area:.4g} ± {self.area_error:.1g} of the slice, in {parts}; the largest has "
-            f"{self.largest:.4g} ± {self.largest_error:.1g}."
-        )
+        area = f"The bounded starts have the area {self.area:.4g} ± {self.area_error:.1g}"
+        if not self.count:
+            return f"{area}, in no part of four pixels or more."
+        islands = format_count(self.count, "island")
+        return f"{area}, in {islands}; the largest has {self.largest:.4g} ± {self.largest_error:.1g}."
 
 
 def compute_islands(starts: Measurable | Starts) -> Islands:

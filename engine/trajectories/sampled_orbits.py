@@ -135,7 +135,7 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
         rows.append(execution.collect(future))
         execution.report(lambda place=place: (place + 1) / len(futures))  # type: ignore[misc]
     energies = potential.energy(states)
-    outcomes = potential.outcomes_at((float(energies.min()), float(energies.max()))) if len(states) else potential.outcomes
+    outcomes = potential.outcomes_at((float(energies.min()), float(energies.max())))
     found = units.restore(_join(well, states / units.state, times / units.time, rows))
     return replace(found, outcomes=outcomes, made_by=describe_run(potential, t_max=float(times[:, -1].max())))
 

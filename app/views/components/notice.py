@@ -53,13 +53,13 @@ class Notice:
         self._pane.object = _html(sentence, "class='notice alert'", role="alert")
 
     def clear(self) -> None:
-        """Remove a warning."""
+        """Remove the message."""
         if self._pane.object:
             self._pane.object = ""
 
 
 def show_lasting_notice(document: Document, sentence: str) -> None:
-    """Show a message on the page of a document until the page is reloaded; needs the document's lock."""
+    """Show a message on the page of a document until the page is reloaded or shows another one; needs the document's lock."""
     _set_text(document, _html(sentence))
 
 

@@ -219,6 +219,21 @@ def test_curves_arrive_one_by_one_and_stop_at_a_click_or_with_another_case(begin
     assert session.state.energy == 0.4
 
 
+def test_a_click_opens_the_plane_of_the_shown_curves_after_another_sweep_was_stopped(begin: Callable[..., Session]) -> None:
+    session = begin(analysis=Analysis.ENERGIES)
+    curves = session.presenter.curves
+    curves.button.clicks += 1
+    session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
+    curves.button.clicks += 1
+    session.state.plane = Plane.X_Y
+    with session.changed:
+        curves.button.clicks += 1
+        curves.button.clicks += 1
+    value = float(np.max(curves.points.data["value"]))
+    curves.open_near(value)
+    assert (session.state.energy, session.state.plane) == (value, Plane.X_PX)
+
+
 @pytest.mark.slow
 def test_a_click_on_a_curve_against_a_parameter_opens_its_system(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
