@@ -60,11 +60,13 @@ class OriginFateMap(PixelAnalysis):
         counts = self.count_passages()
         total = max(int(counts.sum()), 1)
         only_exits = all(outcome.kind is Exit for outcome in self.spec.outcomes)
-        ends, alike = ("enter and leave", "through the same channel") if only_exits else ("end in both time directions", "alike")
-        through, same = int(counts[1:, 1:].sum()), int(np.trace(counts[1:, 1:]))
+        ends, alike = ("enter and leave", "through the same exit") if only_exits else ("end in both time directions", "alike")
+        passing, same, bounded = (
+            f"{100.0 * count / total:.1f} %" for count in (counts[1:, 1:].sum(), np.trace(counts[1:, 1:]), counts[0, 0])
+        )
         return (
-            f"{through / total:.1%} of the interior starts lie on orbits that {ends}, {same / total:.1%} {alike}; "
-            f"{counts[0, 0] / total:.1%} are bounded in both time directions, the rest in one."
+            f"{passing} of the interior starts lie on orbits that {ends}, {same} {alike}; "
+            f"{bounded} are bounded in both time directions, the rest in one."
         )
 
     def _meaning(self, name: str, values: np.ndarray) -> dict[str, str]:

@@ -61,9 +61,10 @@ class RegularityMap(PixelAnalysis):
         if not bounded.size:
             return "No orbit is bounded."
         if not self.complete:
-            return f"{code_share(bounded, Regularity.NOT_JUDGED):.1%} of the bounded orbits are not judged yet."
+            return f"{100.0 * code_share(bounded, Regularity.NOT_JUDGED):.1f} % of the bounded orbits are not judged yet."
         unsure = self.share_of(Regularity.NO_SIGN_OF_CHAOS)
-        return f"{self.chaotic_share:.2%} of the bounded orbits are chaotic, {unsure:.2%} show no sign of chaos until t_max."
+        chaotic, undecided = (f"{100.0 * share:.2f} %" for share in (self.chaotic_share, unsure))
+        return f"{chaotic} of the bounded orbits are chaotic, {undecided} show no sign of chaos until t_max."
 
     def share_of(self, character: Regularity) -> float:
         """Return the share of orbits of a character among the judged bounded orbits; NaN if there are none."""
