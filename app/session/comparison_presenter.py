@@ -11,10 +11,9 @@ from app.job_clients.latest_request import LatestRequest
 from app.session.context import SessionContext
 from app.state.system_review import review_job
 from app.state.view import View
-from app.views.components.texts import percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
-from engine.foundations.wording import format_whole
+from engine.foundations.wording import format_share, format_whole
 from engine.jobs.job import Job, Queue
 from engine.sweeps.map_jobs import map_job, members_job
 from engine.sweeps.warmup import is_ready_for_maps, prepare_for_maps
@@ -176,4 +175,4 @@ def _difference(one: EscapeMap, other: EscapeMap) -> str:
         return "no start in the window has an orbit in both."
     differ = counted & (one.fate != other.fate)
     of_all = " of ".join(format_whole(int(np.count_nonzero(pixels))) for pixels in (differ, counted))
-    return f"{of_all} starts have different outcomes ({percent(float(np.mean(differ[counted])))})."
+    return f"{of_all} starts have different outcomes ({format_share(float(np.mean(differ[counted])))})."

@@ -46,6 +46,16 @@ def format_decimals(value: float, decimals: int) -> str:
     return _typeset(f"{round(value, decimals) + 0.0:.{decimals}f}")
 
 
+def format_share(share: float, decimals: int = 1) -> str:
+    """Return a share between 0 and 1 as a percentage: "3.3 %"."""
+    return f"{100.0 * share:.{decimals}f} %"
+
+
+def format_share_range(low: float, high: float, decimals: int = 2) -> str:
+    """Return two shares between 0 and 1 as a range of percentages: "3.21 to 3.40 %"."""
+    return f"{100.0 * low:.{decimals}f} to {format_share(high, decimals)}"
+
+
 def _typeset(text: str) -> str:
     mantissa, _, exponent = text.partition("e")
     number = mantissa.replace("-", "−").replace("inf", "∞")

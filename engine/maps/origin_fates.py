@@ -11,6 +11,7 @@ import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.foundations.validation import checks_types
+from engine.foundations.wording import format_share
 from engine.maps.compute import compute_map
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
@@ -62,7 +63,7 @@ class OriginFateMap(PixelAnalysis):
         only_exits = all(outcome.kind is Exit for outcome in self.spec.outcomes)
         ends, alike = ("enter and leave", "through the same exit") if only_exits else ("end in both time directions", "alike")
         passing, same, bounded = (
-            f"{100.0 * count / total:.1f} %" for count in (counts[1:, 1:].sum(), np.trace(counts[1:, 1:]), counts[0, 0])
+            format_share(count / total) for count in (counts[1:, 1:].sum(), np.trace(counts[1:, 1:]), counts[0, 0])
         )
         return (
             f"{passing} of the interior starts lie on orbits that {ends}, {same} {alike}; "

@@ -9,6 +9,7 @@ import numpy as np
 
 from engine.foundations.result import Result
 from engine.foundations.validation import short_repr
+from engine.foundations.wording import format_share, format_share_range
 from engine.measures.starts import wilson_interval
 from engine.propagation.fates import Regularity
 
@@ -39,8 +40,8 @@ class ChaoticShare(Result):
         """Return the share with its interval in a sentence."""
         if not self.judged:
             return "No orbit is bounded."
-        interval = f"{100.0 * self.low:.1f} to {100.0 * self.high:.1f} %"
-        return f"Of the {self.judged} bounded orbits {100.0 * self.share:.1f} % are chaotic ({interval})."
+        interval = format_share_range(self.low, self.high, 1)
+        return f"Of the {self.judged} bounded orbits {format_share(self.share)} are chaotic ({interval})."
 
 
 def compute_chaotic_share(character: Any) -> ChaoticShare:

@@ -10,6 +10,7 @@ import numpy as np
 
 from engine.foundations.arrays import read_only
 from engine.foundations.validation import checked_integers
+from engine.foundations.wording import format_share
 from engine.measures.starts import Measurable, Starts, read_starts, wilson_interval
 from engine.propagation.fates import Fate, OrbitResult, name_fate
 from engine.systems.outcomes import Outcome
@@ -77,8 +78,8 @@ class ExitMatching(OrbitResult):
         stay = int(self.counts[:, self.ends == Fate.BOUNDED].sum())
         if not total:
             return "No orbit enters."
-        back = f"{100.0 * self.returning_share:.1f} % leave through the exit by which they entered"
-        return f"Of {total} orbits that enter {back}, and {100.0 * stay / total:.1f} % stay."
+        back = f"{format_share(self.returning_share)} leave through the exit by which they entered"
+        return f"Of {total} orbits that enter {back}, and {format_share(stay / total)} stay."
 
 
 def compute_exit_matching(entrances: Any, outcomes: Measurable | Starts) -> ExitMatching:

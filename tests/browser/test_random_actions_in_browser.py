@@ -16,9 +16,10 @@ from playwright.sync_api import expect
 from app.state.presets import PRESETS
 from app.state.view import Analysis
 from app.state.view_state import ViewState
-from app.views.components.texts import percent, typeset
+from app.views.components.texts import typeset
 from app.views.panels.analysis_choice import ANALYSIS_LABELS
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
+from engine.foundations.wording import format_share
 from engine.jobs.job import Job
 from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
@@ -166,7 +167,7 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
         texts[LEGEND] = [f"≤ {times.low:g}", *channels, *(name for name, is_on in layers.items() if is_on)]
     if shown.frame is not None and state.analysis is Analysis.STATISTICS:
         statistics = compute_statistics(shown.frame, state.box)
-        texts[SHARES] = [typeset(percent(share, 2)) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED]
+        texts[SHARES] = [typeset(format_share(share, 2)) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED]
     # The description of a bounded orbit depends on indicators that follow later.
     if shown.orbit is not None and shown.orbit.fate > Fate.BOUNDED and state.analysis is Analysis.ORBIT:
         texts[VERDICT] = [typeset(judge_orbit(shown.orbit).headline())]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import expect
 
-from app.views.components.texts import percent
 from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
+from engine.foundations.wording import format_share
 from tests.browser.explorer_page import ExplorerPage
 
 _BAR = """name => {
@@ -34,7 +34,11 @@ def test_the_statistics_are_those_of_the_map(explorer: ExplorerPage, counted: Es
     explorer.pick("Statistics")
     table = explorer.page.get_by_role("table", name="statistics")
     expect(table).to_contain_text("Interior starts in the whole view")
-    for text in (percent(statistics.shares[1], 2), percent(statistics.direct_share, 2), f"{statistics.median_escape_time:.4g}"):
+    for text in (
+        format_share(statistics.shares[1], 2),
+        format_share(statistics.direct_share, 2),
+        f"{statistics.median_escape_time:.4g}",
+    ):
         expect(table).to_contain_text(text)
 
 
@@ -47,7 +51,7 @@ def test_a_box_opens_the_statistics_and_can_be_removed(explorer: ExplorerPage, c
     box = {edge: values[0] for edge, values in explorer.model_data("box").items()}
     assert list(box.values()) == pytest.approx([-0.3, 0.1, -0.2, 0.4], abs=0.01)
     statistics = compute_statistics(counted, Window(box["left"], box["right"], box["bottom"], box["top"]))
-    expect(explorer.page.get_by_role("table", name="statistics")).to_contain_text(percent(statistics.shares[1], 2))
+    expect(explorer.page.get_by_role("table", name="statistics")).to_contain_text(format_share(statistics.shares[1], 2))
     explorer.press("Count the whole view")
     expect(explorer.text("Interior starts in the whole view")).to_be_visible()
     assert explorer.model_data("box")["left"] == []

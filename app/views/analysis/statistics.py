@@ -21,10 +21,10 @@ from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.legends import patch
 from app.views.components.plots import chart_hover
-from app.views.components.texts import TextPane, percent, percent_range
+from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, Fate, compute_statistics
-from engine.foundations.wording import format_number, format_whole
+from engine.foundations.wording import format_number, format_share, format_share_range, format_whole
 from engine.propagation.fates import UNRESOLVED
 from engine.results import EscapeStatistics
 from plots.pictures.charts import BINS, MOST_CROSSINGS
@@ -125,8 +125,8 @@ class StatisticsView:
     def _table(self, statistics: EscapeStatistics) -> str:
         shares, intervals = statistics.shares, statistics.share_intervals
         body = "".join(
-            f"<tr><td>{patch(colour, escape(name))}</td><td>{percent(shares[code], 2)}</td>"
-            f"<td class='quiet'>{percent_range(*intervals[code])}</td></tr>"
+            f"<tr><td>{patch(colour, escape(name))}</td><td>{format_share(shares[code], 2)}</td>"
+            f"<td class='quiet'>{format_share_range(*intervals[code])}</td></tr>"
             for name, colour, code in self._shares(statistics)
         )
         body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in _facts(statistics).items())
@@ -150,7 +150,7 @@ class StatisticsView:
 def _facts(statistics: EscapeStatistics) -> dict[str, str]:
     return {
         "interior starts": format_whole(statistics.starts),
-        "direct escapes": percent(statistics.direct_share, 2),
+        "direct escapes": format_share(statistics.direct_share, 2),
         "mean escape time": _number(statistics.mean_escape_time),
         "median escape time": _number(statistics.median_escape_time),
     }

@@ -56,13 +56,3 @@ class StatusPane(TextPane):
 
     def _get_properties(self, doc: Document | None) -> dict[str, Any]:
         return {**super()._get_properties(doc), "html_attributes": {"role": "status"}}
-
-
-def percent(share: float, decimals: int = 1) -> str:
-    """Return a share between 0 and 1 as a percentage: "3.3 %"."""
-    return f"{100.0 * share:.{decimals}f} %"
-
-
-def percent_range(low: float, high: float, decimals: int = 2) -> str:
-    """Return two shares between 0 and 1 as a range of percentages: "3.21 to 3.40 %"."""
-    return f"{100.0 * low:.{decimals}f} to {percent(high, decimals)}"

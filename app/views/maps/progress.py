@@ -12,10 +12,10 @@ import numpy as np
 import panel as pn
 
 from app.views.components.legends import patch
-from app.views.components.texts import TextPane, percent
+from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
-from engine.foundations.wording import format_number, format_whole
+from engine.foundations.wording import format_number, format_share, format_whole
 from engine.propagation.fates import UNRESOLVED
 from plots.layers.table import LAYERS
 from plots.pictures.palette import PAPER, Entry, Palette
@@ -134,14 +134,14 @@ def _shares(frame: EscapeMap, palette: Palette) -> str:
     found = [(entry, shares[fate]) for entry, fate in (*ends, *others)]
     parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in found)
     rest = "" if frame.complete else f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
-    words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{percent(share)}") for entry, share in found)
+    words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{format_share(share)}") for entry, share in found)
     return f"<div class='share-bar' aria-hidden='true'>{parts}{rest}</div><div class='legend'>{words}</div>"
 
 
 def _stage(frame: EscapeMap) -> str:
     """Describe the decided share of an unfinished frame, and the time reached."""
     picture = "" if frame.stride == 1 else "Coarse picture, "
-    decided = f"{picture}{percent(1.0 - frame.undecided)} decided"
+    decided = f"{picture}{format_share(1.0 - frame.undecided)} decided"
     return f"{decided[0].upper()}{decided[1:]}, t = {format_whole(frame.horizon)} of {format_whole(frame.spec.t_max)}"
 
 
@@ -162,13 +162,12 @@ def _rounding(frame: EscapeMap) -> str:
     if not frame.is_rounded:
         return ""
     assert frame.rounded_share is not None
-    return (
-        f"<br>At the limit of double precision: about {percent(frame.rounded_share, 0)} of the pixels depend on rounding errors."
-    )
+    share = format_share(frame.rounded_share, 0)
+    return f"<br>At the limit of double precision: about {share} of the pixels depend on rounding errors."
 
 
 def _share_on_evidence(frame: EscapeMap) -> str:
     """Return the share of the bounded orbits that are called bounded before t_max; empty if none is."""
     evidence = frame.evidence[frame.fate == Fate.BOUNDED]
     early = ~np.isin(evidence, (Evidence.NONE, Evidence.INTEGRATED))
-    return f"; {percent(np.mean(early), 0)} of those that stay do so on evidence" if early.any() else ""
+    return f"; {format_share(np.mean(early), 0)} of those that stay do so on evidence" if early.any() else ""

@@ -8,9 +8,9 @@ from math import isfinite
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.texts import TextPane, percent
+from app.views.components.texts import TextPane
 from engine import Fate, compute_statistics
-from engine.foundations.wording import format_number, format_time, format_whole
+from engine.foundations.wording import format_number, format_share, format_time, format_whole
 from engine.propagation.fates import UNRESOLVED
 
 
@@ -50,9 +50,9 @@ class AccessibleTable:
             return []
         statistics = compute_statistics(frame)
         shares = statistics.shares
-        rows = [(end.action, percent(shares[fate], 2)) for fate, end in enumerate(statistics.outcomes, 1)]
-        rows += [(UNRESOLVED, percent(shares[Fate.FAILED], 2))] if statistics.failed else []
-        rows += [("bounded", percent(shares[Fate.BOUNDED], 2)), ("direct escapes", percent(statistics.direct_share, 2))]
+        rows = [(end.action, format_share(shares[fate], 2)) for fate, end in enumerate(statistics.outcomes, 1)]
+        rows += [(UNRESOLVED, format_share(shares[Fate.FAILED], 2))] if statistics.failed else []
+        rows += [("bounded", format_share(shares[Fate.BOUNDED], 2)), ("direct escapes", format_share(statistics.direct_share, 2))]
         rows += [("mean escape time", _time(statistics.mean_escape_time))]
         return [*rows, ("median escape time", _time(statistics.median_escape_time))]
 

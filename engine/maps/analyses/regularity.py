@@ -12,6 +12,7 @@ import numpy as np
 from engine.evidence.birkhoff_averages import REGULAR_DIGITS, TORUS_DIGITS, WINDOWS, count_agreeing_digits
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
+from engine.foundations.wording import format_share
 from engine.maps.parameter_map import analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap, MapLike, as_map
@@ -61,10 +62,10 @@ class RegularityMap(PixelAnalysis):
         if not bounded.size:
             return "No orbit is bounded."
         if not self.complete:
-            return f"{100.0 * code_share(bounded, Regularity.NOT_JUDGED):.1f} % of the bounded orbits are not judged yet."
+            return f"{format_share(code_share(bounded, Regularity.NOT_JUDGED))} of the bounded orbits are not judged yet."
         unsure = self.share_of(Regularity.NO_SIGN_OF_CHAOS)
-        chaotic, undecided = (f"{100.0 * share:.2f} %" for share in (self.chaotic_share, unsure))
-        return f"{chaotic} of the bounded orbits are chaotic, {undecided} show no sign of chaos until t_max."
+        chaotic, without_sign = (format_share(share, 2) for share in (self.chaotic_share, unsure))
+        return f"{chaotic} of the bounded orbits are chaotic, {without_sign} show no sign of chaos until t_max."
 
     def share_of(self, character: Regularity) -> float:
         """Return the share of orbits of a character among the judged bounded orbits; NaN if there are none."""

@@ -15,6 +15,7 @@ from engine.evidence.bounded_orbits import BoundedOrbitSearch
 from engine.exits.exit_rows import exit_curves_at
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.foundations.validation import checks_types
+from engine.foundations.wording import format_share
 from engine.integrator.kernels.dense_output import advance_states
 from engine.maps.analyses.reruns import SHIFT, SHIFTED_STARTS, Perturbation, Rerun
 from engine.maps.parameter_map import Place, analyse_map
@@ -93,7 +94,7 @@ class TrustMap(PixelAnalysis):
         """Return the shares in one sentence."""
         if np.isnan(self.doubtful_share):
             return "There are no pixels inside to test."
-        doubtful, tested = (f"{100.0 * share:.2f} %" for share in (self.doubtful_share, self.tested_share))
+        doubtful, tested = (format_share(share, 2) for share in (self.doubtful_share, self.tested_share))
         so_far = "" if self.complete else " so far"
         return f"Of the pixels inside, {tested} were tested{so_far} and {doubtful} are doubtful."
 

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from engine.foundations.wording import format_count, format_decimals, format_number, format_time, format_whole
+from engine.foundations.wording import (
+    format_count,
+    format_decimals,
+    format_number,
+    format_share,
+    format_share_range,
+    format_time,
+    format_whole,
+)
 
 
 @pytest.mark.parametrize(("value", "text"), [(999.0, "999"), (1e3, "1 000"), (123456.7, "123 457"), (1e6, "1 000 000")])
@@ -40,3 +48,11 @@ def test_numbers_have_typographic_signs(value: float, text: str) -> None:
 @pytest.mark.parametrize(("value", "text"), [(0.3123, "0.31"), (-0.3, "−0.30"), (-0.001, "0.00")])
 def test_decimals_are_fixed_and_zero_has_no_sign(value: float, text: str) -> None:
     assert format_decimals(value, 2) == text
+
+
+def test_percentages_have_a_unit_and_a_fixed_number_of_digits() -> None:
+    assert (format_share(0.0333), format_share(0.5, 0), format_share(1.0, 2)) == ("3.3 %", "50 %", "100.00 %")
+
+
+def test_a_range_of_percentages_has_one_sign() -> None:
+    assert format_share_range(0.0321, 0.034) == "3.21 to 3.40 %"

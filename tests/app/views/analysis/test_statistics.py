@@ -10,8 +10,8 @@ from app.job_clients.shown_results import ShownResults
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.analysis.statistics import StatisticsView
-from app.views.components.texts import percent
 from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
+from engine.foundations.wording import format_share
 from tests.disc import disc_map
 
 COPIED: list[str] = []
@@ -71,4 +71,4 @@ def test_the_table_is_copied_with_shares_at_full_precision(
 def test_a_collision_has_its_row(state: ViewState, results: ShownResults, view: StatisticsView) -> None:
     state.analysis = Analysis.STATISTICS
     results.frame = frame = disc_map()
-    assert f"collision with a disc</span></td><td>{percent(frame.fractions()[3], 2)}" in view.table.object
+    assert f"collision with a disc</span></td><td>{format_share(frame.fractions()[3], 2)}" in view.table.object

@@ -8,7 +8,7 @@ from bokeh.document import Document
 from bokeh.models import ImportedStyleSheet
 from panel.io.resources import LOCAL_DIST
 
-from app.views.components.texts import StatusPane, TextPane, percent, percent_range, typeset
+from app.views.components.texts import StatusPane, TextPane, typeset
 
 
 @pytest.mark.parametrize("kind", [TextPane, StatusPane])
@@ -42,11 +42,3 @@ def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: 
 )
 def test_lines_do_not_break_inside_a_number(text: str, whole: str) -> None:
     assert typeset(text) == whole.replace("~", "\N{NO-BREAK SPACE}").replace("_", "\N{NARROW NO-BREAK SPACE}")
-
-
-def test_percentages_have_a_unit_and_a_fixed_number_of_digits() -> None:
-    assert (percent(0.0333), percent(0.5, 0), percent(1.0, 2)) == ("3.3 %", "50 %", "100.00 %")
-
-
-def test_a_range_of_percentages_has_one_sign() -> None:
-    assert percent_range(0.0321, 0.034) == "3.21 to 3.40 %"
