@@ -52,7 +52,6 @@ from engine.systems.formulas.formula_values import (
 )
 from engine.systems.formulas.formula_writer import by_degree, write_formula
 from engine.systems.formulas.outcome_clauses import Part, split_clauses
-from engine.systems.motion import MASS_RANGE
 from engine.systems.potential import Potential
 
 LONGEST_TEXT = 500
@@ -128,8 +127,7 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         potential = Potential(name or "", terms)
     number_of = partial(_number_of, values=values)
     ends = [clause.evaluate(number_of) for clause in clauses.ends]
-    mass = 1.0 if clauses.masses is None else _mass_of(clauses.masses, number_of)
-    found = Potential(name or write_formula(potential), potential.form, ends=ends, mass=mass)
+    found = Potential(name or write_formula(potential), potential.form, ends=ends, mass=clauses.find_mass(number_of))
     placed = found if clauses.well is None else found.at_minimum(*map(number_of, clauses.well))
     return replace(placed, exit_names=clauses.exits) if clauses.exits else placed
 
@@ -146,18 +144,6 @@ def formula_letters(text: str) -> tuple[str, ...]:
         problem = f"the formula has {len(letters)} letters for coefficients; at most {MOST_LETTERS} are allowed"
         raise FormulaError(list(letters.values())[MOST_LETTERS], problem)
     return tuple(letters)
-
-
-def _mass_of(masses: tuple[Part, Part], number_of: Callable[[Part], float]) -> float:
-    """Return the mass of both directions; FormulaError if it is out of range, or the masses differ."""
-    along_x, along_y = map(number_of, masses)
-    position, (low, high) = masses[0].position, MASS_RANGE
-    if along_x != along_y:
-        remedy = "for two masses write V(x/√m₁, y/√m₂), whose axes are √m₁ x and √m₂ y"
-        raise FormulaError(position, f"masses ({along_x:g}, {along_y:g}): both must be equal; {remedy}")
-    if not low <= along_x <= high:
-        raise FormulaError(position, f"masses ({along_x:g}, {along_y:g}): must be from {low:g} to {high:g}")
-    return along_x
 
 
 def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:

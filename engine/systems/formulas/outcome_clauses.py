@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from engine.systems.formulas.formula_tokens import FormulaError
+from engine.systems.motion import MASS_RANGE
 from engine.systems.outcomes import End, end_kinds
 
 SEPARATOR = ";"
@@ -60,6 +61,19 @@ class Clauses(NamedTuple):
         """All places, radii and masses."""
         of_ends = (part for end in self.ends for part in end.numbers.values())
         return (*of_ends, *(self.well or ()), *(self.masses or ()))
+
+    def find_mass(self, value_of: Callable[[Part], float]) -> float:
+        """Return the mass of both directions, 1 without a clause; FormulaError if it is out of range, or the masses differ."""
+        if self.masses is None:
+            return 1.0
+        along_x, along_y = map(value_of, self.masses)
+        position, (low, high) = self.masses[0].position, MASS_RANGE
+        if along_x != along_y:
+            remedy = "for two masses write V(x/√m₁, y/√m₂), whose axes are √m₁ x and √m₂ y"
+            raise FormulaError(position, f"masses ({along_x:g}, {along_y:g}): both must be equal; {remedy}")
+        if not low <= along_x <= high:
+            raise FormulaError(position, f"masses ({along_x:g}, {along_y:g}): must be from {low:g} to {high:g}")
+        return along_x
 
 
 def split_clauses(text: str) -> Clauses:
