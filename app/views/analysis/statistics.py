@@ -131,7 +131,7 @@ class StatisticsView:
         )
         body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in _facts(statistics).items())
         place = "the whole view" if self._state.box is None else "the box drawn on the maps"
-        caption = f"Interior starts in {place}, with 95 % intervals"
+        caption = f"Starts inside, in {place}; 95 % intervals"
         return f"<table aria-label='statistics'><caption>{caption}</caption>{body}</table>"
 
     def _rows(self) -> list[tuple[str, ...]]:
