@@ -36,7 +36,7 @@
  *
  * Number of columns of an exit, the column of its shape, and the codes of shapes.
  *
- * @typedef {{count: number, shape: number, shapes: Record<"closed" | "curve" | "line" | "disc" | "circle", number>}} ExitColumns
+ * @typedef {{count: number, shape: number, shapes: Record<"closed" | "curve" | "line", number>}} ExitColumns
  *
  * @typedef {object} WindowTable
  * @property {number[]} energies  rising, in units of the page
