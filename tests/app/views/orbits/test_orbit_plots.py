@@ -32,7 +32,7 @@ def plots() -> OrbitPlots:
 
 
 def figures(plots: OrbitPlots) -> dict[str, figure]:
-    return {pane.object.name: pane.object for pane in plots.build()}
+    return {pane.object.name: pane.object for part in plots.parts() for pane in part()}
 
 
 def data(plot: figure, name: str) -> dict[str, Any]:
