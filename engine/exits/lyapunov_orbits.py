@@ -36,7 +36,7 @@ from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 # Reasons why an exit of several channels is not defined. The search meets them in this order.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
-_MISSING = {
+_REASONS = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
     _SHARP_BEND: "the orbit between its outer walls has too sharp a bend for a smooth curve; choose a higher energy",
     _RETURNS: "orbits that leave across the orbit between its outer walls come back; choose another energy",
@@ -283,7 +283,7 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
         if not has_returns(potential, energy, orbit, found.curve):
             return replace(found, others=merged.channels[1:])
         missing = _RETURNS
-    raise _SearchError(f"{_describe(potential, merged)}, and {_MISSING[missing]}")
+    raise _SearchError(f"{_describe(potential, merged)}, and {_REASONS[missing]}")
 
 
 def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:

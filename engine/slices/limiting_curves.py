@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from engine.slices.axes import Energy, common_energy
+from engine.slices.axes import Energy, highest_energy
 from engine.slices.slice import Slice
 from engine.slices.window import Window
 from engine.systems.potential import Potential
@@ -20,8 +20,9 @@ def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy
     `energy` is ignored on a slice with an axis h. Returns the pieces of the curve in a window, each (n, 2).
     """
     # On a slice with an axis h, `required_energy` is relative to the h of each point, so the boundary is at 0.
-    level = None if plane.energy_axis is not None else common_energy(energy)
-    return trace_equipotentials(potential, plane, (level or 0.0,), window)[0]
+    level = highest_energy(energy) if plane.energy_axis is None else 0.0
+    (pieces,) = trace_equipotentials(potential, plane, [level], window)
+    return pieces
 
 
 def trace_equipotentials(potential: Potential, plane: Slice, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:

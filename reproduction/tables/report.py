@@ -26,7 +26,7 @@ _COLUMNS = (
     "half_side", "right_edge", "outside_share", "counted", "counted_difference", "agrees_when_counted", "derivation", "reason",
 )  # fmt: skip
 # Smallest number of computed values that are listed with their energies instead of their range.
-_LISTED = 4
+_SHORTEST_LIST = 4
 
 
 def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Comparison, ...] | None = None) -> str:
@@ -188,7 +188,7 @@ def _computed(row: Comparison) -> str:
     """Return the range of the computed values, or many different values with their energies."""
     form, unit = ("{:.1f}", " %") if row.stated.is_share else ("{:.4g}", "")
     whole, energies = _range(row.computed, form), row.stated.energies
-    if " to " not in whole or len(row.computed) < _LISTED:
+    if " to " not in whole or len(row.computed) < _SHORTEST_LIST:
         return whole + unit
     values = ("none" if np.isnan(value) else form.format(value) for value in row.computed)
     listed = ", ".join(f"{value} at {energy:g}" for value, energy in zip(values, energies, strict=True))
