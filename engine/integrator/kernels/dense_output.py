@@ -10,7 +10,8 @@ import numpy as np
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.jit.decorator import kernel
 from engine.integrator.jit.function_pointers import call_jets
-from engine.integrator.kernels.events import BOUNDED, CURVE_COLUMNS, NOT_COMPUTED, append_crossings, series_value
+from engine.integrator.kernels.events import BOUNDED, NOT_COMPUTED, append_crossings, series_value
+from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS
 from engine.integrator.kernels.propagate import VECTOR, Exits, Orbits
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
