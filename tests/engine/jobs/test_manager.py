@@ -233,6 +233,12 @@ def test_first_frames_are_computed_while_background_is_paused(paused: Jobs) -> N
     assert inbox.done.wait(SECONDS)
 
 
+def test_a_limited_call_begins_while_background_is_paused(paused: Jobs) -> None:
+    inbox = Inbox()
+    paused.request(Job(divmod, (7, 2), queue=Queue.LIMITED), inbox.result, inbox.error)
+    assert inbox.done.wait(SECONDS)
+
+
 def test_cancelled_map_ends_while_background_is_paused(paused: Jobs) -> None:
     jobs, inbox = paused, Inbox()
     subscription = jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
