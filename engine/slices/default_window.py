@@ -118,7 +118,7 @@ def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: t
         (columns, rows) of the map.
     """
     window = default_window(potential, plane, energy)
-    edges = [(window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)]
+    edges = list(window.ranges)
     for place, (low, high) in enumerate(edges):
         if _is_centred(low, high, resolution[place]) and _on_symmetry_line(potential, plane, energy, place, edges[1 - place]):
             half = 0.5 * (high - low) / resolution[place]

@@ -29,10 +29,7 @@ def trace_equipotentials(potential: Potential, plane: Slice, energies: Sequence[
     """Trace the curves on which `Slice.required_energy` has these values. Returns the pieces of each curve, each (n, 2)."""
     import contourpy
 
-    x, ordinate = (
-        np.linspace(low, high, _CONTOUR_SAMPLES)
-        for low, high in ((window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high))
-    )
+    x, ordinate = (np.linspace(low, high, _CONTOUR_SAMPLES) for low, high in window.ranges)
     required = plane.required_energy(potential, *np.meshgrid(x, ordinate))
     contours = contourpy.contour_generator(x, ordinate, required)
     return [[np.asarray(line) for line in contours.lines(energy)] for energy in energies]

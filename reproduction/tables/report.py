@@ -13,7 +13,7 @@ from engine import CASES
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
-from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison, compare_all
+from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison
 from reproduction.numbers.map_structure import BOUNDARY_PIXELS
 from reproduction.numbers.stated_numbers import Counting, StatedNumber
 from reproduction.numbers.unknown_windows import STEP
@@ -29,7 +29,7 @@ _COLUMNS = (
 _SHORTEST_LIST = 4
 
 
-def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Comparison, ...] | None = None) -> str:
+def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Comparison, ...]) -> str:
     """Write the report as Markdown.
 
     Parameters
@@ -39,14 +39,13 @@ def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Compari
     search
         Search for super-sticky orbits of case III at h = 0.26.
     rows
-        Result of `compare_all`; None to compute it.
+        Result of `compare_all`.
 
     Raises
     ------
     concurrent.futures.CancelledError
         If the cache is cancelled.
     """
-    rows = compare_all(cache, search) if rows is None else rows
     parts = ["# Comparison with the numbers of the paper", _introduce(cache, search), "## Summary", describe_verdict(rows)]
     for case, potential in CASES.items():
         mine = [row for row in rows if row.stated.case == case]
