@@ -7,7 +7,6 @@ process, and stored with the compiled kernels.
 from __future__ import annotations
 
 import functools
-import logging
 import os
 import subprocess
 import sys
@@ -17,7 +16,7 @@ from typing import Any
 from numba import types
 from numba.core.typing.templates import Signature
 
-from engine.foundations.cache_files import SUFFIX, cache_folder, read_cached, write_cached
+from engine.foundations.cache_files import SUFFIX, cache_folder, read_or_make
 from engine.integrator.jit.disk_cache import program_digest
 from engine.integrator.jit.kernel_module import SETTINGS, lower_kernels
 from engine.integrator.jit.webassembly import PAIR
@@ -30,9 +29,6 @@ from engine.integrator.kernels import (
     random_starts,
     slice_starts,
 )
-
-log = logging.getLogger(__name__)
-
 
 _void, _address, _number, _count, _flag = types.void, types.int64, types.float64, types.int64, types.boolean
 _f1, _f2, _f3 = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
@@ -84,17 +80,12 @@ def kernel_module() -> bytes:
 
 @functools.cache
 def _load_or_build() -> bytes:
-    path = cache_folder() / f"{__name__}.{program_digest()}{SUFFIX}"
-    try:
-        stored = read_cached(path)
-    except (OSError, ValueError) as error:
-        log.warning("invalid compiled kernels %s: %s; compiling them again", path, error)
-        stored = None
-    if stored is None:
-        command = [sys.executable, "-m", __name__]
-        stored = subprocess.run(command, env=os.environ | SETTINGS, stdout=subprocess.PIPE, check=True).stdout
-        write_cached(path, stored)
-    return stored
+    return read_or_make(cache_folder() / f"{__name__}.{program_digest()}{SUFFIX}", "compiled kernels", _build)
+
+
+def _build() -> bytes:
+    command = [sys.executable, "-m", __name__]
+    return subprocess.run(command, env=os.environ | SETTINGS, stdout=subprocess.PIPE, check=True).stdout
 
 
 def _main() -> None:

@@ -128,7 +128,7 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     """
     well = potential.in_well_units
     definition, setting = well.form.definition, well.well.setting
-    code = generate_code(definition, **setting._asdict())
+    code = generate_code(definition, setting)
     table, backward = (code.tabulate(definition, rotation) for rotation in (well.rotation, -well.rotation))
     exits = tabulate_exits(well, highest / potential.units.energy)
     return PortableSystem(potential, webassembly_module(code), table, backward, exits)
