@@ -147,20 +147,20 @@ class SimulatedSession:
         self.follow_link(link)
         await self._wait_for_review(time.perf_counter())
 
-    async def type_formula(self, text: str) -> None:
-        """Type a formula and wait until it is reviewed."""
+    async def type_formula(self, text: str, *, done: bool = True) -> None:
+        """Type a formula, with Enter if `done`, and wait until it is reviewed."""
         if "FormulaBox" not in self._models:
             self.press("Other …")
         while "FormulaBox" not in self._models:
             await asyncio.sleep(POLL_SECONDS)
         self._reviewed.clear()
-        self._give("FormulaBox", text)
+        self._give("FormulaBox", text, done=done)
         await self._wait_for_review(time.perf_counter())
 
-    def _give(self, component: str, value: Any) -> None:
-        """Give an input a value."""
+    def _give(self, component: str, value: Any, *, done: bool = True) -> None:
+        """Give an input a value; `done` is False while the visitor is still typing or dragging."""
         self._steps += 1
-        entries = [["value", value], ["count", self._steps], ["done", True]]
+        entries = [["value", value], ["count", self._steps], ["done", done]]
         self._open_channel.emit("data_event", model={"id": self._models[component]}, data={"type": "map", "entries": entries})
 
     async def _wait_for_review(self, begin: float) -> None:

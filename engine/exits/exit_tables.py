@@ -37,7 +37,7 @@ _NEGLIGIBLE = 1e-9
 _FARTHEST_REACH = 1e6
 # Values of s at which exits are compared.
 _POSITIONS = np.linspace(-1.0, 1.0, 21)
-# Columns of a row after gate and reach, see `engine.integrator.kernels.exit_curves`.
+# Columns of a row after gate and reach, see `engine.integrator.kernels.exit_geometry`.
 _CURVE_COLUMNS = np.r_[geometry.ORIGIN_X : geometry.OUTWARD_Y + 1, geometry.MIDDLE : geometry.CURVE_COLUMNS]
 
 _Curves = Callable[[float], dict[int, np.ndarray]]

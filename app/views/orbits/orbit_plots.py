@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from bokeh.models import (
 )
 from bokeh.plotting import figure
 
+from app.views.components.in_turns import Make
 from app.views.components.orbit_lines import band_columns, band_style, in_front, line_columns, line_style, lines, opacities
 from app.views.components.plots import FigurePane, history_figure, set_range
 from engine import CASES, integrate_orbit, start_states
@@ -31,7 +33,7 @@ _FIRST = ORBIT_QUANTITIES[0].name
 
 
 class OrbitPlots:
-    """Draws the histories; `build` makes the figures when there is an orbit to draw.
+    """Draws the histories; `parts` make the figures when there is an orbit to draw.
 
     Parameters
     ----------
@@ -51,10 +53,13 @@ class OrbitPlots:
         self._orbits: list[tuple[int, OrbitCurves]] = []
         self.set_palette(PAPER)
 
-    def build(self) -> list[FigurePane]:
-        """Make a figure of each of `ORBIT_QUANTITIES`."""
+    def parts(self) -> list[Make]:
+        """Return functions that make the figures, one of each of `ORBIT_QUANTITIES`."""
+        return [partial(self._build, quantity) for quantity in ORBIT_QUANTITIES]
+
+    def _build(self, quantity: OrbitQuantity) -> list[FigurePane]:
         events = {SelectionGeometry: self._select_interval, DoubleTap: lambda event: self._on_brush(None)}
-        return [FigurePane(self._draw(quantity), events) for quantity in ORBIT_QUANTITIES]
+        return [FigurePane(self._draw(quantity), events)]
 
     def begin_touch(self) -> None:
         """Adapt to touch input: a drag over a history scrolls the page."""
