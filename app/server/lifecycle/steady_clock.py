@@ -14,7 +14,7 @@ from tornado.ioloop import IOLoop
 
 def use_steady_clock() -> None:
     """Let event loops measure time with a monotonic clock; call before anything is scheduled."""
-    IOLoop.time = _monotonic  # type: ignore[method-assign]
+    IOLoop.time = _monotonic  # type: ignore[method-assign, assignment]
 
 
 def _monotonic(_loop: IOLoop) -> float:
