@@ -118,7 +118,7 @@ class Explorer:
         actions = BrowserActions(
             key=locked(self._press),
             navigate=locked(self.links.navigate),
-            dark=locked(self.set_dark),
+            dark=locked(lambda dark: self.state.param.update(dark=dark)),
             touch=locked(self._begin_touch),
             narrow=locked(self.maps.view.grid.offer_choice),
             copied=locked(self._copied),
@@ -145,11 +145,6 @@ class Explorer:
         for presenter in (self.maps, self.orbits, self.analyses, self.comparison, self.watch, self.potential, self.preview):
             presenter.close()
         self._client.close()
-
-    def set_dark(self, dark: bool) -> None:
-        """Use the line colours of the dark or the light theme."""
-        with pn.io.hold():
-            self.maps.view.set_dark(dark)
 
     def _begin_view(self) -> None:
         """Show the first view; presenters then follow the changes of the state."""

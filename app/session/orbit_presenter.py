@@ -26,7 +26,6 @@ from app.views.orbits.separation_plot import SeparationPlot
 from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
-from plots.pictures.palette import PALETTES
 
 REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
 
@@ -75,30 +74,22 @@ class OrbitPresenter:
             copy=context.copy,
         )
         self.controls: OrbitControls = OrbitControls(state, actions)
-        self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
+        self.plots: OrbitPlots = OrbitPlots(state, locked(self._brush))
         # Under load the server skips times, to keep up with the player.
         self.playback = Playback(latest(self._set_time))
-        self._separation_plot: SeparationPlot = SeparationPlot()
+        self._separation_plot: SeparationPlot = SeparationPlot(state)
         self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot, latest)
         self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
         self._divergent_start_requests = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation_requests = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         state.param.watch(self._end_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
-        state.param.watch(lambda event: self._show(self._orbits), "chosen")
+        state.param.watch(lambda *events: self._show(self._orbits), ["chosen", "palette"])
         state.param.watch(self._note_tapped, "starts")
-        state.follow(self._set_palette, "palette")
 
     def begin(self) -> None:
         """Request the orbits of the first view state."""
         self._end_message()
         self._orbit_requests.follow()
-
-    def _set_palette(self, name: str) -> None:
-        """Use the colours of another palette."""
-        with pn.io.hold():
-            for view in (self.plots, self._separation_plot):
-                view.set_palette(PALETTES[name])
-            self._show(self._orbits)
 
     def begin_touch(self) -> None:
         """Adapt to touch input."""
@@ -111,7 +102,7 @@ class OrbitPresenter:
 
     def _announce_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Show verdict and path of the tapped start in a message, because on a phone the panel and the path are out of view."""
-        for one, colour in zip(orbits, PALETTES[self._state.palette].orbits, strict=False):
+        for one, colour in zip(orbits, self._state.colours.orbits, strict=False):
             if one.start == self._tapped_start and one.curves is not None:
                 self._tapped_start = None
                 self._notice.show(one.headline(), path_picture(one.curves, colour))

@@ -31,7 +31,7 @@ from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS, SETTINGS
-from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
+from plots.pictures.palette import DARK, LIGHT, MOST_ORBITS, PALETTES, LineColours, Palette
 from plots.pictures.time_scale import TimeScale
 
 WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
@@ -107,6 +107,7 @@ class ViewState(param.Parameterized):
     )
     focus = param.Selector(default="", objects=["", *PICTURES], doc="picture that is shown large; empty for none")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
+    dark = param.Boolean(default=False, doc="whether the browser uses the dark theme")
     lock_times = param.ClassSelector(
         class_=TimeScale, default=None, allow_None=True, doc="scale of the escape times; None fits it to the map in view"
     )
@@ -156,6 +157,11 @@ class ViewState(param.Parameterized):
     def colours(self) -> Palette:
         """The chosen palette."""
         return PALETTES[self.palette]
+
+    @property
+    def line_colours(self) -> LineColours:
+        """Colours of lines for the theme of the browser."""
+        return DARK if self.dark else LIGHT
 
     @property
     def chosen_start(self) -> Start | None:

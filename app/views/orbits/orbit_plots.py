@@ -10,7 +10,6 @@ from bokeh.events import DoubleTap, SelectionGeometry
 from bokeh.models import (
     BoxSelectTool,
     FixedTicker,
-    LinearColorMapper,
     MultiLine,
     Patches,
     Range1d,
@@ -18,13 +17,23 @@ from bokeh.models import (
 )
 from bokeh.plotting import figure
 
-from app.views.components.orbit_lines import band_columns, band_style, in_front, line_columns, line_style, lines, opacities
+from app.state.view_state import ViewState
+from app.views.components.orbit_lines import (
+    band_columns,
+    band_style,
+    in_front,
+    line_columns,
+    line_style,
+    lines,
+    opacities,
+    orbit_colours,
+)
 from app.views.components.plots import FigurePane, history_figure, set_range
 from engine import CASES, integrate_orbit, start_states
 from engine.slices.planes import SECTION
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
-from plots.pictures.palette import MARK_EDGE, PAPER, THRESHOLD, Palette
+from plots.pictures.palette import MARK_EDGE, THRESHOLD
 
 # The history whose times stand for all histories, which have the same times.
 _FIRST = ORBIT_QUANTITIES[0].name
@@ -35,21 +44,22 @@ class OrbitPlots:
 
     Parameters
     ----------
+    state
+        View state, whose palette has the colours of the orbits.
     on_brush
         Shows the interval of time that is drawn over a history, or the whole duration (None) after a double click.
     """
 
-    def __init__(self, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
+    def __init__(self, state: ViewState, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
         self._on_brush = on_brush
         self._by_touch = False
         self._times = Range1d(0.1, 1e4)
         self._ranges = {quantity.name: Range1d(quantity.least or 0.0, 1.0) for quantity in ORBIT_QUANTITIES}
-        self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
+        self._mapper = orbit_colours(state)
         self._histories = {name: lines(f"{name}_histories") for name in self._ranges}
         self._bands = {name: lines(f"{name}_bands") for name in self._ranges}
         self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
-        self.set_palette(PAPER)
 
     def build(self) -> list[FigurePane]:
         """Make a figure of each of `ORBIT_QUANTITIES`."""
@@ -76,10 +86,6 @@ class OrbitPlots:
     def set_time(self, t: float | None) -> None:
         """Mark a time on all histories; None removes the mark."""
         self._now.update(visible=t is not None and bool(self._orbits), location=t or 0.0)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the orbits."""
-        self._mapper.palette = list(palette.orbits)
 
     def _draw(self, quantity: OrbitQuantity) -> figure:
         name, scale = quantity.name, "log" if quantity.logarithmic else "linear"

@@ -33,7 +33,8 @@ class Session:
     def __init__(self, jobs: Jobs) -> None:
         self.changed = threading.Condition()
         self.said, self.refused = [""], [""]
-        self.state, self.maps = ViewState(system=System("I"), energy=0.2, t_max=100.0), make_maps()
+        self.state = ViewState(system=System("I"), energy=0.2, t_max=100.0)
+        self.maps = make_maps(self.state)
         self.context = context_of(self.state, jobs, self.changed)
         self.presenter = ComparisonPresenter(self.context, self.maps, self.said.append, self.refused.append)
 
