@@ -14,14 +14,13 @@ from matplotlib.figure import Figure
 from engine import Fate, Measure, Outcome
 from engine.measures.decay_laws import LawFit
 from engine.results import DecayLaws, EscapeStatistics, Sweep
-from plots.pictures.charts import BINS, CURVE_PANELS, MOST_CROSSINGS, SHARES, is_measured
+from plots.pictures.charts import BINS, CURVE_PANELS, MOST_CROSSINGS, NUMBER_COLOURS, SHARES, is_measured, law_curve
 from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
 from plots.printed.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 
 # Equal curves, such as the shares of mirror-image channels, coincide. The second is dashed, so that both are visible.
 _DASHED = (0, (4.0, 3.0))
-_SAMPLES = 300
 # Height of the figure of curves with two columns, in units of its width.
 _HEIGHT = 1.2
 # Height with one column.
@@ -66,7 +65,7 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
 def draw_measure(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle = SCREEN) -> None:
     """Draw the numbers of a measure against the energy or a parameter, with their error bars."""
     curve = measure.curve
-    for (name, label), colour in zip(measure.labels.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
+    for (name, label), colour in zip(measure.labels.items(), NUMBER_COLOURS, strict=False):
         words = re.sub(r"_(\w+)", r"$_{\1}$", label)
         axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=words)
         axes.fill_between(curves.values, *curves.interval(name), color=colour, alpha=0.25, linewidth=0.0)
@@ -146,11 +145,7 @@ def draw_decay_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
 def _draw_law(axes: Axes, fit: LawFit, *, preferred: bool) -> None:
     name = str(fit.law)
     label = f"{name}, ${_SYMBOLS[name]} = {_mathtext(fit.rate)}$" + (" (preferred)" if preferred else "")
-    t = np.geomspace(fit.t_low, fit.t_high, _SAMPLES)
-    curve = fit.curve(t)
-    axes.plot(
-        t, np.where(curve > 0.0, curve, np.nan), color=LAW_COLOURS[name], linewidth=1.8, linestyle=_DASHES[name], label=label
-    )
+    axes.plot(*law_curve(fit), color=LAW_COLOURS[name], linewidth=1.8, linestyle=_DASHES[name], label=label)
 
 
 def _mathtext(number: float) -> str:

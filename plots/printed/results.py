@@ -41,6 +41,10 @@ _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
 _MOST_DECADES = 16
 
 
+class NoPictureError(TypeError):
+    """A result has no picture."""
+
+
 def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:
     """Draw a result, as described in `engine.foundations.result.Result.plot`."""
     if palette not in PALETTES:
@@ -91,7 +95,7 @@ def _picture(result: Result) -> str:
     with RENDER_LOCK:
         try:
             _draw(result, figure.subplots(), PALETTES["paper"])
-        except TypeError:
+        except NoPictureError:
             return ""
         except ModuleNotFoundError as error:
             return f"<p>No picture: {html.escape(str(error))}</p>"
@@ -108,7 +112,7 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
             return
     chart = result.chart
     if chart is None:
-        raise TypeError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
+        raise NoPictureError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
     columns = result.columns()
     x, y = columns[chart.x], columns[chart.y]
     if chart.by_channel:
@@ -169,7 +173,7 @@ def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:
 @_draw.register
 def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
     if result.potential is None:
-        raise TypeError("this orbit has no potential, so its exits are unknown")
+        raise NoPictureError("this orbit has no potential, so its exits are unknown")
     curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
     if show == "path":
         axes.set_box_aspect(1.0)
@@ -209,7 +213,7 @@ def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
 @_draw.register
 def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     if not result.channels:
-        raise TypeError(f"the potential {result.name} has no exits and therefore no window to draw")
+        raise NoPictureError(f"the potential {result.name} has no exits and therefore no window to draw")
     window = enlarge(default_window(result, SPACE, result.escape_energy))
     draw_equipotentials(axes, result, window)
     for channel, (x, y) in enumerate(result.saddles.tolist(), 1):
@@ -225,7 +229,7 @@ def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
 @_draw.register
 def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
     if result.refusal is not None:
-        raise TypeError("a potential that cannot be used has no picture")
+        raise NoPictureError("a potential that cannot be used has no picture")
     _draw_potential(result.potential, axes, palette)
 
 
@@ -235,7 +239,7 @@ def _draw_sweep(result: Sweep, axes: Axes, palette: Palette, *, measure: str | N
     if "share" not in result.dataset:
         del drawn[SHARES.name]
     if not drawn:
-        raise TypeError("a sweep without numbers against the energy or a parameter has no picture")
+        raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
     if measure is not None and measure not in drawn:
         raise ValueError(f"measure={measure!r}: must be one of {', '.join(drawn)}")
     chosen = measure or next(iter(drawn))
