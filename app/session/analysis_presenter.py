@@ -97,12 +97,6 @@ class AnalysisPresenter:
         self.show_notes(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
 
-    def close(self) -> None:
-        """Cancel all requests at the end of the session."""
-        self._follow_ups.follow(None)
-        self._cancel_measures()
-        self._sweep_request.cancel()
-
     def _connect(self) -> None:
         watch = self._state.param.watch
         self._results.param.watch(lambda event: self._follow_map(), "frame")

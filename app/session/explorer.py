@@ -9,6 +9,7 @@ from typing import Any
 
 import panel as pn
 
+from app.browser.engine_component import BrowserEngine
 from app.job_clients.shown_results import ShownResults
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
@@ -21,7 +22,6 @@ from app.session.link_presenter import LinkPresenter
 from app.session.map_presenter import MapPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
-from app.session.preview_presenter import PreviewPresenter
 from app.session.watch_presenter import WatchPresenter
 from app.state.navigation import window_moves
 from app.state.presets import Preset
@@ -29,8 +29,7 @@ from app.state.view import Analysis
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.collapsible_section import Drawers, Stack
 from app.views.components.notice import Notice
-from app.views.panels.accessible_table import AccessibleTable
-from app.views.panels.analysis_choice import AnalysisTabs
+from app.views.panels.analysis_choice import analysis_tabs
 from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
@@ -81,12 +80,11 @@ class Explorer:
         )
         self.orbits = OrbitPresenter(context, self.maps.view.marks, self.maps.view.well, self.maps.add_start)
         self.watch = WatchPresenter(context)
-        self.preview = PreviewPresenter(context)
+        self.engine = BrowserEngine(context.state, context.results, context.jobs, context.locked)
 
     def _make_views(self) -> None:
         state, results, locked = self.state, self.results, self._locked
         self.statistics = StatisticsView(state, results, self._copy)
-        self.accessible_table = AccessibleTable(state, results)
         self.downloads = Downloads(state, results, partial(self._copy, None), self._copy_embed_code, locked(self._copied))
         self.gallery = Gallery(state, locked(self._show_preset))
         self.browser = self._make_browser_events()
@@ -97,7 +95,7 @@ class Explorer:
                 "slice": ("", "Slice", lambda: SlicePanel(state).build()),
                 "gallery": ("Gallery", "Gallery", self.gallery.build),
                 "share": ("Share", "Share and download", self.downloads.build),
-                "help": ("Help", "Help", lambda: [*help_panes(state), *self.accessible_table.fold.parts()]),
+                "help": ("Help", "Help", lambda: help_panes(state, results)),
             },
             self.browser.focus_drawer,
         )
@@ -110,7 +108,7 @@ class Explorer:
                 Analysis.WATCH: self.watch.build,
             },
             "analysis",
-            head=[AnalysisTabs(state).tabs],
+            head=[analysis_tabs(state)],
         )
 
     def _make_browser_events(self) -> BrowserEvents:
@@ -129,26 +127,23 @@ class Explorer:
     def _make_controls(self) -> Controls:
         state, maps = self.state, self.maps.view
         actions = ControlActions(
-            play=self.preview.play,
+            play=self.engine.play,
             choose_potential=lambda: self.drawers.toggle("potential"),
             choose_slice=lambda: self.drawers.toggle("slice"),
-            compare=self._locked(self.comparison.compare),
             swap=self.comparison.swap_views,
             lock_times=self._locked(lambda on: state.param.update(lock_times=maps.times if on else None)),
         )
         controls = Controls(state, actions)
-        self.preview.engine.param.watch(lambda event: controls.show_playing(event.new), "playing")
+        self.engine.param.watch(lambda event: controls.show_playing(event.new), "playing")
         return controls
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
-        for presenter in (self.maps, self.orbits, self.analyses, self.comparison, self.watch, self.potential, self.preview):
-            presenter.close()
         self._client.close()
 
     def _begin_view(self) -> None:
         """Show the first view; presenters then follow the changes of the state."""
-        self.preview.show_view()
+        self.engine.show_view()
         self.maps.requests.request_map()
         self.orbits.begin()
 
@@ -166,7 +161,7 @@ class Explorer:
         self.links.open(system, partial(self.state.show, **values))
 
     def _show_preset(self, preset: Preset) -> None:
-        self.preview.engine.stop()
+        self.engine.stop()
         # On a narrow screen the drawer covers the maps.
         if self._by_touch:
             self.drawers.show(None)
@@ -188,7 +183,7 @@ class Explorer:
             **window_moves(self.maps.show_window, self.state.find_window),
             "b": self.browser.go_back,
             "f": self.browser.go_forward,
-            "p": self.preview.play,
+            "p": self.engine.play,
             "Enter": self.maps.add_middle,
             "Escape": self._escape,
             "?": lambda: self.drawers.toggle("help"),
@@ -203,8 +198,8 @@ class Explorer:
         """Close the open drawer; if none is open, stop the animation, or show all pictures, or stop the map."""
         if self.drawers.shown is not None:
             self.drawers.show(None)
-        elif self.preview.engine.playing:
-            self.preview.engine.stop()
+        elif self.engine.playing:
+            self.engine.stop()
         elif self.state.focus:
             self.state.focus = ""
         else:

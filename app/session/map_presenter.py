@@ -62,10 +62,6 @@ class MapPresenter:
         state.param.watch(self._go_to_window, ["system", "plane", "window"])
         state.param.watch(self._remove_box, ["system", "plane", "window", "box"])
 
-    def close(self) -> None:
-        """Cancel the requests at the end of the session."""
-        self.requests.close()
-
     def begin_touch(self) -> None:
         """Adapt to touch input."""
         self.toolbar.begin_touch()

@@ -10,6 +10,7 @@ from typing import Any
 import panel as pn
 from param.parameterized import Event
 
+from app.browser.components.orbit_player import OrbitPlayer
 from app.job_clients.divergent_start_requests import DivergentStartRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
@@ -21,7 +22,6 @@ from app.views.orbits.inspector import Inspector
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.path_picture import path_picture
-from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
 from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import evaluate_indicators
@@ -76,9 +76,9 @@ class OrbitPresenter:
         self.controls: OrbitControls = OrbitControls(state, actions)
         self.plots: OrbitPlots = OrbitPlots(state, locked(self._brush))
         # Under load the server skips times, to keep up with the player.
-        self.playback = Playback(latest(self._set_time))
+        self.player = OrbitPlayer(latest(self._set_time), sizing_mode="stretch_width", margin=(4, 10), css_classes=["player"])
         self._separation_plot: SeparationPlot = SeparationPlot(state)
-        self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot, latest)
+        self.inspector = Inspector(self.controls, self.player, self.plots, self._separation_plot, latest)
         self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
         self._divergent_start_requests = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation_requests = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
@@ -106,11 +106,6 @@ class OrbitPresenter:
             if one.start == self._tapped_start and one.curves is not None:
                 self._tapped_start = None
                 self._notice.show(one.headline(), path_picture(one.curves, colour))
-
-    def close(self) -> None:
-        """Cancel all requests at the end of the session."""
-        for requests in (self._orbit_requests, self._divergent_start_requests, self._separation_requests):
-            requests.close()
 
     def _end_message(self, *events: Event) -> None:
         self.controls.end_message(has_orbits=bool(self._state.starts))
@@ -166,7 +161,7 @@ class OrbitPresenter:
         duration = (0.0, float(chosen_curves.orbit.t[-1])) if chosen_curves is not None else None
         self._well.show_orbits(curves, chosen)
         self.plots.show(curves, chosen, self._interval)
-        self.playback.follow(self._interval or duration)
+        self.player.follow(self._interval or duration)
         self.controls.show_interval(self._interval, duration[1] if duration is not None else 0.0)
 
     def _set_time(self, t: float | None) -> None:

@@ -41,10 +41,6 @@ class WatchPresenter:
         title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
         return [title, self._player]
 
-    def close(self) -> None:
-        """Cancel the request at the end of the session."""
-        self._flux.cancel()
-
     def _request_rate(self) -> None:
         """Request the decay rate while the tab is open, once the kernels are compiled."""
         state = self._state

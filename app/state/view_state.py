@@ -203,6 +203,11 @@ class ViewState(param.Parameterized):
         """Switch a layer on or off."""
         self.layers = self.layers | {name} if on else self.layers - {name}
 
+    def compare(self, *, on: bool) -> None:
+        """Compare later views with the present view in the same window, or end the comparison."""
+        window = self.find_window() if on and is_ready_for_maps(self.potential) else self.window
+        self.param.update(compared=self.view if on else None, window=window)
+
     def show(self, reviewed: SystemReview, **values: Any) -> None:
         """Set a reviewed system together with other values."""
         self._review = reviewed

@@ -9,7 +9,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-import panel as pn
 import param
 from panel.custom import JSComponent
 
@@ -52,17 +51,6 @@ KEYS: Mapping[str, str] = MappingProxyType(
 _KEY_LABELS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
 
 
-# Bokeh does not register classes whose name starts with an underscore in the browser.
-class BrowserListener(JSComponent):
-    """Listens in the browser, and sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
-
-    keys = param.List(default=list(KEYS))
-    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number, see `command`")
-    command = param.Dict(default={}, doc="name, as back or copy; text to copy; number that makes repeats differ")
-
-    _esm = Path(__file__).with_suffix(".js")
-
-
 @dataclass(frozen=True)
 class BrowserActions:
     """Callbacks for the events, which run without the session's lock.
@@ -95,19 +83,24 @@ class BrowserActions:
     enlarge: Callable[[str], None]
 
 
-class BrowserEvents:
-    """Passes events of the browser to callbacks, and commands to the browser; of `KEYS`, it passes only `keys`."""
+class BrowserEvents(JSComponent):
+    """An invisible component that passes events of the browser to callbacks, and commands to the browser.
+
+    The browser sends {key}, with one of `keys`, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}.
+    """
+
+    keys = param.List(default=list(KEYS))
+    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number, see `command`")
+    command = param.Dict(default={}, doc="name, as back or copy; text to copy; number that makes repeats differ")
+
+    _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self, actions: BrowserActions, keys: Collection[str] = KEYS) -> None:
-        self._actions, self._keys = actions, keys
+        super().__init__(keys=list(keys), width=0, height=0, margin=0, styles={"position": "absolute"})
+        self._actions = actions
         self._numbers = count()
         self._steps = 0
-        self._listener = BrowserListener(keys=list(keys), width=0, height=0, margin=0, styles={"position": "absolute"})
-        self._listener.on_msg(lambda event: self._receive(event.data))
-
-    def layout(self) -> pn.viewable.Viewable:
-        """Return an invisible component that must be on the page."""
-        return self._listener
+        self.on_msg(lambda event: self._receive(event.data))
 
     def copy(self, text: str | None) -> None:
         """Copy a text, or with None the address of the page; browsers allow copying only soon after a click or a key."""
@@ -115,7 +108,7 @@ class BrowserEvents:
 
     def write_link(self, link: str, entry: int) -> None:
         """Show a link as the address of the page, in this entry of the browser's history."""
-        self._listener.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
+        self.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
 
     def follow_steps(self, steps: int) -> None:
         """Note the number of steps in the history that the view has followed; addresses written for fewer steps are ignored."""
@@ -134,12 +127,12 @@ class BrowserEvents:
         self._command("focus" if is_open else "return")
 
     def _command(self, name: str, **details: Any) -> None:
-        self._listener.command = {"name": name, **details, "number": next(self._numbers)}
+        self.command = {"name": name, **details, "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
-            case {"key": str(key)} if key in self._keys:
+            case {"key": str(key)} if key in self.keys:
                 self._actions.key(key)
             case {"link": str(link), "entry": int(entry), "steps": int(steps)}:
                 self._actions.navigate(link, entry, steps)

@@ -75,7 +75,7 @@ def open_sessions() -> Iterator[list[Session]]:
     sessions: list[Session] = []
     yield sessions
     for session in sessions:
-        session.presenter.close()
+        session.context.jobs.close()
 
 
 @pytest.fixture(scope="module")

@@ -65,7 +65,7 @@ def jobs() -> Jobs:
 def session(jobs: Jobs) -> Iterator[Session]:
     made = Session(jobs)
     yield made
-    made.presenter.close()
+    made.context.jobs.close()
 
 
 def test_the_share_of_other_outcomes_is_that_of_two_maps(session: Session, frame: EscapeMap) -> None:
@@ -109,7 +109,7 @@ def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits
     session.state.compared = View(system, read_slice("x,a=0.5:1.5", "", system), 0.1)
     session.show(frame)
     session.wait_for("There is no other view to compare with: it takes too long.")
-    session.presenter.close()
+    session.context.jobs.close()
 
 
 def test_a_view_that_has_no_map_is_refused_in_a_sentence(session: Session, frame: EscapeMap) -> None:

@@ -34,7 +34,7 @@ def update(**values: Any) -> Callable[[Explorer], None]:
 
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
-    lambda explorer: send(explorer.orbits.playback.player, {"step": 10, "begin": 0, "end": 10}),
+    lambda explorer: send(explorer.orbits.player, {"step": 10, "begin": 0, "end": 10}),
     lambda explorer: send(explorer.controls.exact_energy, {"value": 0.3, "count": 1, "done": True}),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
@@ -58,7 +58,7 @@ def with_page(change: Callable[[Explorer], Any]) -> None:
 
     def show_orbits(explorer: Explorer) -> None:
         explorer.orbits.inspector.follow(2, 2)
-        explorer.orbits.playback.follow((0.0, 10.0))
+        explorer.orbits.player.follow((0.0, 10.0))
 
     async def run() -> None:
         async with opened_page(prepare=show_orbits) as (explorer, session):

@@ -48,7 +48,7 @@ def jobs() -> Jobs:
 def session(jobs: Jobs) -> Iterator[Session]:
     made = Session(jobs, starts=((0.1, 0.2), (0.3, 0.1)), chosen=1)
     yield made
-    made.presenter.close()
+    made.context.jobs.close()
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,6 @@ class Page:
                 play=lambda: None,
                 choose_potential=lambda: None,
                 choose_slice=lambda: None,
-                compare=lambda on: self.state.param.update(compared=self.state.view if on else None),
                 swap=lambda: None,
                 lock_times=self.locks.append,
             ),
