@@ -9,6 +9,7 @@ from typing import Any
 
 import panel as pn
 
+from app.browser.components.ensemble_player import EnsemblePlayer
 from app.browser.engine_component import BrowserEngine
 from app.job_clients.shown_results import ShownResults
 from app.runtime.disconnects import on_disconnect
@@ -22,13 +23,14 @@ from app.session.link_presenter import LinkPresenter
 from app.session.map_presenter import MapPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
-from app.session.watch_presenter import WatchPresenter
+from app.state.help_texts import title_with_help
 from app.state.navigation import window_moves
 from app.state.presets import Preset
 from app.state.view import Analysis
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.collapsible_section import Drawers, Stack
 from app.views.components.notice import Notice
+from app.views.components.texts import TextPane
 from app.views.panels.analysis_choice import analysis_tabs
 from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents
 from app.views.panels.controls import ControlActions, Controls
@@ -53,7 +55,7 @@ class Explorer:
     def __init__(self, loop: asyncio.AbstractEventLoop | None = None) -> None:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
-        self._document, self._by_touch = document, False
+        self._document = document
         callbacks = SessionCallbacks(document, loop)
         # Panel may run callbacks of widgets without the session's lock, but changes of Bokeh models need the lock.
         self._locked = callbacks.every
@@ -79,7 +81,6 @@ class Explorer:
             context, self.maps.view, lambda sentence: self.analyses.show_notes(compared=sentence), self.links.refuse_comparison
         )
         self.orbits = OrbitPresenter(context, self.maps.view.marks, self.maps.view.well, self.maps.add_start)
-        self.watch = WatchPresenter(context)
         self.engine = BrowserEngine(context.state, context.results, context.jobs, context.locked)
 
     def _make_views(self) -> None:
@@ -105,24 +106,24 @@ class Explorer:
                 Analysis.STATISTICS: self.statistics.build,
                 Analysis.MEASURES: self.analyses.measures.build,
                 Analysis.ENERGIES: self.analyses.curves.build,
-                Analysis.WATCH: self.watch.build,
+                Analysis.WATCH: self._build_watch,
             },
             "analysis",
             head=[analysis_tabs(state)],
         )
+
+    def _build_watch(self) -> list[pn.viewable.Viewable]:
+        title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
+        return [title, EnsemblePlayer(self.state, self.results, self._client, self._locked)]
 
     def _make_browser_events(self) -> BrowserEvents:
         locked = self._locked
         actions = BrowserActions(
             key=locked(self._press),
             navigate=locked(self.links.navigate),
-            dark=locked(lambda dark: self.state.param.update(dark=dark)),
-            touch=locked(self._begin_touch),
-            narrow=locked(self.maps.view.grid.offer_choice),
             copied=locked(self._copied),
-            enlarge=locked(self._enlarge),
         )
-        return BrowserEvents(actions, WINDOW_KEYS if self.links.embedded else KEYS)
+        return BrowserEvents(self.state, actions, WINDOW_KEYS if self.links.embedded else KEYS)
 
     def _make_controls(self) -> Controls:
         state, maps = self.state, self.maps.view
@@ -147,15 +148,6 @@ class Explorer:
         self.maps.requests.request_map()
         self.orbits.begin()
 
-    def _begin_touch(self) -> None:
-        self._by_touch = True
-        for part in (self.maps, self.controls, self.orbits):
-            part.begin_touch()
-
-    def _enlarge(self, name: str) -> None:
-        """Show a picture large; if it is large already, show all pictures side by side."""
-        self.state.focus = "" if name == self.state.focus else name
-
     def _open_view(self, system: System, values: dict[str, Any]) -> None:
         """Review a system, then show it with the given values of the state."""
         self.links.open(system, partial(self.state.show, **values))
@@ -163,7 +155,7 @@ class Explorer:
     def _show_preset(self, preset: Preset) -> None:
         self.engine.stop()
         # On a narrow screen the drawer covers the maps.
-        if self._by_touch:
+        if self.state.touch:
             self.drawers.show(None)
         self._open_view(preset.view.system, preset.view.within_limits().values())
 
@@ -187,7 +179,7 @@ class Explorer:
             "Enter": self.maps.add_middle,
             "Escape": self._escape,
             "?": lambda: self.drawers.toggle("help"),
-            **{key: partial(self._enlarge, name) for key, name in PICTURE_KEYS.items()},
+            **{key: partial(self.state.enlarge, name) for key, name in PICTURE_KEYS.items()},
         }
         try:
             moves[key]()

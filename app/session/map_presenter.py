@@ -62,11 +62,6 @@ class MapPresenter:
         state.param.watch(self._go_to_window, ["system", "plane", "window"])
         state.param.watch(self._remove_box, ["system", "plane", "window", "box"])
 
-    def begin_touch(self) -> None:
-        """Adapt to touch input."""
-        self.toolbar.begin_touch()
-        self.view.begin_touch()
-
     # Windows, starts and boxes.
 
     def show_window(self, window: Window | None) -> None:

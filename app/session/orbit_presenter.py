@@ -56,7 +56,6 @@ class OrbitPresenter:
         state, jobs, locked, latest = context.state, context.jobs, context.locked, context.latest
         self._state, self._results, self._marks, self._well = state, context.results, marks, well
         self._open_view, self._notice = context.open_view, context.notice
-        self._by_touch = False
         # The start of the last tap, until a message about its orbit is shown.
         self._tapped_start: Start | None = None
         self._orbits: tuple[ChosenOrbit, ...] = ()
@@ -91,14 +90,9 @@ class OrbitPresenter:
         self._end_message()
         self._orbit_requests.follow()
 
-    def begin_touch(self) -> None:
-        """Adapt to touch input."""
-        self._by_touch = True
-        self.plots.begin_touch()
-
     def _note_tapped(self, event: Event) -> None:
         added = [start for start in event.new if start not in event.old]
-        self._tapped_start = added[0] if len(added) == 1 and self._by_touch else None
+        self._tapped_start = added[0] if len(added) == 1 and self._state.touch else None
 
     def _announce_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Show verdict and path of the tapped start in a message, because on a phone the panel and the path are out of view."""

@@ -126,6 +126,7 @@ class MapsView:
         state.follow(lambda times: self._scale_times(), "lock_times")
         state.follow(lambda *values: self._show_pictures(), "layers", "compared")
         state.param.watch(lambda event: self.describe(), "dark")
+        state.param.watch(lambda event: self._begin_touch(), "touch")
 
     def _show_pictures(self) -> None:
         """Show the pictures of the view and of its layers."""
@@ -139,7 +140,7 @@ class MapsView:
         self.grid.show({name: self._panes[name] for name in names})
         self.describe()
 
-    def begin_touch(self) -> None:
+    def _begin_touch(self) -> None:
         """Adapt to touch input: two fingers zoom."""
         # The wheel tool would also respond to two fingers.
         others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]

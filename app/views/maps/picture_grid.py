@@ -41,9 +41,9 @@ class PictureGrid:
         # Before the first map, the pictures do not belong to the system.
         classes = ["maps", "stale", *(["alone"] if alone else [])]
         self._column = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=classes)
-        self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"], visible=False)
+        self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"])
         self.picker.param.watch(lambda event: self._choose(event.new), "value")
-        state.param.watch(lambda event: self._place(), "focus")
+        state.param.watch(lambda *events: self._place(), ["focus", "narrow"])
 
     def layout(self) -> pn.viewable.Viewable:
         """Return the grid."""
@@ -69,11 +69,6 @@ class PictureGrid:
     def mark_stale(self, stale: bool) -> None:
         """Grey out pictures that do not belong to the controls, or show them normally."""
         self._set_class("stale", stale)
-
-    def offer_choice(self) -> None:
-        """Offer a choice of the picture, because a narrow page shows only one picture."""
-        self.picker.visible = True
-        self._place()
 
     def _choose(self, name: str | None) -> None:
         # Other values come from the page itself, which the picker follows.
@@ -107,7 +102,8 @@ class PictureGrid:
                     plot.css_classes = kinds
                     set_borders(plot, kinds[1])
             self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=largest)
-            parts = [*([self.picker] if self.picker.visible else []), *self._panes.values()]
+            # A narrow page shows only one picture, and offers a choice.
+            parts = [*([self.picker] if self._state.narrow else []), *self._panes.values()]
             if parts != self._column.objects:
                 self._column.objects = parts
 

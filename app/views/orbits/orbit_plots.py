@@ -52,7 +52,7 @@ class OrbitPlots:
 
     def __init__(self, state: ViewState, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
         self._on_brush = on_brush
-        self._by_touch = False
+        self._state = state
         self._times = Range1d(0.1, 1e4)
         self._ranges = {quantity.name: Range1d(quantity.least or 0.0, 1.0) for quantity in ORBIT_QUANTITIES}
         self._mapper = orbit_colours(state)
@@ -65,10 +65,6 @@ class OrbitPlots:
         """Make a figure of each of `ORBIT_QUANTITIES`."""
         events = {SelectionGeometry: self._select_interval, DoubleTap: lambda event: self._on_brush(None)}
         return [FigurePane(self._draw(quantity), events) for quantity in ORBIT_QUANTITIES]
-
-    def begin_touch(self) -> None:
-        """Adapt to touch input: a drag over a history scrolls the page."""
-        self._by_touch = True
 
     def show(self, orbits: Sequence[OrbitCurves | None], chosen: int, interval: tuple[float, float] | None = None) -> None:
         """Draw the known orbits and highlight the chosen orbit; None stands for an orbit that is not known yet.
@@ -92,7 +88,8 @@ class OrbitPlots:
         time: dict[str, Any] = {"x_axis_type": "log", "x_range": self._times}
         values: dict[str, Any] = {"y_axis_type": scale, "y_range": self._ranges[name]}
         plot = history_figure(name, quantity.title, tools=[_brush()], **time, **values)
-        plot.toolbar.active_drag = None if self._by_touch else plot.toolbar.tools[0]
+        # With touch input, a drag over a history scrolls the page.
+        plot.toolbar.active_drag = None if self._state.touch else plot.toolbar.tools[0]
         plot.add_glyph(self._bands[name], Patches(**band_style(self._mapper)))
         plot.add_glyph(self._histories[name], MultiLine(**line_style(self._mapper)))
         plot.add_layout(self._now)

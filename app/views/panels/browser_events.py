@@ -9,10 +9,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import panel as pn
 import param
 from panel.custom import JSComponent
 
 from app.state.view import PICTURES
+from app.state.view_state import ViewState
 from plots.layers import table
 
 _TITLES = {"well": "the well"} | {name: picture.title for name, picture in table.PICTURES.items()}
@@ -62,29 +64,17 @@ class BrowserActions:
     navigate
         Shows the entry to which the browser's Back or Forward leads, given by query string and number, and notes the number of
         such steps so far.
-    dark
-        Uses the dark theme or not, after each change of the theme and for a page that begins dark.
-    touch
-        Adapts the page to touch input.
-    narrow
-        Adapts the page to the layout of a phone, at the beginning or after a change of width.
     copied
         Handles whether a text could be copied.
-    enlarge
-        Handles the button of the picture of this name.
     """
 
     key: Callable[[str], None]
     navigate: Callable[[str, int, int], None]
-    dark: Callable[[bool], None]
-    touch: Callable[[], None]
-    narrow: Callable[[], None]
     copied: Callable[[bool], None]
-    enlarge: Callable[[str], None]
 
 
 class BrowserEvents(JSComponent):
-    """An invisible component that passes events of the browser to callbacks, and commands to the browser.
+    """An invisible component that passes events of the browser to the view state or to callbacks, and commands to the browser.
 
     The browser sends {key}, with one of `keys`, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}.
     """
@@ -95,9 +85,9 @@ class BrowserEvents(JSComponent):
 
     _esm = Path(__file__).with_suffix(".js")
 
-    def __init__(self, actions: BrowserActions, keys: Collection[str] = KEYS) -> None:
+    def __init__(self, state: ViewState, actions: BrowserActions, keys: Collection[str]) -> None:
         super().__init__(keys=list(keys), width=0, height=0, margin=0, styles={"position": "absolute"})
-        self._actions = actions
+        self._state, self._actions = state, actions
         self._numbers = count()
         self._steps = 0
         self.on_msg(lambda event: self._receive(event.data))
@@ -137,15 +127,21 @@ class BrowserEvents(JSComponent):
             case {"link": str(link), "entry": int(entry), "steps": int(steps)}:
                 self._actions.navigate(link, entry, steps)
             case {"dark": bool(dark)}:
-                self._actions.dark(dark)
+                self._write(dark=dark)
             case {"touch": True}:
-                self._actions.touch()
+                self._write(touch=True)
             case {"narrow": True}:
-                self._actions.narrow()
+                self._write(narrow=True)
             case {"copied": bool(success)}:
                 self._actions.copied(success)
             case {"enlarge": str(name)} if name in PICTURES:
-                self._actions.enlarge(name)
+                with pn.io.hold():
+                    self._state.enlarge(name)
+
+    def _write(self, **values: bool) -> None:
+        # `hold` provides the session's lock, as in `app.views.components.widgets.button`.
+        with pn.io.hold():
+            self._state.param.update(**values)
 
 
 def key_legend() -> str:

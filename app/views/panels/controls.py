@@ -126,7 +126,7 @@ class Controls:
         energy = [self.energy, self.ticks, self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
-    def begin_touch(self) -> None:
+    def _begin_touch(self) -> None:
         """Adapt to touch input: close sections, which leaves more room for the maps."""
         for fold in self._folds:
             fold.open(False)
@@ -164,6 +164,7 @@ class Controls:
         state.param.watch(lambda *events: self._follow_system(), "system")
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
         state.param.watch(lambda event: self._follow_plane(), "plane")
+        state.param.watch(lambda event: self._begin_touch(), "touch")
 
     def show_playing(self, playing: bool) -> None:
         """Label the button with its next action."""

@@ -20,7 +20,7 @@ from app.browser.inputs.parameter_slider import ParameterSlider
 from app.job_clients.shown_results import ShownResults
 from app.state.presets import PRESETS
 from app.state.view_state import ViewState
-from app.views.panels.browser_events import BrowserActions, BrowserEvents
+from app.views.panels.browser_events import KEYS, BrowserActions, BrowserEvents
 from app.views.panels.gallery import Gallery
 from engine.jobs.manager import Jobs
 from tests.app.browser_messages import send
@@ -52,7 +52,10 @@ def make_events(report: Report) -> JSComponent:
     def named(name: str) -> Report:
         return lambda *values: report(name, *values)
 
-    return BrowserEvents(BrowserActions(*[named(each.name) for each in fields(BrowserActions)]))
+    state = ViewState()
+    for name in ("dark", "touch", "narrow", "focus"):
+        state.param.watch(lambda event: report(event.name, event.new), name)
+    return BrowserEvents(state, BrowserActions(*[named(each.name) for each in fields(BrowserActions)]), KEYS)
 
 
 def make_player(report: Report) -> JSComponent:
@@ -127,9 +130,10 @@ EXAMPLES = {
             ({"key": "h"}, ("key", "h")),
             ({"link": "?case=II", "entry": 3, "steps": 1}, ("navigate", "?case=II", 3, 1)),
             ({"dark": True}, ("dark", True)),
-            ({"touch": True}, ("touch",)),
-            ({"narrow": True}, ("narrow",)),
+            ({"touch": True}, ("touch", True)),
+            ({"narrow": True}, ("narrow", True)),
             ({"copied": False}, ("copied", False)),
+            ({"enlarge": "times"}, ("focus", "times")),
         ],
         [{"key": "x"}, {"key": 7}, {"dark": "yes"}, {"touch": False}, {"link": 7, "entry": 1, "steps": 1}],
     ),

@@ -53,9 +53,9 @@ def test_the_mode_chooses_the_active_tool(maps: MapsView, drag: Drag, kind: type
     assert len(tools(maps, BoxSelectTool)) == (drag is Drag.COUNT)
 
 
-def test_on_touch_screens_the_wheel_tool_ignores_two_fingers(maps: MapsView) -> None:
+def test_on_touch_screens_the_wheel_tool_ignores_two_fingers(state: ViewState, maps: MapsView) -> None:
     assert tools(maps, WheelZoomTool)
-    maps.begin_touch()
+    state.touch = True
     assert not tools(maps, WheelZoomTool)
 
 

@@ -87,7 +87,7 @@ def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_appears() -> None
 def test_the_picker_of_a_narrow_page_offers_the_pictures_and_reports_the_choice() -> None:
     state = ViewState(layers=frozenset({"origins"}))
     pictures = make_maps(state).grid
-    pictures.offer_choice()
+    state.narrow = True
     assert pictures.layout().objects[0] is pictures.picker
     assert list(pictures.picker.options.values()) == [*ALWAYS, "origins"]
     assert pictures.picker.value == "origins"
