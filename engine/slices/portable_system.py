@@ -30,8 +30,6 @@ _EXIT_COLUMNS = {
         "closed": events.CLOSED,
         "curve": events.CURVE,
         "line": events.LINE,
-        "disc": events.DISC,
-        "circle": events.CIRCLE,
     },
 }
 

@@ -106,7 +106,7 @@ def grazing_states(potential: Potential, energy: float, depth: float) -> list[tu
 
 GRAZED = [
     ("Earth-Moon", -1.095),
-    ("Logarithmic bar", -0.485),
+    pytest.param("Logarithmic bar", -0.485, marks=pytest.mark.slow),
     ("Copenhagen", -1.3),
 ]
 

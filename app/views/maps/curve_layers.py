@@ -10,6 +10,7 @@ import numpy as np
 from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
+from app.browser.browser_system import EXIT_NUMBER_DISTANCE
 from app.state.view_state import ViewState
 from app.views.components.plots import LaterGlyphs
 from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits
@@ -18,8 +19,6 @@ from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import MOST_CHANNELS, Entry
 
-# Distance of an exit's number from the origin, as a share of the distance of the middle of the Lyapunov orbit.
-_NUMBER_PLACE = 0.86
 # Number of maps whose curves are cached.
 _CACHED_MAPS = 128
 # Energies of the faint equipotentials, in units of the escape energy.
@@ -118,8 +117,8 @@ class CurveLayers:
         # There are always `MOST_CHANNELS` texts, some without a position: Bokeh fails if texts with own colours become fewer.
         missing = MOST_CHANNELS - len(orbits)
         self._labels.data = {
-            "x": [*(_NUMBER_PLACE * point[0] for point in middles), *[np.nan] * missing],
-            "y": [*(_NUMBER_PLACE * point[1] for point in middles), *[np.nan] * missing],
+            "x": [*(EXIT_NUMBER_DISTANCE * point[0] for point in middles), *[np.nan] * missing],
+            "y": [*(EXIT_NUMBER_DISTANCE * point[1] for point in middles), *[np.nan] * missing],
             "text": [*(orbit.name for orbit in orbits), *[""] * missing],
             "colour": [*colours, *[palette.bounded] * missing],
         }

@@ -44,6 +44,24 @@ _ROOT_ACCURACY = 1e-15
 
 
 @subroutine
+def is_circle(curve):
+    """Return whether an exit is a circle: the edge of a disc or the escape circle."""
+    return curve[SHAPE] >= DISC
+
+
+@subroutine
+def is_open_channel(curve):
+    """Return whether an exit is the curve or line of an open channel."""
+    return CURVE <= curve[SHAPE] < DISC
+
+
+@subroutine
+def ends_inside(curve):
+    """Return whether orbits end on the inner side of an exit: that of a disc."""
+    return curve[SHAPE] == DISC
+
+
+@subroutine
 def position_across(x, y, curve):
     """Return the coordinate s of a point; −1 and 1 are the ends of the exit."""
     q = curve[OUTWARD_X] * (y - curve[ORIGIN_Y]) - curve[OUTWARD_Y] * (x - curve[ORIGIN_X])
@@ -71,9 +89,9 @@ def exit_height(s, curve):
 @subroutine
 def exit_distance(x, y, curve):
     """Return the distance of (x, y) from an exit, along the channel or the radius: positive outside, negative inside."""
-    if curve[SHAPE] >= DISC:
+    if is_circle(curve):
         radius = np.sqrt((x - curve[ORIGIN_X]) ** 2 + (y - curve[ORIGIN_Y]) ** 2)
-        return curve[HALF_WIDTH] - radius if curve[SHAPE] == DISC else radius - curve[HALF_WIDTH]
+        return curve[HALF_WIDTH] - radius if ends_inside(curve) else radius - curve[HALF_WIDTH]
     u = curve[OUTWARD_X] * (x - curve[ORIGIN_X]) + curve[OUTWARD_Y] * (y - curve[ORIGIN_Y])
     return u - exit_height(position_across(x, y, curve), curve)
 
@@ -83,7 +101,7 @@ def crossed_exit(x0, y0, x1, y1, curves, gates):
     """Return the number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1); 0 for none."""
     for k in range(curves.shape[0]):
         curve = curves[k]
-        if curve[SHAPE] < DISC and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
+        if not is_circle(curve) and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
             continue
         after = exit_distance(x1, y1, curve)
         if not after > 0.0:
@@ -91,7 +109,7 @@ def crossed_exit(x0, y0, x1, y1, curves, gates):
         before = exit_distance(x0, y0, curve)
         if before > 0.0:
             continue
-        if curve[SHAPE] >= DISC:
+        if is_circle(curve):
             return k + 1
         s0 = position_across(x0, y0, curve)
         s1 = position_across(x1, y1, curve)
@@ -223,7 +241,7 @@ def _exit_rate(x_jet, y_jet, i, tau, curve):
         along = curve[OUTWARD_X] * vx + curve[OUTWARD_Y] * vy
         return along - slope * (curve[OUTWARD_X] * vy - curve[OUTWARD_Y] * vx)
     rate = (series_value(x_jet, i, tau) - curve[ORIGIN_X]) * vx + (series_value(y_jet, i, tau) - curve[ORIGIN_Y]) * vy
-    return -rate if curve[SHAPE] == DISC else rate
+    return -rate if ends_inside(curve) else rate
 
 
 @subroutine
@@ -253,7 +271,7 @@ def _find_excursion(x_jet, y_jet, i, duration, curve):
 @subroutine
 def _is_beyond(x, y, curve):
     """Return whether a point is beyond an exit and, for a line, within its reach."""
-    return exit_distance(x, y, curve) > 0.0 and (curve[SHAPE] >= DISC or abs(position_across(x, y, curve)) <= curve[REACH])
+    return exit_distance(x, y, curve) > 0.0 and (is_circle(curve) or abs(position_across(x, y, curve)) <= curve[REACH])
 
 
 @subroutine

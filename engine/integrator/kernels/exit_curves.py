@@ -7,7 +7,6 @@ import numpy as np
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.kernels.events import (
     CLOSED,
-    DISC,
     HALF_WIDTH,
     MIDDLE,
     ORIGIN_X,
@@ -17,6 +16,7 @@ from engine.integrator.kernels.events import (
     REACH,
     SHAPE,
     exit_height,
+    is_circle,
 )
 
 # Columns of a table: the gate, the reach, the first column for the axes of an exit, and the first of its columns from `MIDDLE`.
@@ -77,7 +77,7 @@ def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
 @subroutine
 def exit_point(exit_curve, s):
     """Return x and y of the point of an exit at s, from −1 to 1; on a circle this range is a full turn."""
-    if exit_curve[SHAPE] >= DISC:
+    if is_circle(exit_curve):
         x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
         y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)
     else:

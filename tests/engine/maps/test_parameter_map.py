@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from dataclasses import replace
 
 import numpy as np
@@ -79,21 +78,6 @@ def test_channels_keep_their_numbers_along_the_parameter() -> None:
     left = found.ordinate < -0.35
     assert np.any(found.fate[left] == 3)
     assert set(np.unique(found.fate[~left & (found.ordinate > -0.33)])) - {Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE} == {1, 2}
-
-
-def test_a_longer_time_continues_a_map(along_epsilon: EscapeMap) -> None:
-    shorter = compute_map(replace(SPEC, t_max=50.0))
-    assert np.any(shorter.fate != along_epsilon.fate)
-    continued = compute_map(SPEC, resume=shorter)
-    np.testing.assert_array_equal(continued.fate, along_epsilon.fate)
-    np.testing.assert_array_equal(continued.escape_time, along_epsilon.escape_time)
-
-
-def test_a_cancelled_map_is_continued(along_epsilon: EscapeMap) -> None:
-    cancel = threading.Event()
-    stopped = compute_map(SPEC, on_frame=lambda frame: cancel.set(), cancel=cancel)
-    assert not stopped.complete
-    np.testing.assert_array_equal(compute_map(SPEC, resume=stopped).escape_time, along_epsilon.escape_time)
 
 
 def test_trust_and_character_are_those_of_the_lines(along_epsilon: EscapeMap) -> None:

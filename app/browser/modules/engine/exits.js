@@ -65,14 +65,11 @@ export class Exits {
    */
   list(row = 0) {
     const {shape, shapes} = this.#columns
-    return Array.from({length: this.count}, (_, k) => {
-      const curve = this.curves.at(row).at(k).values
-      return {
-        number: k + 1,
-        isOpen: curve[shape] !== shapes.closed,
-        isCircle: curve[shape] >= shapes.disc,
-      }
-    })
+    return this.#integrator.system.exits.map((exit, k) => ({
+      number: k + 1,
+      isOpen: this.curves.at(row).at(k).values[shape] !== shapes.closed,
+      isCircle: "row" in exit,
+    }))
   }
 
   /**

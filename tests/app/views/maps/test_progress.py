@@ -11,7 +11,7 @@ import pytest
 
 from app.state.view_state import ViewState
 from app.views.maps.progress import CONTINUE, STOP, STOPPED, ProgressView
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map
 from plots.layers.table import LAYERS
 from plots.pictures.palette import PALETTES
 
@@ -35,15 +35,6 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     assert "unresolved" not in text
     view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))
     assert "unresolved" in view.text.object
-
-
-def test_exits_of_several_channels_are_named() -> None:
-    # Above V = 0.45 channels 1 and 2 are one, and so are 3 and 4.
-    potential = Potential("", ((2, 0, 0.8902), (0, 2, 0.3619), (2, 4, -0.94), (0, 6, -0.0346)))
-    view, _ = make_view()
-    view.show(compute_map(MapSpec(potential, Plane.X_PX, 0.54, (5, 5), t_max=20.0)))
-    text = re.sub(r"<[^>]*>", "", view.text.object)
-    assert re.match(r"exit 1\+2&nbsp;[\d.]+ %exit 3\+4&nbsp;", text)
 
 
 def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:

@@ -64,7 +64,9 @@ def native(potential: Potential, state: np.ndarray, curves: np.ndarray) -> dict[
 
 
 @needs_node
-@pytest.mark.parametrize("name", ["III", "typed", "rotating", "body", pytest.param("functions", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name", ["III", "typed", *(pytest.param(name, marks=pytest.mark.slow) for name in ("rotating", "body", "functions"))]
+)
 def test_the_first_steps_equal_native_steps_to_rounding(name: str, tmp_path: Path) -> None:
     potential = POTENTIALS[name].in_well_units
     states, curves = starts(potential), exit_curves(potential, ENERGY)
