@@ -74,8 +74,7 @@ def draw_measure(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle
     if curve.logarithmic:
         axes.set_yscale("log")
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
-    style_axes(axes, style, grid=True)
-    label_axes(axes, curves.symbol, curve.axis, style)
+    style_axes(axes, style, grid=True, names=(curves.symbol, curve.axis))
     if len(axes.lines) > 1:
         add_panel_legend(axes, "best", style)
 
@@ -91,9 +90,7 @@ def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> 
     probabilities.bar(np.arange(len(chances)), chances, color=MEASURED)
     probabilities.set_xlim(-0.6, MOST_CROSSINGS + 0.6)
     probabilities.set_ylim(0.0, 1.0)
-    style_axes(probabilities, style, grid=True)
-    label_axes(probabilities, "upward crossings n", "p", style)
-    name_panel(probabilities, "Escapes after n crossings", style)
+    style_axes(probabilities, style, grid=True, names=("upward crossings n", "p"), title="Escapes after n crossings")
     return figure
 
 
@@ -102,8 +99,7 @@ def draw_escape_times(axes: Axes, statistics: EscapeStatistics, style: FigureSty
     edges, counts = statistics.time_histogram(BINS)
     axes.stairs(counts, edges, fill=True, color=MEASURED)
     axes.set_xscale("log")
-    style_axes(axes, style, grid=True)
-    label_axes(axes, "escape time", "starts", style)
+    style_axes(axes, style, grid=True, names=("escape time", "starts"))
 
 
 def draw_shares(
@@ -161,5 +157,4 @@ def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, across: str, up: str, *,
         axes.set_xscale("log")
     if "y" in logarithmic:
         axes.set_yscale("log")
-    style_axes(axes, grid=True)
-    label_axes(axes, across, up)
+    style_axes(axes, grid=True, names=(across, up))
