@@ -32,7 +32,7 @@ from app.views.components.collapsible_section import Drawers, Stack
 from app.views.components.notice import Notice
 from app.views.components.texts import TextPane
 from app.views.panels.analysis_choice import analysis_tabs
-from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents
+from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserEvents
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.embedding import embed_code, page_address
@@ -88,7 +88,8 @@ class Explorer:
         self.statistics = StatisticsView(state, results, self._copy)
         self.downloads = Downloads(state, results, partial(self._copy, None), self._copy_embed_code, locked(self._copied))
         self.gallery = Gallery(state, locked(self._show_preset))
-        self.browser = self._make_browser_events()
+        keys = WINDOW_KEYS if self.links.embedded else KEYS
+        self.browser = BrowserEvents(state, keys, locked(self._press), locked(self.links.navigate), locked(self._copied))
         self.controls = self._make_controls()
         self.drawers = Drawers(
             {
@@ -115,15 +116,6 @@ class Explorer:
     def _build_watch(self) -> list[pn.viewable.Viewable]:
         title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
         return [title, EnsemblePlayer(self.state, self.results, self._client, self._locked)]
-
-    def _make_browser_events(self) -> BrowserEvents:
-        locked = self._locked
-        actions = BrowserActions(
-            key=locked(self._press),
-            navigate=locked(self.links.navigate),
-            copied=locked(self._copied),
-        )
-        return BrowserEvents(self.state, actions, WINDOW_KEYS if self.links.embedded else KEYS)
 
     def _make_controls(self) -> Controls:
         state, maps = self.state, self.maps.view

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 from types import MappingProxyType
@@ -53,30 +52,24 @@ KEYS: Mapping[str, str] = MappingProxyType(
 _KEY_LABELS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
 
 
-@dataclass(frozen=True)
-class BrowserActions:
-    """Callbacks for the events, which run without the session's lock.
-
-    Attributes
-    ----------
-    key
-        Handles a key of `KEYS`, unless a field, slider or menu uses the key.
-    navigate
-        Shows the entry to which the browser's Back or Forward leads, given by query string and number, and notes the number of
-        such steps so far.
-    copied
-        Handles whether a text could be copied.
-    """
-
-    key: Callable[[str], None]
-    navigate: Callable[[str, int, int], None]
-    copied: Callable[[bool], None]
-
-
 class BrowserEvents(JSComponent):
     """An invisible component that passes events of the browser to the view state or to callbacks, and commands to the browser.
 
-    The browser sends {key}, with one of `keys`, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}.
+    The browser sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}.
+
+    Parameters
+    ----------
+    state
+        View state, which gets theme, touch, width and the enlarged picture.
+    keys
+        Some of `KEYS`, which the page uses unless a field, slider or menu uses them.
+    on_key
+        Handles one of the keys. All callbacks run without the session's lock.
+    on_navigate
+        Shows the entry to which the browser's Back or Forward leads, given by query string and number, and notes the number of
+        such steps so far.
+    on_copied
+        Handles whether a text could be copied.
     """
 
     keys = param.List(default=list(KEYS))
@@ -85,9 +78,16 @@ class BrowserEvents(JSComponent):
 
     _esm = Path(__file__).with_suffix(".js")
 
-    def __init__(self, state: ViewState, actions: BrowserActions, keys: Collection[str]) -> None:
+    def __init__(
+        self,
+        state: ViewState,
+        keys: Collection[str],
+        on_key: Callable[[str], None],
+        on_navigate: Callable[[str, int, int], None],
+        on_copied: Callable[[bool], None],
+    ) -> None:
         super().__init__(keys=list(keys), width=0, height=0, margin=0, styles={"position": "absolute"})
-        self._state, self._actions = state, actions
+        self._state, self._on_key, self._on_navigate, self._on_copied = state, on_key, on_navigate, on_copied
         self._numbers = count()
         self._steps = 0
         self.on_msg(lambda event: self._receive(event.data))
@@ -123,9 +123,9 @@ class BrowserEvents(JSComponent):
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"key": str(key)} if key in self.keys:
-                self._actions.key(key)
+                self._on_key(key)
             case {"link": str(link), "entry": int(entry), "steps": int(steps)}:
-                self._actions.navigate(link, entry, steps)
+                self._on_navigate(link, entry, steps)
             case {"dark": bool(dark)}:
                 self._write(dark=dark)
             case {"touch": True}:
@@ -133,7 +133,7 @@ class BrowserEvents(JSComponent):
             case {"narrow": True}:
                 self._write(narrow=True)
             case {"copied": bool(success)}:
-                self._actions.copied(success)
+                self._on_copied(success)
             case {"enlarge": str(name)} if name in PICTURES:
                 with pn.io.hold():
                     self._state.enlarge(name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
@@ -20,7 +20,7 @@ from app.browser.inputs.parameter_slider import ParameterSlider
 from app.job_clients.shown_results import ShownResults
 from app.state.presets import PRESETS
 from app.state.view_state import ViewState
-from app.views.panels.browser_events import KEYS, BrowserActions, BrowserEvents
+from app.views.panels.browser_events import KEYS, BrowserEvents
 from app.views.panels.gallery import Gallery
 from engine.jobs.manager import Jobs
 from tests.app.browser_messages import send
@@ -55,7 +55,7 @@ def make_events(report: Report) -> JSComponent:
     state = ViewState()
     for name in ("dark", "touch", "narrow", "focus"):
         state.param.watch(lambda event: report(event.name, event.new), name)
-    return BrowserEvents(state, BrowserActions(*[named(each.name) for each in fields(BrowserActions)]), KEYS)
+    return BrowserEvents(state, KEYS, *map(named, ("key", "navigate", "copied")))
 
 
 def make_player(report: Report) -> JSComponent:

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import Any
 
 from app.state.view_state import ViewState
-from app.views.panels.browser_events import KEYS, BrowserActions, BrowserEvents
+from app.views.panels.browser_events import KEYS, BrowserEvents
 from tests.app.browser_messages import send
 
 
 def events_of(*keys: str) -> tuple[BrowserEvents, list[tuple[Any, ...]]]:
     """Return events, and the recorded arguments of their listeners."""
     calls: list[tuple[Any, ...]] = []
-    actions = BrowserActions(*[lambda *values: calls.append(values) for _ in fields(BrowserActions)])
-    return BrowserEvents(ViewState(), actions, list(keys) or list(KEYS)), calls
+    return BrowserEvents(ViewState(), keys or KEYS, *[lambda *values: calls.append(values)] * 3), calls
 
 
 def test_keys_that_a_page_does_not_use_are_left_to_the_browser() -> None:
