@@ -7,7 +7,6 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-import panel as pn
 import param
 from panel.custom import JSComponent
 
@@ -47,6 +46,7 @@ class BrowserEngine(JSComponent):
         super().__init__(width=0, height=0, margin=0, styles={"position": "absolute"}, css_classes=["engine"])
         self._state = state
         self._numbers = count()
+        self._end = locked(self._on_end)
         self._systems = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
         self.on_msg(lambda event: self._receive(event.data))
         results.param.watch(lambda event: self._request_system(event.new), "frame")
@@ -78,10 +78,11 @@ class BrowserEngine(JSComponent):
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"energy": float() | int() as energy} if self.playing and isfinite(energy):
-                # `hold` provides the session's lock, as in `app.views.components.widgets.button`.
-                with pn.io.hold():
-                    self.playing = False
-                    self._state.energy = round(float(energy), self._state.energies.decimals)
+                self._end(float(energy))
+
+    def _on_end(self, energy: float) -> None:
+        self.playing = False
+        self._state.energy = round(energy, self._state.energies.decimals)
 
     def _request_system(self, frame: EscapeMap | None) -> None:
         """Request the system for the browser once a frame has arrived, because it needs the compiled kernels."""

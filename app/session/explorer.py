@@ -89,7 +89,7 @@ class Explorer:
         self.downloads = Downloads(state, results, partial(self._copy, None), self._copy_embed_code, locked(self._copied))
         self.gallery = Gallery(state, locked(self._show_preset))
         keys = WINDOW_KEYS if self.links.embedded else KEYS
-        self.browser = BrowserEvents(state, keys, locked(self._press), locked(self.links.navigate), locked(self._copied))
+        self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)
         self.controls = self._make_controls()
         self.drawers = Drawers(
             {

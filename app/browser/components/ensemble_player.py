@@ -7,7 +7,6 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-import panel as pn
 import param
 from panel.custom import JSComponent
 
@@ -82,6 +81,7 @@ class EnsemblePlayer(JSComponent):
     def __init__(self, state: ViewState, results: ShownResults, jobs: JobSubmitter, locked: Locked) -> None:
         super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE])
         self._state = state
+        self._choose = locked(lambda starts: state.param.update(watched=starts))
         self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
         self.on_msg(lambda event: self._receive(event.data))
         state.follow(lambda *values: self._show_choice(), "system", "watched", "starts", "chosen", "box")
@@ -101,8 +101,8 @@ class EnsemblePlayer(JSComponent):
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"where": str(where), "count": int(count), "seed": int(seed), "radius": int() | float() as radius}:
-                with suppress(ValueError), pn.io.hold():
-                    self._state.watched = WatchedStarts(where, count, seed, float(radius))  # type: ignore[arg-type]
+                with suppress(ValueError):
+                    self._choose(WatchedStarts(where, count, seed, float(radius)))  # type: ignore[arg-type]
 
     def _request_rate(self) -> None:
         """Request the decay rate of mixed motion while the analysis is open, once the kernels are compiled."""

@@ -8,10 +8,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-import panel as pn
 import param
 from panel.custom import JSComponent
 
+from app.job_clients.latest_request import Locked
 from app.state.view import PICTURES
 from app.state.view_state import ViewState
 from plots.layers import table
@@ -63,8 +63,10 @@ class BrowserEvents(JSComponent):
         View state, which gets theme, touch, width and the enlarged picture.
     keys
         Some of `KEYS`, which the page uses unless a field, slider or menu uses them.
+    locked
+        Wraps a function to run under the session's lock. Events can arrive before the page is ready, when `pn.io.hold` fails.
     on_key
-        Handles one of the keys. All callbacks run without the session's lock.
+        Handles one of the keys.
     on_navigate
         Shows the entry to which the browser's Back or Forward leads, given by query string and number, and notes the number of
         such steps so far.
@@ -82,12 +84,14 @@ class BrowserEvents(JSComponent):
         self,
         state: ViewState,
         keys: Collection[str],
+        locked: Locked,
         on_key: Callable[[str], None],
         on_navigate: Callable[[str, int, int], None],
         on_copied: Callable[[bool], None],
     ) -> None:
         super().__init__(keys=list(keys), width=0, height=0, margin=0, styles={"position": "absolute"})
-        self._state, self._on_key, self._on_navigate, self._on_copied = state, on_key, on_navigate, on_copied
+        self._on_key, self._on_navigate, self._on_copied = locked(on_key), locked(on_navigate), locked(on_copied)
+        self._update, self._enlarge = locked(state.param.update), locked(state.enlarge)
         self._numbers = count()
         self._steps = 0
         self.on_msg(lambda event: self._receive(event.data))
@@ -127,21 +131,15 @@ class BrowserEvents(JSComponent):
             case {"link": str(link), "entry": int(entry), "steps": int(steps)}:
                 self._on_navigate(link, entry, steps)
             case {"dark": bool(dark)}:
-                self._write(dark=dark)
+                self._update(dark=dark)
             case {"touch": True}:
-                self._write(touch=True)
+                self._update(touch=True)
             case {"narrow": True}:
-                self._write(narrow=True)
+                self._update(narrow=True)
             case {"copied": bool(success)}:
                 self._on_copied(success)
             case {"enlarge": str(name)} if name in PICTURES:
-                with pn.io.hold():
-                    self._state.enlarge(name)
-
-    def _write(self, **values: bool) -> None:
-        # `hold` provides the session's lock, as in `app.views.components.widgets.button`.
-        with pn.io.hold():
-            self._state.param.update(**values)
+                self._enlarge(name)
 
 
 def key_legend() -> str:

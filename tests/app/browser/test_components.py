@@ -55,7 +55,7 @@ def make_events(report: Report) -> JSComponent:
     state = ViewState()
     for name in ("dark", "touch", "narrow", "focus"):
         state.param.watch(lambda event: report(event.name, event.new), name)
-    return BrowserEvents(state, KEYS, *map(named, ("key", "navigate", "copied")))
+    return BrowserEvents(state, KEYS, lambda call: call, *map(named, ("key", "navigate", "copied")))
 
 
 def make_player(report: Report) -> JSComponent:

@@ -12,7 +12,7 @@ from tests.app.browser_messages import send
 def events_of(*keys: str) -> tuple[BrowserEvents, list[tuple[Any, ...]]]:
     """Return events, and the recorded arguments of their listeners."""
     calls: list[tuple[Any, ...]] = []
-    return BrowserEvents(ViewState(), keys or KEYS, *[lambda *values: calls.append(values)] * 3), calls
+    return BrowserEvents(ViewState(), keys or KEYS, lambda call: call, *[lambda *values: calls.append(values)] * 3), calls
 
 
 def test_keys_that_a_page_does_not_use_are_left_to_the_browser() -> None:
