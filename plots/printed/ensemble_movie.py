@@ -145,8 +145,8 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
 def _show(stage: _Stage, orbits: SampledOrbits, place: int) -> None:
     """Show the orbits at the time with the index `place`."""
     window, t = stage.window, float(orbits.t[0, place])
-    across = (orbits.x[:, place] - window.x_low) / (window.x_high - window.x_low)
-    up = (orbits.y[:, place] - window.ordinate_low) / (window.ordinate_high - window.ordinate_low)
+    across = (orbits.x[:, place] - window.x_low) / window.width
+    up = (orbits.y[:, place] - window.ordinate_low) / window.height
     stage.particles.set_offsets(np.column_stack([across, up]))
     left = np.sort(orbits.escape_time[orbits.fate > Fate.BOUNDED])
     left = left[left <= t]

@@ -42,7 +42,7 @@ _MOST_DECADES = 16
 
 
 class NoPictureError(TypeError):
-    """A result has no picture."""
+    """The result has no picture."""
 
 
 def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:

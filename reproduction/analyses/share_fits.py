@@ -13,7 +13,7 @@ from reproduction.analyses.published_fits import HyperbolicTangent, Polynomial, 
 
 _CONFIDENCE = 0.95
 # Shares are limited to this distance from 0 and 1 for the initial guess, where the inverse of the curve diverges.
-_SATURATED = 0.01
+_SATURATION = 0.01
 # Smallest number of shares strictly between 0 and 1 that determine the slope of the curve.
 _MIN_UNSATURATED = 3
 # Tolerance of the least-squares solver, at the level of rounding.
@@ -101,7 +101,7 @@ def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
     """
     if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _MIN_UNSATURATED:
         return _build_fit(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), h, shares)
-    guess = np.arctanh(2.0 * np.clip(shares, _SATURATED, 1.0 - _SATURATED) - 1.0)
+    guess = np.arctanh(2.0 * np.clip(shares, _SATURATION, 1.0 - _SATURATION) - 1.0)
     (constant, slope), half_widths = _fit(lambda line: 0.5 * (1.0 + np.tanh(line)), guess, 1, h, shares)
     return _build_fit(HyperbolicTangent(slope, -constant), half_widths[::-1], h, shares)
 

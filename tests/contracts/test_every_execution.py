@@ -42,7 +42,8 @@ from engine.propagation.deviation_vectors import attach_deviations, propagate_de
 from engine.propagation.section_points import find_section_points
 
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
-SPEC = MapSpec(III, Plane.X_PX, 0.3, (40, 40), t_max=300.0)
+# Enough orbits for several parts in each of three threads.
+SPEC = MapSpec(III, Plane.X_PX, 0.3, (72, 72), t_max=300.0)
 SWEEP = SweepSpec(III, Plane.X_PX, (0.26, 0.27))
 
 
@@ -52,7 +53,7 @@ def frame() -> EscapeMap:
 
 
 def starts() -> np.ndarray:
-    return sample_starts(III, 0.3, 2000, seed=1)
+    return sample_starts(III, 0.3, 5000, seed=1)
 
 
 type Compute = Callable[[Execution], Any]
@@ -63,7 +64,7 @@ WHOLE: dict[str, Compute] = {
     "separation": lambda execution: compute_separation(III, STATE, STATE, 1e3, execution=execution),
     "digits": lambda execution: integrate_orbit(III, (0.1, 0.0, 0.0, 0.3), 3e3).compute_birkhoff_digits(execution=execution),
     "divergent start": lambda execution: find_divergent_start(III, Plane.X_PX, 0.45, 0.1, 0.2, 1e3, execution=execution),
-    "manifolds": lambda execution: find_stable_manifolds(III, 0.45, images=2, execution=execution),
+    "manifolds": lambda execution: find_stable_manifolds(III, 0.45, images=1, execution=execution),
     "origins": lambda execution: compute_origin_fates(SPEC, execution=execution),
     "sweep": lambda execution: compute_sweep(SWEEP, execution=execution),
     "plan": lambda execution: plan_sweep(SWEEP, execution=execution),
@@ -74,7 +75,11 @@ PARTIAL: dict[str, tuple[Compute, str, float]] = {
     "outcomes": (lambda execution: classify_orbits(III, 0.3, starts(), 300.0, execution=execution), "fate", Fate.NOT_COMPUTED),
     "regularity": (lambda execution: compute_regularity(frame(), execution=execution), "character", Regularity.NOT_JUDGED),
     "trust": (lambda execution: compute_trust(frame(), execution=execution), "trust", Trust.NOT_TESTED),
-    "descriptors": (lambda execution: compute_lagrangian_descriptor(frame(), execution=execution), "descriptor", np.nan),
+    "descriptors": (
+        lambda execution: compute_lagrangian_descriptor(frame(), duration=3.0, execution=execution),
+        "descriptor",
+        np.nan,
+    ),
     "section points": (lambda execution: find_section_points(III, starts(), 3, 60.0, execution=execution), "", np.nan),
     "deviations": (
         lambda execution: propagate_deviations(III, attach_deviations(starts()), 10.0, execution=execution),

@@ -109,8 +109,7 @@ def annotate_picture(
 
 def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) -> list[str]:
     """Label the axes of pictures of a window, and return sentences that explain labels other than plain numbers."""
-    edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
-    offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in edges]
+    offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in window.ranges]
     for plot in plots:
         for axis, offset in zip((plot.below[0], plot.left[0]), offsets, strict=True):
             if offset is not None:

@@ -85,8 +85,8 @@ class WellView:
             "image": [one.shaded(self._state.colours.orbits[slot]) for slot, one in long],
             "x": [one.window.x_low for _, one in long],
             "y": [one.window.ordinate_low for _, one in long],
-            "dw": [one.window.x_high - one.window.x_low for _, one in long],
-            "dh": [one.window.ordinate_high - one.window.ordinate_low for _, one in long],
+            "dw": [one.window.width for _, one in long],
+            "dh": [one.window.height for _, one in long],
             "alpha": opacities(long, chosen),
         }
         self._outline()

@@ -25,7 +25,7 @@ class Inspector:
         self._head: list[pn.viewable.Viewable] = []
         self._details: list[pn.viewable.Viewable] = []
         self._figure_panes: list[pn.viewable.Viewable] = []
-        self._figures_in_turns = InTurns([plots.build, separation.build], self._add_figures, later)
+        self._figures_in_turns = InTurns([*plots.parts(), separation.build], self._add_figures, later)
         self._entry = controls.entry()
         self._grid = pn.Column(
             controls.note, *self._entry, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]

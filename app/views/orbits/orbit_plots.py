@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.state.view_state import ViewState
+from app.views.components.in_turns import Make
 from app.views.components.orbit_lines import (
     band_columns,
     band_style,
@@ -40,7 +42,7 @@ _FIRST = ORBIT_QUANTITIES[0].name
 
 
 class OrbitPlots:
-    """Draws the histories; `build` makes the figures when there is an orbit to draw.
+    """Draws the histories; `parts` make the figures when there is an orbit to draw.
 
     Parameters
     ----------
@@ -61,10 +63,13 @@ class OrbitPlots:
         self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
 
-    def build(self) -> list[FigurePane]:
-        """Make a figure of each of `ORBIT_QUANTITIES`."""
+    def parts(self) -> list[Make]:
+        """Return functions that make the figures, one of each of `ORBIT_QUANTITIES`."""
+        return [partial(self._build, quantity) for quantity in ORBIT_QUANTITIES]
+
+    def _build(self, quantity: OrbitQuantity) -> list[FigurePane]:
         events = {SelectionGeometry: self._select_interval, DoubleTap: lambda event: self._on_brush(None)}
-        return [FigurePane(self._draw(quantity), events) for quantity in ORBIT_QUANTITIES]
+        return [FigurePane(self._draw(quantity), events)]
 
     def show(self, orbits: Sequence[OrbitCurves | None], chosen: int, interval: tuple[float, float] | None = None) -> None:
         """Draw the known orbits and highlight the chosen orbit; None stands for an orbit that is not known yet.

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from engine import CASES, Potential, find_lyapunov_orbits, parse_formula
 from engine.exits.exit_rows import exit_curves
-from engine.integrator.kernels.events import REACH, exit_distance
+from engine.integrator.kernels.exit_geometry import REACH, exit_distance
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 

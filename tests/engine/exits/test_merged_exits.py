@@ -19,15 +19,8 @@ from engine.exits.brake_orbits import BrakeOrbit
 from engine.exits.exit_rows import exit_curves
 from engine.exits.interior import find_outside_channels
 from engine.exits.merged_orbits import has_returns
-from engine.integrator.kernels.events import (
-    CURVE_COLUMNS,
-    HALF_WIDTH,
-    ORIGIN_X,
-    OUTWARD_X,
-    REACH,
-    crossed_exit,
-    exit_distance,
-)
+from engine.integrator.kernels.events import crossed_exit
+from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS, HALF_WIDTH, ORIGIN_X, OUTWARD_X, REACH, exit_distance
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 from tests.peers.random_systems import HIGHEST_DEGREE, random_well

@@ -206,4 +206,4 @@ def test_frames_come_after_each_value_from_coarse_to_fine() -> None:
 
 def test_a_cached_map_is_measured_as_it_is() -> None:
     frame = compute_map(SPEC.point(0.2).map_spec)
-    xr.testing.assert_identical(compute_point(SPEC.point(0.2), frame=frame), compute_point(SPEC.point(0.2)))
+    xr.testing.assert_identical(compute_point(SPEC.point(0.2), escape_map=frame), compute_point(SPEC.point(0.2)))

@@ -6,18 +6,6 @@ from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.widgets import SegmentedControl
 from app.views.panels.analysis_choice import ANALYSIS_LABELS, LayerSwitches, analysis_tabs
-from plots.layers.table import LAYERS
-
-
-def test_there_is_a_labelled_switch_for_each_layer_that_changes_the_state_and_follows_it() -> None:
-    state = ViewState(layers=frozenset({"judge"}))
-    switches = LayerSwitches(state).switches
-    assert {name: switch.options for name, switch in switches.items()} == {name: [one.title] for name, one in LAYERS.items()}
-    assert [name for name, switch in switches.items() if switch.value] == ["judge"]
-    state.layers = frozenset({"manifolds"})
-    assert [name for name, switch in switches.items() if switch.value] == ["manifolds"]
-    switches["trust"].value = [LAYERS["trust"].title]
-    assert state.layers == {"trust", "manifolds"}
 
 
 def test_there_is_a_labelled_tab_for_each_analysis_that_changes_the_state_and_follows_it() -> None:

@@ -36,7 +36,7 @@ LARGEST_BYTES, LARGEST_KERNELS = 5120, 16384
 
 def test_a_module_has_at_most_5_kb() -> None:
     potential = CASES["III"]
-    module = webassembly_module(generate_code(potential.terms, potential.channels))
+    module = webassembly_module(generate_code(potential.terms, potential.well.setting))
     assert len(gzip.compress(module)) <= LARGEST_BYTES
 
 

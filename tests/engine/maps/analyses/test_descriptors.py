@@ -36,10 +36,10 @@ from engine.slices.axes import Coordinate
 # Chaotic orbits, and those close to a body, amplify rounding errors up to this within the default time.
 ACCURACY = 1e-9
 SPECS = {
-    "II": MapSpec(CASES["II"], Plane.X_PX, 0.24, (7, 7), t_max=100.0),
-    "energies": MapSpec(CASES["I"], Plane.X_H, (0.1, 0.3), (5, 6), t_max=100.0),
-    "in a rotating frame": MapSpec(POTENTIALS["Star cluster"], Plane.X_PX, -1.75, (6, 6), t_max=20.0),
-    "with a body": MapSpec(POTENTIALS["Hill"], Plane.X_PX, -2.0, (6, 6), t_max=20.0),
+    "II": MapSpec(CASES["II"], Plane.X_PX, 0.24, (5, 5), t_max=100.0),
+    "energies": MapSpec(CASES["I"], Plane.X_H, (0.1, 0.3), (4, 5), t_max=100.0),
+    "in a rotating frame": MapSpec(POTENTIALS["Star cluster"], Plane.X_PX, -1.75, (5, 5), t_max=20.0),
+    "with a body": MapSpec(POTENTIALS["Hill"], Plane.X_PX, -2.0, (5, 5), t_max=20.0),
 }
 
 
