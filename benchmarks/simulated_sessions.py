@@ -16,6 +16,7 @@ from typing import Any
 from urllib.parse import parse_qsl, urljoin
 
 from tornado.httpclient import AsyncHTTPClient, HTTPClientError
+from tornado.simple_httpclient import HTTPTimeoutError
 
 from app.server.admission import RETRY_SECONDS
 from engine import Plane
@@ -31,6 +32,9 @@ POLL_SECONDS = 0.05
 PAUSE_SECONDS = 1.0, 5.0
 FRAME_TIMEOUT_SECONDS = 30.0
 """Longest permitted wait for a frame; longer waits are errors."""
+
+ANSWER_SECONDS = 60.0
+"""Longest permitted wait for the answer to a request."""
 
 ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
 """Actions and their weights."""
@@ -234,10 +238,13 @@ class SimulatedSession:
         """Whether the page is connected."""
         return self._reader is not None and not self._reader.done()
 
-    async def fetch(self, path: str) -> int:
-        """Request a path of the server as another visitor would, and return the status."""
+    async def fetch(self, path: str) -> None:
+        """Request a path of the server as another visitor would, and wait for the answer."""
         address = urljoin(self._address, path)
-        return (await AsyncHTTPClient().fetch(address, raise_error=False, request_timeout=60.0, **self._options)).code
+        try:
+            await AsyncHTTPClient().fetch(address, raise_error=False, request_timeout=ANSWER_SECONDS, **self._options)
+        except HTTPTimeoutError:
+            self._record.errors.append(f"no answer within {ANSWER_SECONDS:g} s")
 
     async def connect(self, token: str) -> None:
         """Open a WebSocket with this token, which the server may refuse, wait for the first message, and close the WebSocket."""

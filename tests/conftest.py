@@ -24,10 +24,10 @@ from engine.integrator.jit.compiled_operations import compiled_operations
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-# Of two processes that import the same libraries at the same time, each compiles them all: the second begins with the last ones.
-if os.environ.get("PYTEST_XDIST_WORKER") == "gw1":
-    for library in ("sympy", "matplotlib.pyplot", "distributed", "xarray", "scipy.stats"):
-        importlib.import_module(library)
+# Of processes that import the same libraries at the same time, each compiles them all: each begins with others.
+FIRST = {"gw1": ("sympy", "matplotlib.pyplot", "scipy.stats"), "gw2": ("zarr", "distributed", "xarray")}
+for library in FIRST.get(os.environ.get("PYTEST_XDIST_WORKER", ""), ()):
+    importlib.import_module(library)
 
 # Servers under test refuse no page, however busy the machine.
 os.environ.setdefault("ESCAPE_EXPLORER_CORES_PER_PAGE", "0.001")

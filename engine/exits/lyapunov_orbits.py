@@ -215,7 +215,7 @@ class _SearchError(Exception):
     """No Lyapunov orbit was found, or the orbit found cannot be used as an exit."""
 
 
-@functools.lru_cache(maxsize=4096)
+@functools.lru_cache(maxsize=1024)
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """Return the orbits of a potential in units of its well."""
     if potential.rotation:

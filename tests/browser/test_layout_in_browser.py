@@ -203,12 +203,12 @@ def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, wid
     assert x_high - x_low == pytest.approx(high - low)
 
 
-def test_nothing_is_wider_than_a_phone_at_twice_the_size_of_letters(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(420, 850, QUICK, touch=True)
-    explorer.page.evaluate("document.documentElement.style.fontSize = '200%'")
-    expect(explorer.button("▶ Play")).to_be_in_viewport(ratio=1)
-    assert explorer.page.evaluate("document.documentElement.scrollWidth") == 420
-    assert explorer.page.evaluate(_COVERED) == [[]]
+def test_nothing_is_wider_than_a_phone_at_twice_the_size_of_letters(phone: ExplorerPage) -> None:
+    phone.page.evaluate("document.documentElement.style.fontSize = '200%'")
+    expect(phone.button("▶ Play")).to_be_in_viewport(ratio=1)
+    assert phone.page.evaluate("document.documentElement.scrollWidth") == 420
+    assert phone.page.evaluate(_COVERED) == [[]]
+    phone.page.evaluate("document.documentElement.style.fontSize = ''")
 
 
 def test_the_text_of_a_pixel_stands_beside_the_maps(wide: ExplorerPage) -> None:

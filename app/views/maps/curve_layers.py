@@ -19,7 +19,7 @@ from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, LineColours, Palette
 
 # Number of maps whose curves are cached.
-_CACHED_MAPS = 128
+_CACHED_MAPS = 64
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
 
