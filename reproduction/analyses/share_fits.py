@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from scipy import optimize, special
 
-from reproduction.analyses.published_fits import HyperbolicTangent, Polynomial, ShareCurve
+from engine.results import Sweep
+from reproduction.analyses.published_fits import PAPER_FITS, HyperbolicTangent, Polynomial, ShareCurve
 
 _CONFIDENCE = 0.95
 # Shares are limited to this distance from 0 and 1 for the initial guess, where the inverse of the curve diverges.
@@ -73,6 +74,39 @@ class ShareFit:
     def determined(self) -> bool:
         """Whether the data determine the curve."""
         return all(np.isfinite(value) for value in self.curve.parameters.values())
+
+
+@dataclass(frozen=True, eq=False)
+class CaseFit:
+    """Computed shares of a case on (x, px), with both fitted curves.
+
+    Attributes
+    ----------
+    name
+        Name of the share.
+    h, shares
+        (m,) energies, and the share at each energy.
+    published
+        The curve of the paper.
+    fitted
+        The new fit.
+    """
+
+    name: str
+    h: np.ndarray
+    shares: np.ndarray
+    published: ShareCurve
+    fitted: ShareFit
+
+
+def fit_case(case: str, curves: Sweep) -> tuple[CaseFit, CaseFit]:
+    """Return the fits of Ne/N0 and of Nde/N0 to the shares of a case."""
+    h, paper = curves.values, PAPER_FITS[case]
+    escaped, direct = curves["share"][:, 1:].sum(axis=1), curves["direct_share"]
+    return (
+        CaseFit("Ne/N0", h, escaped, paper.escaped, fit_escape_shares(h, escaped)),
+        CaseFit("Nde/N0", h, direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree)),
+    )
 
 
 def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
