@@ -12,6 +12,9 @@ from engine import Execution, Plane, Potential, Slice
 from engine.slices.default_window import default_window
 from engine.slices.portable_system import PortableSystem, make_portable_system
 
+EXIT_NUMBER_DISTANCE = 0.86
+"""Distance of the number of an exit from the origin, as a share of the distance of the middle of the exit."""
+
 # Numbers of energies with a tabulated window: below the escape energy, where windows change slowly, and above it.
 _ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13
 
@@ -41,7 +44,8 @@ class BrowserSystem:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the system in the form of `System` in modules/engine/system.js, with its module and its windows."""
-        return {**self.portable.to_dict(), "key": self.key, "module": self.portable.module, "windows": self.windows}
+        own = {"key": self.key, "module": self.portable.module, "windows": self.windows, "numberDistance": EXIT_NUMBER_DISTANCE}
+        return {**self.portable.to_dict(), **own}
 
 
 def system_key(potential: Potential) -> str:
@@ -68,7 +72,7 @@ def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, flo
             if windows:
                 break
             continue
-        windows[energy] = [window.x_low, window.x_high, window.ordinate_low, window.ordinate_high]
+        windows[energy] = list(window.edges)
     return {"energies": list(windows), "windows": list(windows.values())}
 
 

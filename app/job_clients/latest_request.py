@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from collections import deque
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -14,37 +16,90 @@ from engine.jobs.subscription import Subscription
 Locked = Callable[[Callable[..., None]], Callable[..., None]]
 """Wraps a function so that any thread may call it: the call returns at once, and the function runs under the session's lock."""
 
+SKIPPED = object()
+"""What `convert` returns for a result that is not shown."""
+
 
 class LatestRequest:
-    """Passes the results of the latest job to `show(result)`, and an error to `fail(sentence)`, both under the session's lock."""
+    """Requests the results of the latest job.
 
-    def __init__(self, jobs: JobSubmitter, show: Callable[[Any], None], fail: Callable[[str], None], locked: Locked) -> None:
-        self._jobs, self._show, self._fail = jobs, show, fail
+    Parameters
+    ----------
+    jobs
+        Computes the results.
+    show, fail
+        Show each result, partial or final, and say in a sentence why there is none, under the session's lock.
+    locked
+        Wraps a function to run under the session's lock; it may run only the latest of several waiting calls.
+    convert
+        Makes what is shown from a result, or `SKIPPED`, on the thread of the job. A ValueError counts as an error of the job.
+    begin
+        Is told of each job that is requested.
+    """
+
+    def __init__(
+        self,
+        jobs: JobSubmitter,
+        show: Callable[[Any], None],
+        fail: Callable[[str], None],
+        locked: Locked,
+        *,
+        convert: Callable[[Any], Any] = lambda result: result,
+        begin: Callable[[Job[Any]], None] = lambda job: None,
+    ) -> None:
+        self._jobs, self._show, self._fail, self._convert, self._begin = jobs, show, fail, convert, begin
+        self._handle_later = locked(self._handle)
         self._job: Job[Any] | None = None
-        self._subscription: Subscription | None = None
-        self._deliver = locked(self._on_result)
+        # The jobs that are not requested yet.
+        self._next: deque[Job[Any]] = deque()
+        self._subscriptions: list[Subscription] = []
+        # Results of requests with earlier numbers are dropped.
+        self._number = 0
+        self._number_lock = threading.RLock()
 
-    def submit(self, job: Job[Any]) -> None:
-        """Request the result of a job, unless the job is requested already."""
-        if job == self._job:
+    def submit(self, *jobs: Job[Any]) -> None:
+        """Request the result of the last of some jobs, each of which needs the previous ones, unless it is requested already."""
+        if jobs[-1] == self._job:
             return
         self.cancel()
-        self._job = job
-        self._subscription = self._jobs.request(job, partial(self._deliver, job), partial(self._deliver, job))
+        self._job, self._next = jobs[-1], deque(jobs)
+        self._request_next()
 
     def cancel(self) -> None:
         """Cancel the current request, if any."""
+        with self._number_lock:
+            self._number += 1
         self._job = None
-        if self._subscription is not None:
-            self._subscription.cancel()
-            self._subscription = None
+        for subscription in self._subscriptions:
+            subscription.cancel()
+        self._subscriptions.clear()
 
-    def _on_result(self, job: Job[Any], result: Any) -> None:
-        if job != self._job:
+    def _request_next(self) -> None:
+        job = self._next.popleft()
+        receive = partial(self._receive, self._number, not self._next)
+        self._begin(job)
+        self._subscriptions.append(self._jobs.request(job, receive, receive))
+
+    def _receive(self, number: int, is_last: bool, result: Any) -> None:
+        """Take a result or an error of a job, on any thread."""
+        if is_last and not isinstance(result, Exception):
+            try:
+                result = self._convert(result)
+            except ValueError as error:
+                result = error
+        # An outdated call could replace the only waiting call of the session.
+        with self._number_lock:
+            if number == self._number and result is not SKIPPED:
+                self._handle_later(number, is_last, result)
+
+    def _handle(self, number: int, is_last: bool, result: Any) -> None:
+        if number != self._number:
             return
         if isinstance(result, Exception):
             # The same job may be submitted again.
-            self._job = None
+            self.cancel()
             self._fail(sentence(result))
-        else:
+        elif is_last:
             self._show(result)
+        else:
+            self._request_next()

@@ -8,15 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from app.job_clients.latest_request import LatestRequest
+from app.job_clients.map_requests import jobs_of_map
 from app.session.context import SessionContext
 from app.state.system_review import review_job
 from app.state.view import View
 from app.views.maps.map_plots import MapsView
-from engine import EscapeMap, Fate
+from engine import EscapeMap, Fate, MapSpec
 from engine.foundations.wording import format_share, format_whole
-from engine.jobs.job import Job, Queue
-from engine.sweeps.map_jobs import map_job, members_job
-from engine.sweeps.warmup import is_ready_for_maps, prepare_for_maps
 from engine.systems.review.potential_review import SystemReview
 from plots.texts.accepted_potentials import refusal
 
@@ -48,23 +46,11 @@ class ComparisonPresenter:
         self._map: EscapeMap | None = None
         self._other_map: EscapeMap | None = None
         self._other_review: SystemReview | None = None
-        # The last job that prepares a map, and the last such job that has finished.
-        self._preparation: Job[None] | None = None
-        self._finished_preparation: Job[None] | None = None
         self._review = LatestRequest(context.jobs, self._take_review, self._refuse_system, context.locked)
-        self._request = LatestRequest(context.jobs, self._take_result, self._fail, context.locked)
+        self._request = LatestRequest(context.jobs, self._show, self._fail, context.locked)
         self._state.param.watch(lambda event: self._restart(), "compared")
         context.results.param.watch(lambda event: self._follow_map(context.results.whole_map), "frame")
         self._continue()
-
-    def compare(self, on: bool) -> None:
-        """Compare later views with the present view in the same window, or end the comparison."""
-        state = self._state
-        if not on:
-            state.compared = None
-            return
-        window = state.find_window() if is_ready_for_maps(state.potential) else state.window
-        state.param.update(compared=state.view, window=window)
 
     def swap_views(self) -> None:
         """Exchange the view of the controls and the other view."""
@@ -81,65 +67,39 @@ class ComparisonPresenter:
             self._continue()
             self._describe()
 
-    def close(self) -> None:
-        """Cancel the requests at the end of the session."""
-        self._review.cancel()
-        self._request.cancel()
-
     def _restart(self) -> None:
         self._other_map = None
         self._maps.show_compared(None)
         self._say("")
-        if self._state.compared is None:
-            self.close()
-        else:
-            self._continue()
+        self._review.cancel()
+        self._request.cancel()
+        self._continue()
 
     def _continue(self) -> None:
-        """Request what is missing next: the review of the other system, its kernels, its potentials, or its map."""
-        view = self._state.compared
+        """Request what is missing next: the review of the other system, or its map."""
+        view, reviewed = self._state.compared, self._other_review
         if view is None:
             return
-        if self._other_review is None or self._other_review.system != view.system:
+        if reviewed is None or reviewed.system != view.system:
             self._review.submit(review_job(view.system))
-        elif (problem := refusal(self._other_review)) is not None:
+        elif (problem := refusal(reviewed)) is not None:
             self._refuse_system(problem)
-        elif self._map is None:
-            return
-        elif not is_ready_for_maps(self._other_review.potential):
-            self._prepare(Job(prepare_for_maps, (self._other_review.potential,), queue=Queue.COMPILATION))
-        else:
-            self._request_map(view, self._other_review, self._map)
+        elif self._map is not None:
+            self._request_map(view, reviewed, self._map.spec)
 
-    def _request_map(self, view: View, reviewed: SystemReview, frame: EscapeMap) -> None:
+    def _request_map(self, view: View, reviewed: SystemReview, like: MapSpec) -> None:
+        """Request the map of the other view for the pixels of a map."""
         try:
             spec = view.map_spec(reviewed)
-            like = frame.spec
-            job = map_job(replace(spec, resolution=like.resolution, window=like.find_window(), t_max=like.t_max))
+            spec = replace(spec, resolution=like.resolution, window=like.find_window(), t_max=like.t_max)
         except ValueError as error:
             self._fail(str(error))
-            return
-        members = members_job(spec.plane.parameter)
-        if members is not None and members != self._finished_preparation:
-            self._prepare(members)
         else:
-            self._request.submit(job)
-
-    def _prepare(self, job: Job[None]) -> None:
-        self._preparation = job
-        self._request.submit(job)
+            self._request.submit(*jobs_of_map(spec))
 
     def _take_review(self, reviewed: SystemReview) -> None:
         self._other_review = reviewed
         self._continue()
-
-    def _take_result(self, result: EscapeMap | None) -> None:
-        """Show the other map, or continue after its preparation, which has no result."""
-        if result is None:
-            self._finished_preparation = self._preparation
-            self._continue()
-        else:
-            self._show(result)
 
     def _refuse_system(self, problem: str) -> None:
         """End the comparison with a view whose system is refused."""

@@ -20,17 +20,13 @@ from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.integrator.bound_kernels import is_generated
 from engine.integrator.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
 from engine.integrator.source.recurrence import code_digest
-from engine.maps.analyses.descriptors import compute_lagrangian_descriptor
-from engine.maps.analyses.regularity import compute_regularity
 from engine.maps.compute import compute_map
-from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.propagation.section_points import find_section_points
 from engine.slices.planes import SECTION
 from engine.systems.compiled import kernels_of
 from engine.systems.known_potentials import POTENTIALS
 from engine.systems.potential import Potential
-from engine.trajectories.stable_manifolds import find_stable_manifolds
 
 # Integration time, in units of the well, of the calls that trigger compilation.
 _T_MAX = 10.0
@@ -100,7 +96,8 @@ def prepare_for_maps(potential: Potential) -> None:
     if is_ready_for_maps(potential):
         return
     energy = _open_energy(potential)
-    _for_maps.run(lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy))
+    spec = small_map(potential, energy)
+    _for_maps.run(lambda: find_lyapunov_orbits(potential, energy), lambda: compute_map(spec, execution=_EXECUTION))
 
 
 def prepare_for_evidence(potential: Potential) -> None:
@@ -121,27 +118,6 @@ def prepare_for_evidence(potential: Potential) -> None:
     )
 
 
-def prepare_for_analyses(potential: Potential) -> None:
-    """Compile the kernels of regularity, descriptors and stable manifolds, or load them from the cache.
-
-    Parameters
-    ----------
-    potential
-        Any `Potential` with an exit.
-    """
-    prepare_for_evidence(potential)
-    call_after_maps(
-        lambda: compute_lagrangian_descriptor(_compute_small_map(potential, _open_energy(potential)), execution=_EXECUTION)
-    )
-    if potential.channels and not potential.gaps:
-        # Below the escape energy all orbits are bounded, as `compute_regularity` requires.
-        call_after_maps(
-            lambda: compute_regularity(_compute_small_map(potential, potential.well.energy_at(0.5)), execution=_EXECUTION)
-        )
-    if potential.channels and not potential.rotation:
-        call_after_maps(lambda: find_stable_manifolds(potential, potential.well.energy_at(1.01), images=1, execution=_EXECUTION))
-
-
 def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> None:
     """Exempt the kernels of the catalogue from the limit on compiled code.
 
@@ -154,9 +130,9 @@ def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> N
     operations.reserve(code_digest(well.form.definition, well.well.setting) for well in wells)
 
 
-def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
-    spec = MapSpec(potential, SECTION, energy, (2, 2), t_max=_T_MAX * potential.units.time)
-    return compute_map(spec, execution=_EXECUTION)
+def small_map(potential: Potential, energy: float) -> MapSpec:
+    """Return the request of a map that takes little time once its kernels are compiled."""
+    return MapSpec(potential, SECTION, energy, (2, 2), t_max=_T_MAX * potential.units.time)
 
 
 def _open_energy(potential: Potential) -> float:

@@ -16,14 +16,14 @@ import xarray as xr
 
 from cli.main import FAILED, main
 from engine import CASES
-from engine.sweeps.warmup import prepare_for_analyses, prepare_for_maps
+from engine.sweeps.warmup import prepare_for_evidence, prepare_for_maps
 from tests.forked import Finished, run
 
 
 def limited_command(limit: int, folder: Path, arguments: tuple[str, ...]) -> None:
     # Kernels that cannot be stored give a warning.
     prepare_for_maps(CASES["I"])
-    prepare_for_analyses(CASES["I"])
+    prepare_for_evidence(CASES["I"])
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     # Bytecode cut off at the limit would break every later import.
     sys.dont_write_bytecode = True

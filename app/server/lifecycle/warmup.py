@@ -14,15 +14,18 @@ from app.runtime.process_state import ProcessState
 from app.views.analysis import statistics
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential, integrate_orbit, start_states
+from engine.foundations.execution import DEFAULT_EXECUTION
 from engine.integrator.portable_kernels import kernel_module
+from engine.jobs.job import run_job
 from engine.slices.planes import SECTION
 from engine.sweeps.warmup import (
     call_after_maps,
-    prepare_for_analyses,
     prepare_for_evidence,
     prepare_for_maps,
     reserve_catalogue,
+    small_map,
 )
+from plots.layers.table import LAYERS
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")
@@ -34,11 +37,21 @@ def prepare_for_orbits(potential: Potential) -> None:
     call_after_maps(lambda: integrate_orbit(potential, start, 10.0 * potential.units.time))
 
 
+def prepare_for_layers(potential: Potential) -> None:
+    """Compile the kernels of the layers, or load them from the cache."""
+    execution = DEFAULT_EXECUTION.in_this_thread()
+    settings = {name: 1 for name, layer in LAYERS.items() if layer.count is not None}
+    # Some layers concern orbits that escape, and others bounded orbits: below the escape energy, all orbits are bounded.
+    for spec in (small_map(potential, potential.well.energy_at(multiple)) for multiple in (0.5, 1.01)):
+        jobs = [layer.job(spec, settings) for layer in LAYERS.values() if not layer.refusal(spec)]
+        call_after_maps(*(partial(run_job, job, execution, {}) for job in jobs))
+
+
 _PURPOSES: Mapping[str, Callable[[Potential], None]] = {
     "maps": prepare_for_maps,
     "evidence": prepare_for_evidence,
     "orbits": prepare_for_orbits,
-    "analyses": prepare_for_analyses,
+    "layers": prepare_for_layers,
 }
 
 
@@ -54,7 +67,7 @@ def _prepare_cases(*purposes: str) -> dict[str, Callable[[], object]]:
 STEPS: Mapping[str, Callable[[], object]] = {
     **_prepare_cases("maps"),
     "the kernels of browsers": kernel_module,
-    **_prepare_cases("evidence", "orbits", "analyses"),
+    **_prepare_cases("evidence", "orbits", "layers"),
     "the panes of an orbit": orbit_plots.prepare,
     "the charts of statistics": statistics.prepare,
     "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,

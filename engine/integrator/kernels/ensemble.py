@@ -12,16 +12,8 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
-from engine.integrator.kernels.events import (
-    DISC,
-    SHAPE,
-    crossed_exit,
-    find_exit_time,
-    find_zero,
-    passed_exit,
-    series_slope,
-    series_value,
-)
+from engine.integrator.kernels.events import crossed_exit, find_exit_time, find_zero, passed_exit, series_slope, series_value
+from engine.integrator.kernels.exit_geometry import ends_inside
 from engine.integrator.kernels.propagate import VECTOR
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
@@ -62,7 +54,7 @@ class Ensemble(NamedTuple):
 def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, curves, ensemble):
     """Advance each orbit until its step contains `time`, unless it has left.
 
-    beyond: time for which orbits are followed beyond an exit that is not a disc; gates (exits, 3) and curves (exits, columns):
+    beyond: time for which orbits are followed beyond an exit, except into a body; gates (exits, 3) and curves (exits, columns):
     see `engine.integrator.kernels.propagate.Exits`.
     """
     count = ensemble.begin.shape[0]
@@ -196,7 +188,7 @@ def _keep_step(now, new, flags, x_jet, y_jet, i, beyond, gates, curves, ensemble
     ensemble.leaving[orbit] = channel
     if channel > 0:
         ensemble.escape_time[orbit] = now[TIME_ROW, i] + find_exit_time(x_jet, y_jet, i, size, curves[channel - 1])
-        follows = 0.0 if curves[channel - 1, SHAPE] == DISC else beyond
+        follows = 0.0 if ends_inside(curves[channel - 1]) else beyond
         ensemble.last[orbit] = ensemble.escape_time[orbit] + follows
     if now[1, i] < 0.0 and new[1, i] >= 0.0:
         tau = find_zero(y_jet, i, 0.0, size)

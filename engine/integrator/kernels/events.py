@@ -1,39 +1,30 @@
 """Events within one step, located in its dense output: exits and crossings of the section y = 0.
 
-An exit is a place where orbits end: a curve or line across a channel, the edge of a disc around a centre, or the escape circle.
-It is a row of numbers, of which the first have the same meaning for all shapes. A disc has its centre as origin and its radius as
-half width; the escape circle has its radius as half width.
-
-In a well that does not rotate, an exit is the path of a Lyapunov orbit. The coordinates are u outward and q across, 90°
-counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit along its
-normal. The exit is the graph u = f(s) of a polynomial f, with s = (q − middle)/half_width ∈ [−1, 1]. Beyond its ends, which lie
-on the zero-velocity curve, straight lines continue the exit through the forbidden region, up to |s| = reach. A closed channel is
-a short straight line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame, an exit is a
-line u = c + a q², parallel to the ridge of V at the saddle.
-
 An orbit that has crossed the path of a Lyapunov orbit does not return. Any other exit can be crossed and recrossed within a step,
 so that the whole step is examined.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from engine.integrator.jit.decorator import subroutine
-
-# Columns of an exit.
-ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, SHAPE = range(8)
-MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
-
-# Values of the column SHAPE; orbits cannot return from a CURVE.
-CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
+from engine.integrator.kernels.exit_geometry import (
+    COEFFICIENTS,
+    HALF_WIDTH,
+    LINE,
+    ORIGIN_X,
+    ORIGIN_Y,
+    OUTWARD_X,
+    OUTWARD_Y,
+    REACH,
+    SHAPE,
+    ends_inside,
+    exit_distance,
+    is_circle,
+    position_across,
+)
 
 # Fates of an orbit or a start, besides the number, 1 or more, of the channel through which an orbit escaped.
 BOUNDED, FORBIDDEN, OUTSIDE, NOT_COMPUTED, FAILED = 0, -1, -2, -3, -4
-
-# Degree of the polynomial f, a sum of Chebyshev polynomials.
-CURVE_DEGREE = 40
-CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
 # Number of parts of a step that are examined in turn; within a part, ẏ is assumed to change its sign at most once.
 _PARTS = 8
@@ -44,46 +35,11 @@ _ROOT_ACCURACY = 1e-15
 
 
 @subroutine
-def position_across(x, y, curve):
-    """Return the coordinate s of a point; −1 and 1 are the ends of the exit."""
-    q = curve[OUTWARD_X] * (y - curve[ORIGIN_Y]) - curve[OUTWARD_Y] * (x - curve[ORIGIN_X])
-    return (q - curve[MIDDLE]) / curve[HALF_WIDTH]
-
-
-@subroutine
-def exit_height(s, curve):
-    """Return f(s) of an exit over a saddle, with the straight lines beyond its ends."""
-    beyond = 0.0
-    if s < -1.0:
-        beyond = curve[SLOPE_LOW] * (s + 1.0)
-        s = -1.0
-    elif s > 1.0:
-        beyond = curve[SLOPE_HIGH] * (s - 1.0)
-        s = 1.0
-    # Clenshaw's recurrence.
-    f = 0.0
-    last = 0.0
-    for k in range(CURVE_DEGREE, 0, -1):
-        f, last = 2.0 * s * f - last + curve[COEFFICIENTS + k], f
-    return s * f - last + curve[COEFFICIENTS] + beyond
-
-
-@subroutine
-def exit_distance(x, y, curve):
-    """Return the distance of (x, y) from an exit, along the channel or the radius: positive outside, negative inside."""
-    if curve[SHAPE] >= DISC:
-        radius = np.sqrt((x - curve[ORIGIN_X]) ** 2 + (y - curve[ORIGIN_Y]) ** 2)
-        return curve[HALF_WIDTH] - radius if curve[SHAPE] == DISC else radius - curve[HALF_WIDTH]
-    u = curve[OUTWARD_X] * (x - curve[ORIGIN_X]) + curve[OUTWARD_Y] * (y - curve[ORIGIN_Y])
-    return u - exit_height(position_across(x, y, curve), curve)
-
-
-@subroutine
 def crossed_exit(x0, y0, x1, y1, curves, gates):
     """Return the number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1); 0 for none."""
     for k in range(curves.shape[0]):
         curve = curves[k]
-        if curve[SHAPE] < DISC and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
+        if not is_circle(curve) and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
             continue
         after = exit_distance(x1, y1, curve)
         if not after > 0.0:
@@ -91,7 +47,7 @@ def crossed_exit(x0, y0, x1, y1, curves, gates):
         before = exit_distance(x0, y0, curve)
         if before > 0.0:
             continue
-        if curve[SHAPE] >= DISC:
+        if is_circle(curve):
             return k + 1
         s0 = position_across(x0, y0, curve)
         s1 = position_across(x1, y1, curve)
@@ -223,7 +179,7 @@ def _exit_rate(x_jet, y_jet, i, tau, curve):
         along = curve[OUTWARD_X] * vx + curve[OUTWARD_Y] * vy
         return along - slope * (curve[OUTWARD_X] * vy - curve[OUTWARD_Y] * vx)
     rate = (series_value(x_jet, i, tau) - curve[ORIGIN_X]) * vx + (series_value(y_jet, i, tau) - curve[ORIGIN_Y]) * vy
-    return -rate if curve[SHAPE] == DISC else rate
+    return -rate if ends_inside(curve) else rate
 
 
 @subroutine
@@ -253,7 +209,7 @@ def _find_excursion(x_jet, y_jet, i, duration, curve):
 @subroutine
 def _is_beyond(x, y, curve):
     """Return whether a point is beyond an exit and, for a line, within its reach."""
-    return exit_distance(x, y, curve) > 0.0 and (curve[SHAPE] >= DISC or abs(position_across(x, y, curve)) <= curve[REACH])
+    return exit_distance(x, y, curve) > 0.0 and (is_circle(curve) or abs(position_across(x, y, curve)) <= curve[REACH])
 
 
 @subroutine

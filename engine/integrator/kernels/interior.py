@@ -15,15 +15,14 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_potential_slopes
-from engine.integrator.kernels.events import (
+from engine.integrator.kernels.exit_geometry import (
     BEARING_X,
     BEARING_Y,
-    CIRCLE,
-    CLOSED,
-    DISC,
     REACH,
-    SHAPE,
+    ends_inside,
     exit_distance,
+    is_circle,
+    is_open_channel,
     position_across,
 )
 
@@ -46,7 +45,7 @@ _ENERGY_MARGIN = 1e-12
 _NO_SLOPE = 1e-9
 # Number of parts of a line to the origin.
 _PIECES = 32
-# Number of points on the edge of a disc at the origin.
+# Number of points on the edge of a body at the origin.
 _EDGE_POINTS = 64
 
 
@@ -102,7 +101,7 @@ def _expression_slopes(generated, x, y):
 def _expression_is_below(generated, x, y, level):
     """Return whether V on the line from the well to (x, y) is at most a level, by Bernstein coefficients of cubics.
 
-    The line begins at the origin, or at the edge of the disc around a centre at the origin.
+    The line begins at the origin, or at the edge of a body at the origin.
     """
     _, _, inner_radius = generated
     first = inner_radius / max(inner_radius, np.sqrt(x * x + y * y)) if inner_radius > 0.0 else 0.0
@@ -126,7 +125,7 @@ def _crosses_exits(x0, y0, x1, y1, curves):
     odd = False
     for k in range(curves.shape[0]):
         curve = curves[k]
-        if curve[SHAPE] == CLOSED or curve[SHAPE] >= DISC:
+        if not is_open_channel(curve):
             continue
         s0 = position_across(x0, y0, curve)
         s1 = position_across(x1, y1, curve)
@@ -200,19 +199,18 @@ def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, 
         largest = -np.inf
         for k in range(row.shape[0]):
             towards = row[k, BEARING_X] * x[i] + row[k, BEARING_Y] * y[i]
-            if row[k, SHAPE] < DISC and towards > largest:
+            if not is_circle(row[k]) and towards > largest:
                 largest = towards
                 outside[i] = k + 1
 
 
 @subroutine
 def _find_circle(x, y, curves):
-    """Return the number of the circle beyond which a point lies, 0 for none; a disc takes precedence over an escape circle."""
+    """Return the number of the circle beyond which a point lies, 0 for none; a body takes precedence over an escape circle."""
     found = 0
-    for shape in (CIRCLE, DISC):
-        for k in range(curves.shape[0]):
-            if curves[k, SHAPE] == shape and exit_distance(x, y, curves[k]) > 0.0:
-                found = k + 1
+    for k in range(curves.shape[0]):
+        if is_circle(curves[k]) and exit_distance(x, y, curves[k]) > 0.0 and (found == 0 or ends_inside(curves[k])):
+            found = k + 1
     return found
 
 
@@ -221,7 +219,7 @@ def _has_exits(curves):
     """Return whether there are exits over saddles; with an escape circle there are none."""
     found = False
     for k in range(curves.shape[0]):
-        found |= curves[k, SHAPE] < DISC and curves[k, REACH] >= 0.0
+        found |= not is_circle(curves[k]) and curves[k, REACH] >= 0.0
     return found
 
 
@@ -239,9 +237,9 @@ def find_outside_polynomial(powers, coefficients, bernstein, work, x, y, energy,
 
 @kernel
 def find_outside(potential_slopes, coefficients, inner_radius, x, y, energy, curves, curve_row, outside):
-    """Apply `_find_outside` to an expression; inner_radius: radius of the disc around a centre at the origin, or 0.0."""
+    """Apply `_find_outside` to an expression; inner_radius: radius of a body at the origin, or 0.0."""
     generated = (potential_slopes, coefficients, inner_radius)
-    # `bottom` is the lowest value of V on the edge of the disc; a path below it cannot lead to the disc.
+    # `bottom` is the lowest value of V on the edge of the body; a path below it cannot lead there.
     bottom = np.inf
     for k in range(_EDGE_POINTS):
         angle = 2.0 * np.pi * k / _EDGE_POINTS

@@ -10,8 +10,7 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_potential_value
-from engine.integrator.kernels.events import CURVE, DISC, HALF_WIDTH, OUTWARD_X, OUTWARD_Y, SHAPE
-from engine.integrator.kernels.exit_curves import exit_point
+from engine.integrator.kernels.exit_geometry import CURVE, HALF_WIDTH, OUTWARD_X, OUTWARD_Y, SHAPE, exit_point, is_open_channel
 
 BEFORE_EXIT = 9.0
 """Orbits near the edge of a tube start this long before they reach the exit, in units of the well."""
@@ -66,8 +65,7 @@ def draw_at_exits(potential_value, coefficients, curves, energy, of_tubes, seed,
     flux = np.zeros(curves.shape[0] * _PARTS)
     total = 0.0
     for exit in range(curves.shape[0]):
-        shape = curves[exit, SHAPE]
-        is_used = shape == CURVE if of_tubes else CURVE <= shape < DISC
+        is_used = curves[exit, SHAPE] == CURVE if of_tubes else is_open_channel(curves[exit])
         for part in range(_PARTS):
             if is_used:
                 x, y, along_x, along_y = _point_and_slope(curves[exit], _middle(part))

@@ -73,3 +73,16 @@ def test_an_error_gives_a_message_and_allows_the_same_request_again(client: Clie
         client.wait()
     assert len(client.problems) == 2
     assert "t_max=-1.0" in client.problems[0]
+
+
+def test_of_several_jobs_only_the_last_is_shown_once_the_others_have_finished(client: Client) -> None:
+    client.request.submit(replace(ORBIT, arguments=(*ORBIT.arguments[:2], 20.0)), ORBIT)
+    client.wait()
+    assert [result.t[-1] for result in client.results] == [50.0]
+
+
+def test_a_job_after_one_that_fails_is_not_requested(client: Client) -> None:
+    client.request.submit(replace(ORBIT, arguments=(*ORBIT.arguments[:2], -1.0)), LONG_ORBIT)
+    client.wait()
+    assert "t_max=-1.0" in client.problems[0]
+    assert client.jobs.in_flight == 0

@@ -7,13 +7,7 @@ import threading
 from engine import Potential
 from engine.integrator.bound_kernels import load_kernels
 from engine.integrator.jit.compiled_operations import compiled_operations
-from engine.sweeps.warmup import (
-    Compilations,
-    is_ready_for_maps,
-    prepare_for_analyses,
-    prepare_for_evidence,
-    prepare_for_maps,
-)
+from engine.sweeps.warmup import Compilations, is_ready_for_maps, prepare_for_evidence, prepare_for_maps
 from tests.waiting import SECONDS
 
 # A structure that no other test compiles.
@@ -23,10 +17,10 @@ OTHER = Potential("other", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3
 def test_kernels_are_compiled_in_the_order_of_need() -> None:
     kernels = load_kernels(OTHER.terms, OTHER.channels)
     compiled = []
-    for prepare in (prepare_for_maps, prepare_for_evidence, prepare_for_analyses):
+    for prepare in (prepare_for_maps, prepare_for_evidence):
         prepare(OTHER)
-        compiled.append({name for name in ("step", "jets", "fixed_step", "tangent") if getattr(kernels, name).signatures})
-    assert compiled == [{"step", "jets"}, {"step", "jets", "fixed_step"}, {"step", "jets", "fixed_step", "tangent"}]
+        compiled.append({name for name in ("step", "jets", "fixed_step") if getattr(kernels, name).signatures})
+    assert compiled == [{"step", "jets"}, {"step", "jets", "fixed_step"}]
 
 
 def test_maps_go_before_background_compilation() -> None:

@@ -7,8 +7,6 @@ import {describeSlice, energyAxis, placeWindow} from "./starts.js"
 
 /** Numbers of points along an exit over a saddle, and along a circle. */
 const [EXIT_POINTS, CIRCLE_POINTS] = [41, 121]
-/** Distance of the number of an exit from the origin, as a share of the distance of the middle of the exit. */
-const LABEL_SHARE = 0.86
 
 /** Traces limiting curves. All curves of a window use the same values of V. */
 export class LimitingCurves {
@@ -55,7 +53,7 @@ const requiredEnergies = (integrator, slice, window) =>
  * @returns {{channel: number, xs: number[], ys: number[], label: [number, number]}[]}
  */
 export function exitLines(integrator, energy) {
-  const {units} = integrator.system
+  const {units, numberDistance} = integrator.system
   return integrator.temporarily(() => {
     const exits = new Exits(integrator, [energy / units.energy])
     const open = exits.list().filter(({isOpen}) => isOpen)
@@ -64,7 +62,7 @@ export function exitLines(integrator, energy) {
       const positions = Array.from({length: count}, (_, i) => (2 * i) / (count - 1) - 1)
       const [xs, ys] = exits.points(exit, positions).map(values => values.map(value => value * units.length))
       const middle = count >> 1
-      const share = exit.isCircle ? NaN : LABEL_SHARE
+      const share = exit.isCircle ? NaN : numberDistance
       const label = /** @type {[number, number]} */ ([share * xs[middle], share * ys[middle]])
       return {channel: exit.number, xs, ys, label}
     })

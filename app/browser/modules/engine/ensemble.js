@@ -8,7 +8,7 @@ import {Exits} from "./exits.js"
 import {Integrator} from "./integrator.js"
 import {findAllEnds} from "./orbits.js"
 
-/** Time for which orbits are followed beyond an exit that is not a disc, in units of the well. */
+/** Time for which orbits are followed beyond an exit, except into a body, in units of the well. */
 const FOLLOWED_BEYOND = 1.5
 /** Number of orbits whose outcomes are found at a time. */
 const PORTION = 256

@@ -1,5 +1,5 @@
 // @ts-check
-/** Exits at given energies in the form of the kernels (see `engine/integrator/kernels/events.py`), and points of exits. */
+/** Exits at given energies in the form of the kernels (see `engine/integrator/kernels/exit_geometry.py`), and points of exits. */
 
 /**
  * An exit at one energy.
@@ -65,14 +65,11 @@ export class Exits {
    */
   list(row = 0) {
     const {shape, shapes} = this.#columns
-    return Array.from({length: this.count}, (_, k) => {
-      const curve = this.curves.at(row).at(k).values
-      return {
-        number: k + 1,
-        isOpen: curve[shape] !== shapes.closed,
-        isCircle: curve[shape] >= shapes.disc,
-      }
-    })
+    return this.#integrator.system.exits.map((exit, k) => ({
+      number: k + 1,
+      isOpen: this.curves.at(row).at(k).values[shape] !== shapes.closed,
+      isCircle: "row" in exit,
+    }))
   }
 
   /**

@@ -13,6 +13,7 @@
  * @property {ExitData[]} exits  one for each outcome: exits over saddles, then circles
  * @property {number[] | null} mirror  for each outcome, the number of its mirror image under x → −x; null without this symmetry
  * @property {{length: number, time: number, energy: number}} units
+ * @property {number} numberDistance  of an exit, from the origin, as a share of the distance of the middle of the exit
  * @property {Slice} space  the plane of the positions
  * @property {Slice} surface  all directions of the velocity at all places, with the angle as a third axis
  * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
@@ -36,7 +37,7 @@
  *
  * Number of columns of an exit, the column of its shape, and the codes of shapes.
  *
- * @typedef {{count: number, shape: number, shapes: Record<"closed" | "curve" | "line" | "disc" | "circle", number>}} ExitColumns
+ * @typedef {{count: number, shape: number, shapes: Record<"closed" | "curve" | "line", number>}} ExitColumns
  *
  * @typedef {object} WindowTable
  * @property {number[]} energies  rising, in units of the page

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from app.runtime.process_state import ProcessState
-from app.server.lifecycle.warmup import STEPS, start_warmup
+from app.server.lifecycle.warmup import STEPS, prepare_for_layers, start_warmup
 from app.state.view_state import ViewState
+from engine import Potential
+from engine.integrator.bound_kernels import load_kernels
 from tests.waiting import SECONDS
 
 
@@ -36,3 +38,13 @@ def test_shutdown_ends_the_warmup_before_the_next_step() -> None:
 def test_the_map_of_the_opened_page_comes_first() -> None:
     first, *_ = STEPS
     assert first == f"the kernels of case {ViewState().system.case} for maps"
+
+
+def test_layers_are_compiled_for_bounded_and_for_escaping_orbits() -> None:
+    # A structure that no other test compiles.
+    other = Potential("other", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (1, 2, 1e-3), (2, 3, 1e-3)))
+    kernels = load_kernels(other.terms, other.channels)
+    prepare_for_layers(other)
+    # Deviation vectors are computed for bounded orbits, and series for orbits that escape.
+    assert kernels.tangent.signatures
+    assert kernels.jets.signatures
