@@ -257,7 +257,7 @@ class SimulatedSession:
         """Show the view of a link, as the browser's Back does."""
         self._steps += 1
         entries = [["link", link], ["entry", 0], ["steps", self._steps]]
-        model = {"id": self._models["BrowserListener"]}
+        model = {"id": self._models["BrowserEvents"]}
         self._open_channel.emit("data_event", model=model, data={"type": "map", "entries": entries})
 
     def press(self, label: str) -> None:

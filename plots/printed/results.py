@@ -22,7 +22,7 @@ from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from plots.layers.layer import Layer
 from plots.layers.picture import ShownMap
-from plots.layers.table import LAYERS, TITLES, map_legend
+from plots.layers.table import LAYERS, map_legend
 from plots.pictures.charts import CURVE_PANELS, SHARES, is_measured
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
@@ -117,8 +117,7 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
     x, y = columns[chart.x], columns[chart.y]
     if chart.by_channel:
         axes.bar(list(map(str, x)), y, color=[palette.channels[channel - 1] for channel in x])
-        style_axes(axes)
-        label_axes(axes, chart.across, chart.up)
+        style_axes(axes, names=(chart.across, chart.up))
     else:
         shown = np.maximum(y, 10.0**-_MOST_DECADES) if "y" in chart.logarithmic else y
         draw_line(axes, x, shown, chart.across, chart.up, logarithmic=chart.logarithmic)
@@ -155,8 +154,6 @@ def _panel(axes: Axes, window: Window) -> Axes:
 
 @_draw.register
 def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str = "basins") -> None:
-    if picture not in TITLES:
-        raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
     panel = _panel(axes, result.spec.find_window())
     draw_picture(panel, result, picture, palette)
     legend = map_legend(picture, ShownMap.of(result, palette, {}))
@@ -195,9 +192,7 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
         x, y = (np.pad(path[result.fate == fate], ((0, 0), (0, 1)), constant_values=np.nan) for path in (result.x, result.y))
         axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
     axes.set_aspect("equal")
-    style_axes(axes)
-    label_axes(axes, "x", "y")
-    name_panel(axes, "Paths")
+    style_axes(axes, names=("x", "y"), title="Paths")
     _add_legend_below(axes, entries)
 
 
@@ -205,9 +200,7 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
 def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
     axes.plot(*result.half_path.T, color=palette.channels[result.channel - 1], linewidth=2.2)
     axes.set_aspect("equal", adjustable="datalim")
-    style_axes(axes)
-    label_axes(axes, "x", "y")
-    name_panel(axes, f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
+    style_axes(axes, names=("x", "y"), title=f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
 
 
 @_draw.register
@@ -221,9 +214,7 @@ def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     axes.set_xlim(window.x_low, window.x_high)
     axes.set_ylim(window.ordinate_low, window.ordinate_high)
     axes.set_aspect("equal")
-    style_axes(axes)
-    label_axes(axes, "x", "y")
-    name_panel(axes, f"{result.name}: escape energy {result.escape_energy:.6g}")
+    style_axes(axes, names=("x", "y"), title=f"{result.name}: escape energy {result.escape_energy:.6g}")
 
 
 @_draw.register

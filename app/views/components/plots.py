@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -167,12 +167,31 @@ class FigurePane(pn.pane.Bokeh):
         return super()._get_model(*arguments, **options)
 
 
-@contextmanager
-def batched_additions(plots: Sequence[figure]) -> Iterator[None]:
-    """Return a context in which Bokeh searches the models of the page once for all models that are added to the figures."""
-    document = plots[0].document if plots else None
-    with document.models.freeze() if document is not None else nullcontext():
-        yield
+class LaterGlyphs:
+    """Glyphs that are added to figures when they are first shown.
+
+    Parameters
+    ----------
+    add
+        Adds the glyphs to a figure.
+    """
+
+    def __init__(self, add: Callable[[figure], object]) -> None:
+        self._add = add
+        self._plots: list[figure] = []
+
+    def expect(self, plot: figure) -> None:
+        """Name a figure that will get the glyphs."""
+        self._plots.append(plot)
+
+    def draw(self) -> None:
+        """Add the glyphs to the figures that lack them."""
+        plots, self._plots = self._plots, []
+        document = plots[0].document if plots else None
+        # With the models frozen, Bokeh searches the page once for all new models.
+        with document.models.freeze() if document is not None else nullcontext():
+            for plot in plots:
+                self._add(plot)
 
 
 def set_range(edges: Range1d, low: float, high: float) -> None:

@@ -15,7 +15,7 @@ from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, breakable
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
 from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
 from engine import CASES, Plane, Potential, Slice
@@ -61,8 +61,6 @@ class ControlActions:
         Opens the choice of other potentials.
     choose_slice
         Opens the choice of other slices.
-    compare
-        Begins (True) or ends (False) the comparison with the present view.
     swap
         Exchanges the two views.
     lock_times
@@ -72,7 +70,6 @@ class ControlActions:
     play: Callable[[], None]
     choose_potential: Callable[[], None]
     choose_slice: Callable[[], None]
-    compare: Callable[[bool], None]
     swap: Callable[[], None]
     lock_times: Callable[[bool], None]
 
@@ -111,12 +108,12 @@ class Controls:
             label="Exact h",
             shown_event=SHOWN,
             sizing_mode="stretch_width",
-            css_classes=["half"],
+            css_classes=["half", "exact-energy"],
             margin=(0, 0, 0, 10),
         )
         self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
         self.layers = LayerSwitches(state)
-        self.comparison = ComparisonSwitch(state, actions.compare, actions.swap)
+        self.comparison = ComparisonSwitch(state, actions.swap)
         layers = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)
         state.param.watch(lambda *events: layers.rebuild(), ["layers", "compared"])
         self._folds = [Fold("Quality and colours", self._build_quality), layers]
@@ -129,7 +126,7 @@ class Controls:
         energy = [self.energy, self.ticks, self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
-    def begin_touch(self) -> None:
+    def _begin_touch(self) -> None:
         """Adapt to touch input: close sections, which leaves more room for the maps."""
         for fold in self._folds:
             fold.open(False)
@@ -167,6 +164,7 @@ class Controls:
         state.param.watch(lambda *events: self._follow_system(), "system")
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
         state.param.watch(lambda event: self._follow_plane(), "plane")
+        state.param.watch(lambda event: self._begin_touch(), "touch")
 
     def show_playing(self, playing: bool) -> None:
         """Label the button with its next action."""
@@ -222,10 +220,11 @@ class Controls:
         formula, _, _ = reviewed.formula.partition(";")
         mass = reviewed.potential.mass
         masses = [] if mass == 1.0 else [f"Masses {format_number(mass)}: H = (px² + py²)/{format_number(2.0 * mass)} + V"]
-        facts = "<br>".join([_outcomes(reviewed.potential), *masses, *([f"Slice {plane}"] if plane else [])])
+        facts = "<br>".join(["", *masses, *([f"Slice {plane}"] if plane else [])])
         self.facts.object = (
             f"<div title='H = (px² + py²)/2m + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
-            f"V = {escape_text(formula)}<br><span class='quiet'>{facts}</span></div>"
+            f"<span class='quiet'>{_outcomes(reviewed.potential)}</span><br>"
+            f"{escape_text(breakable(f'V = {formula}'))}<span class='quiet'>{facts}</span></div>"
         )
 
     def _follow_energy(self) -> None:
@@ -248,9 +247,9 @@ def _outcomes(potential: Potential) -> str:
     """Describe the ends of orbits, and the energy above which exits are open."""
     frame = f"rotates at Ω = {format_number(potential.rotation, 6)}; " if potential.rotation else ""
     if not potential.ends:
-        return f"{frame}{potential.channels} exits above h = {format_number(potential.escape_energy, 6)}"
+        return f"{frame}{potential.channels} exits above h = {format_number(potential.escape_energy)}"
     labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
-    opened = f"; exits open above h = {format_number(potential.escape_energy, 6)}" if potential.channels else ""
+    opened = f"; exits open above h = {format_number(potential.escape_energy)}" if potential.channels else ""
     return f"{frame}{labels}{opened}"
 
 

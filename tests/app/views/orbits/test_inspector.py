@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import panel as pn
 
+from app.browser.components.orbit_player import OrbitPlayer
 from app.state.view_state import ViewState
 from app.views.orbits.inspector import Inspector
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
-from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 
@@ -21,12 +21,12 @@ def do_nothing(*_: object) -> None:
 
 def test_each_figure_has_a_turn_of_the_event_loop_of_its_own() -> None:
     turns: list[Callable[[], None]] = []
-    actions = OrbitActions(*[do_nothing] * 5)
+    state, actions = ViewState(), OrbitActions(*[do_nothing] * 5)
     inspector = Inspector(
-        OrbitControls(ViewState(), actions),
-        Playback(do_nothing),
-        OrbitPlots(do_nothing),
-        SeparationPlot(),
+        OrbitControls(state, actions),
+        OrbitPlayer(do_nothing),
+        OrbitPlots(state, do_nothing),
+        SeparationPlot(state),
         lambda call: lambda: turns.append(call),
     )
 

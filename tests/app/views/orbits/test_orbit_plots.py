@@ -9,6 +9,7 @@ import pytest
 from bokeh.models import ColumnDataSource
 from bokeh.plotting import figure
 
+from app.state.view_state import ViewState
 from app.views.orbits.orbit_plots import OrbitPlots
 from engine import CASES, integrate_orbit
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves, restrict_curves
@@ -28,7 +29,7 @@ def drawings() -> list[OrbitCurves]:
 
 @pytest.fixture
 def plots() -> OrbitPlots:
-    return OrbitPlots(lambda interval: None)
+    return OrbitPlots(ViewState(), lambda interval: None)
 
 
 def figures(plots: OrbitPlots) -> dict[str, figure]:
