@@ -6,7 +6,7 @@ import {number} from "../numbers.js"
 /** Smallest share on the axis. */
 const LEAST = 1e-3
 /** Borders, in pixels. */
-const [LEFT, BOTTOM, TOP] = [34, 18, 6]
+const [LEFT, BOTTOM, TOP] = [40, 22, 6]
 /** Number of intervals of a line. */
 const POINTS = 240
 
@@ -30,9 +30,11 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
   context.font = "12px system-ui, sans-serif"
   context.globalAlpha = 0.7
   for (const share of [1, 0.1, 0.01, LEAST]) {
-    context.fillText(share === 1 ? "1" : String(share), 2, placeY(share) + 4)
+    context.textAlign = "right"
+    context.fillText(String(share), LEFT - 6, placeY(share) + 4)
     context.fillRect(LEFT, placeY(share), width - LEFT - 4, 0.5)
   }
+  context.textAlign = "left"
   const law = rate > 0 ? "; dashed: flux over volume" : ""
   context.fillText(`Inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4, width - LEFT)
   const times = escapeTime.filter(each => each <= time).sort()
