@@ -25,8 +25,8 @@ COMPILATION_SECONDS = 60
 PROCESSES = 2
 """Number of processes. While one is busy with a visitor's formula, the other serves other visitors."""
 
-START_SECONDS = 60.0
-"""Longest time until a process begins, in seconds."""
+PATIENCE = 60.0
+"""Longest time until a process begins, and longest time that a call waits for a processor, in seconds."""
 
 IDLE_SECONDS = 300
 """Time without a call after which a process ends, because it uses 100 MB."""
@@ -36,8 +36,6 @@ MEMORY = 2**30
 
 # Interval at which a process checks whether the server still exists, in seconds.
 _WATCH_SECONDS = 2.0
-# Longest duration of a call on a busy machine, in units of the limit of its processor time.
-_PATIENCE = 4
 # Interval at which a waiting call checks whether it is cancelled, in seconds.
 _POLL_SECONDS = 0.1
 # Time from its start for which even a cancelled call goes on, in seconds.
@@ -62,8 +60,8 @@ class LimitedProcess:
         Memory that the process may use in addition to its memory at the start, in bytes.
     task
         The task of the process, which begins the sentence about a call that exceeds a limit.
-    start_seconds
-        Longest time until the process begins, in seconds.
+    patience
+        Longest time until the process begins, and longest time that a call waits for a processor, in seconds.
 
     Attributes
     ----------
@@ -80,9 +78,9 @@ class LimitedProcess:
         seconds: int = SECONDS,
         memory: int = MEMORY,
         task: str = "reviewing this formula",
-        start_seconds: float = START_SECONDS,
+        patience: float = PATIENCE,
     ) -> None:
-        self._seconds, self._memory, self._task, self._start_seconds = seconds, memory, task, start_seconds
+        self._seconds, self._memory, self._task, self._patience = seconds, memory, task, patience
         self._lock = threading.Lock()
         self._executor: ProcessPoolExecutor | None = None
         self._is_closed = False
@@ -131,16 +129,18 @@ class LimitedProcess:
 
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
         try:
-            self._wait(self._submit(os.getpid), cancel, self._start_seconds)
+            self._wait(self._submit(os.getpid), cancel, self._patience)
             self.has_begun = True
         except (BrokenExecutor, FutureTimeoutError, MemoryError):
             self._end()
             raise LimitError(f"{self._task} could not begin: the machine is busy or short of memory; try again later") from None
         try:
-            result, computed = self._wait(
-                self._submit(partial(_call_limited, self._seconds, function)), cancel, _PATIENCE * self._seconds
-            )
-        except (BrokenExecutor, FutureTimeoutError, MemoryError):
+            call = self._submit(partial(_call_limited, self._seconds, function))
+            result, computed = self._wait(call, cancel, self._seconds + self._patience)
+        except FutureTimeoutError:
+            self._replace()
+            raise LimitError(f"{self._task} takes too long while the machine is busy; try again later") from None
+        except (BrokenExecutor, MemoryError):
             self._replace()
         except CancelledError:
             self._replace()
