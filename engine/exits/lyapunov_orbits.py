@@ -1,7 +1,7 @@
 """Lyapunov orbits: the unstable periodic orbits over the open saddles, from which the exits are made.
 
-In a frame that does not rotate the path of such an orbit across its channel is the exit. In a rotating frame an orbit is a closed
-curve, and the exit is the straight line across the channel that touches it on the outer side.
+In a frame that does not rotate, the path of such an orbit across its channel is the exit. In a rotating frame, an orbit is a
+closed curve, and the exit is a parabola across the channel just outside the orbit (`exit_shapes.line_across`).
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
 from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
-# Reasons why an exit of several channels is not defined. The search meets them in this order.
+# Reasons why an exit of several channels is not defined; the search reports the largest.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
-_MISSING = {
+_REASONS = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
     _SHARP_BEND: "the orbit between its outer walls has too sharp a bend for a smooth curve; choose a higher energy",
     _RETURNS: "orbits that leave across the orbit between its outer walls come back; choose another energy",
@@ -137,16 +137,16 @@ class LyapunovOrbit(Result):
 
     @property
     def half_path(self) -> np.ndarray:
-        """(101, 2) half a period of the path, from one side of the channel to the other, for plots; the other half retraces it.
+        """(101, 2) half a period of the path, from one side of the channel to the other; the other half retraces it.
 
-        In a rotating frame it is the whole closed path, (201, 2).
+        In a rotating frame, this is the whole closed path, (201, 2).
         """
         path = np.column_stack([self.x, self.y])
         return path if self._is_closed_curve else path[: self.x.size // 2 + 1]
 
     @property
     def exit_path(self) -> np.ndarray:
-        """(n, 2) the exit across the channel: half the path, or in a rotating frame points of the tangent line."""
+        """(n, 2) the exit across the channel: half the path, or in a rotating frame points of the parabola outside the orbit."""
         return line_points(self.curve) if self._is_closed_curve else self.half_path
 
     @property
@@ -235,19 +235,20 @@ def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> 
     found: dict[int, LyapunovOrbit] = {}
     merged = {exit.channels[0]: exit for exit in potential.well.merged_exits(energy)}
     numbers = potential.well.exit_numbers(energy)
-    images = potential.well.mirror_numbers(energy) if potential.well.mirror_in_x else numbers
+    mirror_numbers = potential.well.mirror_numbers(energy) if potential.well.mirror_in_x else numbers
     for channel in potential.well.open_channels(energy):
         if numbers[channel] < channel:
+            # The channel belongs to an exit with the number of a lower channel.
             continue
-        image = int(images[channel])
+        mirror_channel = int(mirror_numbers[channel])
         others = merged[channel].channels[1:] if channel in merged else ()
-        if image in found:
-            found[channel] = replace(_mirrored(found[image], channel), others=others)
+        if mirror_channel in found:
+            found[channel] = replace(_mirrored(found[mirror_channel], channel), others=others)
         elif channel in merged:
             found[channel] = _find_merged(potential, energy, merged[channel])
         else:
             found[channel] = _find_orbit(potential, energy, channel, follow)
-        if image == channel and potential.well.mirror_in_x:
+        if mirror_channel == channel and potential.well.mirror_in_x:
             found[channel] = _symmetrized(found[channel])
     orbits = tuple(found.values())
     _check_exits_apart(orbits)
@@ -262,7 +263,8 @@ def _check_separate(potential: Potential, energy: float) -> None:
 
 
 def _describe(potential: Potential, merged: MergedExit) -> str:
-    lowest = next(each for each in potential.well.channel_mergers if set(each.channels) <= set(merged.channels))
+    # The mergers are sorted by energy.
+    lowest = next(merger for merger in potential.well.channel_mergers if set(merger.channels) <= set(merged.channels))
     units = potential.well.stated_units
     place = f"({lowest.x * units.length:.6g}, {lowest.y * units.length:.6g})"
     return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {place}"
@@ -273,26 +275,27 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
     if merged.closes_ring:
         raise _SearchError(f"{_describe(potential, merged)}, and it leads all around the well; choose a lower energy")
     axes, saddle = axes_between(potential, merged.channels), potential.saddles[merged.channels[0] - 1]
-    missing = _NO_ORBIT
+    reason = _NO_ORBIT
     for orbit in find_merged_orbits(potential, energy, merged.channels):
         curve = curve_along(axes, saddle, orbit.path)
         if curve is None:
-            missing = max(missing, _SHARP_BEND)
+            reason = max(reason, _SHARP_BEND)
             continue
         found = _exit_over(potential, energy, merged.channels[0], orbit, curve)
         if not has_returns(potential, energy, orbit, found.curve):
             return replace(found, others=merged.channels[1:])
-        missing = _RETURNS
-    raise _SearchError(f"{_describe(potential, merged)}, and {_MISSING[missing]}")
+        reason = _RETURNS
+    raise _SearchError(f"{_describe(potential, merged)}, and {_REASONS[reason]}")
 
 
 def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
-    """Convert an orbit from units of the well to those of its potential; the directions in its exit curve have no unit."""
+    """Convert an orbit from units of the well to those of its potential."""
     if units == WellUnits():
         return orbit
     curve = orbit.curve * units.length
-    directions = slice(events.OUTWARD_X, events.SHAPE + 1)
-    curve[directions] = orbit.curve[directions]
+    # These columns have no unit.
+    unitless = slice(events.OUTWARD_X, events.SHAPE + 1)
+    curve[unitless] = orbit.curve[unitless]
     return replace(units.restore(orbit), curve=curve)
 
 
@@ -313,7 +316,7 @@ def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
 
 
 def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
-    """Return the orbit over a saddle in a rotating frame, and the line that touches it on the outer side."""
+    """Return the orbit over a saddle in a rotating frame, with the exit just outside the orbit."""
     orbit = find_orbit_in_rotating_frame(potential, energy, channel)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
@@ -328,8 +331,8 @@ def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> Lya
 
 
 def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
-    place = potential, energy, channel
-    orbit = (continue_in_energy(*place) or find_from_both_ends(*place)) if follow else find_directly(*place)
+    arguments = potential, energy, channel
+    orbit = (continue_in_energy(*arguments) or find_from_both_ends(*arguments)) if follow else find_directly(*arguments)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
     axes = chord_axes(orbit.path) if follow else saddle_axes(potential, channel)
@@ -340,7 +343,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
 
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
-    """Return an orbit between two points at rest, with its exit `curve`, and set the reach of the exit."""
+    """Return an orbit between two points at rest, with its exit `curve`, in which the reach is set in place."""
     curve[events.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
