@@ -34,7 +34,7 @@ from engine.integrator.kernels import (
 
 log = logging.getLogger(__name__)
 
-
+# Types of arguments: numbers, arrays of doubles and integers by their dimensions, tuples of arrays, and sequences of arguments.
 _void, _address, _number, _count, _flag = types.void, types.int64, types.float64, types.int64, types.boolean
 _f1, _f2, _f3 = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
 _i1, _i2, _codes, _flags = types.int64[::1], types.int64[:, ::1], types.int8[::1], types.uint8[::1]
@@ -78,7 +78,7 @@ def module_digest() -> str:
 
 
 def kernel_module() -> bytes:
-    """Return the module, from the cache or built in some seconds; see `engine.integrator.jit.kernel_module.lower_kernels`."""
+    """Return the module of `KERNELS`, from the cache or built in some seconds, see `jit.kernel_module.lower_kernels`."""
     with _building:
         return _load_or_build()
 
@@ -87,19 +87,21 @@ def kernel_module() -> bytes:
 def _load_or_build() -> bytes:
     path = cache_folder() / f"{__name__}.{program_digest()}{SUFFIX}"
     try:
-        stored = read_cached(path)
+        module = read_cached(path)
     except (OSError, ValueError) as error:
         log.warning("invalid compiled kernels %s: %s; compiling them again", path, error)
-        stored = None
-    if stored is None:
+        module = None
+    if module is None:
+        # This calls `_main`.
         command = [sys.executable, "-m", __name__]
-        stored = subprocess.run(command, env=os.environ | SETTINGS, stdout=subprocess.PIPE, check=True).stdout
-        write_cached(path, stored)
-    return stored
+        module = subprocess.run(command, env=os.environ | SETTINGS, stdout=subprocess.PIPE, check=True).stdout
+        write_cached(path, module)
+    return module
 
 
 def _main() -> None:
-    """Write the module to the standard output."""
+    """Build the module and write it to the standard output."""
+    # WebAssembly computes pairs of lanes.
     for module in (propagate, ensemble):
         vars(module)["VECTOR"] = PAIR
     sys.stdout.buffer.write(lower_kernels(KERNELS))

@@ -1,4 +1,4 @@
-"""Exits at any energy, interpolated in a table, and points on exits."""
+"""Exits at any energy by interpolation in a table, and points on exits."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from engine.integrator.kernels.events import (
     is_circle,
 )
 
-# Columns of a table: the gate, the reach, the first column for the axes of an exit, and the first of its columns from `MIDDLE`.
+# Columns of a table: the gate, the reach, the first of the columns ORIGIN_X to OUTWARD_Y, and the first of those from MIDDLE on.
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
 
 
 @subroutine
-def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
+def _interpolate_exit(nodes, rows, sigma, shape, exit_curve, gate):
     """Set an exit (columns,) and its gate (3,), both zeros initially, from a table.
 
-    place: the position among the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen
-    2004, SIAM Review 46, 501), except for the reach, which is not smooth: the smaller reach of two neighbours is used.
+    sigma: value among the nodes; 0.0 or less for a closed channel. The barycentric formula is used (Berrut & Trefethen 2004, SIAM
+    Review 46, 501), except for the reach: as it is not smooth, the smaller reach of two neighbours is used.
     """
     count = nodes.shape[0]
     exit_curve[OUTWARD_X] = 1.0
@@ -37,22 +37,24 @@ def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
     exit_curve[SHAPE] = CLOSED
     gate[0] = 1.0
     gate[2] = np.inf
-    if count == 0 or not place > 0.0:
+    if count == 0 or not sigma > 0.0:
         return
+    # The sums begin at 0.
     exit_curve[SHAPE] = shape
     exit_curve[OUTWARD_X] = 0.0
     exit_curve[HALF_WIDTH] = 0.0
     gate[2] = 0.0
     above = 0
-    while above < count and nodes[above] < place:
+    while above < count and nodes[above] < sigma:
         above += 1
+    # At a node, this node alone counts.
     first, last, total = 0, count, 0.0
-    if above < count and nodes[above] == place:
+    if above < count and nodes[above] == sigma:
         first, last = above, above + 1
     for k in range(first, last):
         weight = 1.0
         if last - first > 1:
-            weight = np.sin(np.pi * (2 * k + 1) / (2 * count)) / (place - nodes[k])
+            weight = np.sin(np.pi * (2 * k + 1) / (2 * count)) / (sigma - nodes[k])
             weight = weight if k % 2 == 0 else -weight
         total += weight
         gate[2] += weight * rows[k, GATE_COLUMN]
@@ -76,7 +78,7 @@ def _interpolate_exit(nodes, rows, place, shape, exit_curve, gate):
 
 @subroutine
 def exit_point(exit_curve, s):
-    """Return x and y of the point of an exit at s, from −1 to 1; on a circle this range is a full turn."""
+    """Return x and y of the point of an exit at s, from −1 to 1; on a circle, this range is a full turn."""
     if is_circle(exit_curve):
         x = exit_curve[ORIGIN_X] + exit_curve[HALF_WIDTH] * np.cos(np.pi * s)
         y = exit_curve[ORIGIN_Y] + exit_curve[HALF_WIDTH] * np.sin(np.pi * s)
@@ -99,15 +101,15 @@ def exit_points(exit_curve, positions, points):
 def interpolate_exit(nodes, rows, saddle, shape, energies, number, curves, gates):
     """Set exit `number` in `curves` (n, exits, columns) at energies (n,) and its gate in `gates` (exits, 3), zeros initially.
 
-    nodes (m,): √(h − saddle), rising Chebyshev nodes of the first kind, where `saddle` is the energy at which the channel opens;
-    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, which
-    lies inside all of these exits.
+    nodes (m,): values of √(h − saddle), rising Chebyshev nodes of the first kind; saddle: the energy at which the channel opens;
+    rows (m, columns): the exit at each node; shape: CURVE or LINE. Of the gates at all energies, the lowest is chosen, because it
+    lies inside all these exits.
     """
     gate = np.zeros(3)
     for i in range(energies.shape[0]):
         gate[:] = 0.0
-        place = np.sqrt(max(energies[i] - saddle, 0.0))
-        _interpolate_exit(nodes, rows, place, shape, curves[i, number], gate)
+        sigma = np.sqrt(max(energies[i] - saddle, 0.0))
+        _interpolate_exit(nodes, rows, sigma, shape, curves[i, number], gate)
         if i == 0 or gate[2] < gates[number, 2]:
             for k in range(3):
                 gates[number, k] = gate[k]

@@ -8,7 +8,7 @@ from engine.integrator.jit.decorator import kernel
 from engine.integrator.kernels.events import BOUNDED, FORBIDDEN, NOT_COMPUTED, OUTSIDE
 from engine.integrator.kernels.slice_starts import interval_centre
 
-# Largest reported number of crossings, that of 16 bits.
+# Largest reported number of crossings: the largest integer of 16 bits.
 _MOST_CROSSINGS = 65535.0
 
 
@@ -17,23 +17,23 @@ def place_pixels(window, columns, rows, part_rows, part_columns, energy_axis, po
     """Set `points` (2, n) to the centres of the pixels in some rows (m,) of a picture and in its first columns, row by row.
 
     window (4,): lowest and highest abscissa and ordinate; columns, rows: size of the whole picture; energy_axis: 0, 1, or −1 for
-    none. energy_rows (n,) is set to the position of each pixel along the axis of the energy; 0 without such an axis.
+    none. energy_rows (n,) is set to the index of each pixel in the part along the axis of the energy; 0 without such an axis.
     """
-    for place in range(part_rows.shape[0]):
-        ordinate = interval_centre(window[2], window[3], part_rows[place], rows)
+    for part_row in range(part_rows.shape[0]):
+        ordinate = interval_centre(window[2], window[3], part_rows[part_row], rows)
         for column in range(part_columns):
-            pixel = place * part_columns + column
+            pixel = part_row * part_columns + column
             points[0, pixel] = interval_centre(window[0], window[1], column, columns)
             points[1, pixel] = ordinate
-            energy_rows[pixel] = column if energy_axis == 0 else place if energy_axis == 1 else 0
+            energy_rows[pixel] = column if energy_axis == 0 else part_row if energy_axis == 1 else 0
 
 
 @kernel
 def select_starts(states, outside, rows, fate, kept, kept_states, kept_rows):
-    """Select the starts that exist and lie inside all exits, return their number, and set the `fate` (n,) of the other starts.
+    """Select the starts that exist and lie inside all exits, and return their number; the `fate` (n,) of other starts is set.
 
-    states (4, n): NaN where forbidden; outside (n,): number of an exit, 0 for none; rows (n,): rows of the exits at the energies.
-    The kernel sets kept (n,), the numbers of the selected starts, kept_states (n, 4) and kept_rows (n,).
+    states (4, n): NaN where forbidden; outside (n,): number of an exit, 0 for none; rows (n,): rows of the exits at the energies;
+    kept (n,), kept_states (n, 4), kept_rows (n,): set to the indices, the states and the rows of the selected starts.
     """
     count = 0
     for i in range(outside.shape[0]):
@@ -52,7 +52,7 @@ def select_starts(states, outside, rows, fate, kept, kept_states, kept_rows):
 
 @kernel
 def report_ends(orbits, kept, fate, time, crossings):
-    """Set `fate`, `time` of the escape, NaN if there is none, and `crossings` (n,) for the orbits numbered `kept`.
+    """Set `fate` (n,), `time` (n,) of the escape or NaN, and `crossings` (n,) at the pixels `kept` of the orbits.
 
     Orbits that are inside at the horizon are undecided. For `orbits` see `engine.integrator.kernels.propagate.Orbits`.
     """

@@ -1,6 +1,6 @@
 """Starts at the points of a slice, in units of the well.
 
-Kernels call the subroutines with numbers, and Python with arrays, so that `engine.slices.slice_starts` uses the same formulas.
+Kernels call the subroutines with numbers, and `engine.slices.slice_starts` calls them with arrays, so both use the same formulas.
 """
 
 from __future__ import annotations
@@ -12,21 +12,22 @@ from engine.integrator.jit.function_pointers import call_potential_value
 
 # Columns of the coordinates that vary along the axes of a slice: the state, an angle of the velocity, and the energy.
 X, Y, PX, PY, ANGLE, H = range(6)
+# Number of these columns.
 COORDINATES = 6
 
-# What the energy determines: a momentum, given by its column, or the speed, at an angle from the x axis or from the radius.
+# Codes for what the energy determines: besides PX and PY, the speed at an angle from the x axis or from the radius.
 LAUNCHED, LAUNCHED_FROM_RADIUS = 6, 7
 
 
 @subroutine
-def interval_centre(low, high, place, count):
+def interval_centre(low, high, index, count):
     """Return the centre of one of `count` equal parts of an interval; the centres are exactly symmetric if the interval is."""
-    return 0.5 * (low + high) + (high - low) * ((2 * place + 1 - count) / (2 * count))
+    return 0.5 * (low + high) + (high - low) * ((2 * index + 1 - count) / (2 * count))
 
 
 @subroutine
 def rest_energy(momentum, value):
-    """Return the energy of a start without the momentum that the energy determines; value: V at the start."""
+    """Return the energy of a start whose determined momentum is 0; momentum: the other momentum; value: V at the start."""
     return 0.5 * (momentum * momentum) + value
 
 
@@ -57,7 +58,7 @@ def launch_from_radius(x, y, speed, angle):
 
 @subroutine
 def _place(motion, points, i, start):
-    """Set the coordinates of a start (COORDINATES,); the momentum that the energy determines is set from `motion`."""
+    """Set the coordinates of a start (COORDINATES,); the momentum that the energy determines is still that of `motion`."""
     for column in range(COORDINATES):
         start[column] = motion[0, column]
         for axis in range(points.shape[0]):
@@ -65,14 +66,14 @@ def _place(motion, points, i, start):
 
 
 @subroutine
-def _held_momentum(start, decided):
-    """Return the momentum that the energy does not determine; 0 if it determines the speed."""
-    held = 0.0
+def _fixed_momentum(start, decided):
+    """Return the momentum that the energy does not determine; 0 if the energy determines the speed."""
+    momentum = 0.0
     if decided == PX:
-        held = start[PY]
+        momentum = start[PY]
     elif decided == PY:
-        held = start[PX]
-    return held
+        momentum = start[PX]
+    return momentum
 
 
 @kernel
@@ -86,13 +87,14 @@ def find_starts(potential_value, coefficients, motion, decided, sign, points, st
     for i in range(points.shape[1]):
         _place(motion, points, i, start)
         value = call_potential_value(potential_value, coefficients, start[X], start[Y])
-        found = decided_momentum(start[H], value, _held_momentum(start, decided), sign)
+        # The speed, if the energy determines the speed.
+        momentum = decided_momentum(start[H], value, _fixed_momentum(start, decided), sign)
         if decided == LAUNCHED:
-            start[PX], start[PY] = launch(found, start[ANGLE])
+            start[PX], start[PY] = launch(momentum, start[ANGLE])
         elif decided == LAUNCHED_FROM_RADIUS:
-            start[PX], start[PY] = launch_from_radius(start[X], start[Y], found, start[ANGLE])
+            start[PX], start[PY] = launch_from_radius(start[X], start[Y], momentum, start[ANGLE])
         else:
-            start[decided] = found
+            start[decided] = momentum
         for row in range(4):
             states[row, i] = start[row]
         energies[i] = start[H]
@@ -114,7 +116,7 @@ def find_required_energies(potential_value, coefficients, motion, decided, windo
             point[0, 0] = window[0] + (window[1] - window[0]) * column / (columns - 1)
             _place(motion, point, 0, start)
             value = call_potential_value(potential_value, coefficients, start[X], start[Y])
-            required[row, column] = rest_energy(_held_momentum(start, decided), value) - start[H]
+            required[row, column] = rest_energy(_fixed_momentum(start, decided), value) - start[H]
 
 
 @kernel
