@@ -60,6 +60,6 @@ def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
     return replace(orbit, potential=potential).find_section_crossings()
 
 
-def _check_same_motion(potential: Potential, of_orbit: Potential) -> None:
-    if (potential.form, potential.rotation) != (of_orbit.form, of_orbit.rotation):
-        raise ValueError(f"potential={potential.name}: must be that of the orbit, {of_orbit.name}")
+def _check_same_motion(potential: Potential, orbit_potential: Potential) -> None:
+    if (potential.form, potential.rotation) != (orbit_potential.form, orbit_potential.rotation):
+        raise ValueError(f"potential={potential.name}: must be that of the orbit, {orbit_potential.name}")

@@ -15,7 +15,7 @@ from engine.sweeps.measures import MEASURES
 if TYPE_CHECKING:
     import xarray as xr
 
-# Share of the usual number of additional orbits. A sweep measures many maps.
+# Number of additional orbits of a measure, as a share of the usual number, because a sweep measures many maps.
 _EFFORT = 0.1
 
 
@@ -38,7 +38,7 @@ def compute_point(point: SweepPoint, *, frame: EscapeMap | None = None, executio
 
     Returns
     -------
-    Dataset of the measures; its first dimension, of size 1, is that of the values.
+    The dataset of the measures. Its first dimension, of size 1, is that of the values of the sweep.
 
     Raises
     ------
