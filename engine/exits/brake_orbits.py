@@ -156,10 +156,10 @@ def find_from_both_ends(potential: Potential, energy: float, channel: int) -> Br
     return None if forward is None else _join(forward, backward, chord_axes(path))
 
 
-def find_from_outside(potential: Potential, energy: float, axes: Axes, size: float) -> Iterator[BrakeOrbit]:
-    """Yield the orbits from a wall at q < 0 to a wall at q > 0, the outermost first; `size` is the scale of the search."""
-    trials = _Trials(potential, energy, axes, _LARGEST_MOVE * size)
-    offsets = _FARTHEST_START * size * np.linspace(1.0, -1.0, _STARTS)
+def find_from_outside(potential: Potential, energy: float, axes: Axes, search_size: float) -> Iterator[BrakeOrbit]:
+    """Yield the orbits from a wall at q < 0 to a wall at q > 0, the outermost first."""
+    trials = _Trials(potential, energy, axes, _LARGEST_MOVE * search_size)
+    offsets = _FARTHEST_START * search_size * np.linspace(1.0, -1.0, _STARTS)
     velocities = [trials.outward_velocity(u) for u in offsets.tolist()]
     for k in range(_STARTS - 1):
         if velocities[k] > 0.0 > velocities[k + 1]:
@@ -181,11 +181,11 @@ def continue_in_energy(potential: Potential, energy: float, channel: int) -> Bra
     return follow(advance, None, saddle_energy, energy, steps)
 
 
-def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, rest: float) -> _Shot | None:
+def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, largest_speed: float) -> _Shot | None:
     """Return the orbit from a point with q < 0 in axes at the saddle to a point with q > 0; None if it is not found."""
     distance = _distance(potential, channel)
     search = _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
-    shot = _shoot(potential, energy, channel, axes, search, rest)
+    shot = _shoot(potential, energy, channel, axes, search, largest_speed)
     if shot is None:
         return None
     # A start on a wall of another channel leads to an orbit across that channel.
@@ -244,11 +244,11 @@ def _distance(potential: Potential, channel: int) -> float:
     return float(np.hypot(*potential.saddles[channel - 1]))
 
 
-def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, rest: float) -> _Shot | None:
-    """Find the orbit whose start is nearest to the origin of the axes along the channel; None if it is not found."""
+def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, largest_speed: float) -> _Shot | None:
+    """Return the orbit whose start is nearest to the origin of the axes along the channel; None if it is not found."""
     trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _distance(potential, channel))
     bracket = _find_bracket(trials.outward_velocity, search)
-    return None if bracket is None else trials.solve(bracket, rest)
+    return None if bracket is None else trials.solve(bracket, largest_speed)
 
 
 class _Trials:
@@ -262,11 +262,11 @@ class _Trials:
         """Return the velocity along the channel at the turning point, after a start at rest at offset u."""
         return float(self._kernels.shoot(u, *self._arguments)[0])
 
-    def solve(self, bracket: tuple[float, float], rest: float) -> _Shot | None:
-        """Return the orbit that starts between two offsets and comes to rest; None if no orbit does."""
+    def solve(self, bracket: tuple[float, float], largest_speed: float) -> _Shot | None:
+        """Return the orbit that starts between two offsets and comes to rest, up to a largest speed; None if no orbit does."""
         u = find_root(self.outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
         velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
-        if not (np.isfinite(half_period) and abs(velocity) < rest):
+        if not (np.isfinite(half_period) and abs(velocity) < largest_speed):
             return None
         coefficients = np.empty((2, ORDER + 1, count))
         self._kernels.jets(count, *(np.ascontiguousarray(column) for column in self._steps[:count, :4].T), *coefficients)

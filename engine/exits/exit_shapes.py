@@ -67,8 +67,8 @@ def ridge_bend(potential: Potential, channel: int) -> float:
     step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * np.array([-axes.outward[1], axes.outward[0]])
     sides = np.array([axes.origin - step, axes.origin + step])
     slopes = axes.outward @ np.array(np.broadcast_arrays(*potential.gradient(*sides.T)))
-    along = axes.outward @ potential.hessian_matrix(*axes.origin) @ axes.outward
-    return float(-0.5 * slopes.sum() / (step @ step) / along)
+    curvature = axes.outward @ potential.hessian_matrix(*axes.origin) @ axes.outward
+    return float(-0.5 * slopes.sum() / (step @ step) / curvature)
 
 
 def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
@@ -85,12 +85,13 @@ def line_across(potential: Potential, energy: float, channel: int, edge: float) 
     low, high = walls[-1]
     curve = closed_channel(axes, potential.saddles[channel - 1])
     curve[events.SHAPE] = events.LINE
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    curve[events.MIDDLE : events.HALF_WIDTH + 1] = middle, half
-    curve[events.SLOPE_LOW : events.SLOPE_HIGH + 1] = 2.0 * bend * half * np.array([low, high])
-    # u as a sum of Chebyshev polynomials of s = (q − middle)/half.
-    constant = edge + bend * (middle * middle + 0.5 * half * half)
-    curve[events.COEFFICIENTS : events.COEFFICIENTS + 3] = constant, 2.0 * bend * middle * half, 0.5 * bend * half * half
+    middle, half_width = 0.5 * (low + high), 0.5 * (high - low)
+    curve[events.MIDDLE : events.HALF_WIDTH + 1] = middle, half_width
+    curve[events.SLOPE_LOW : events.SLOPE_HIGH + 1] = 2.0 * bend * half_width * np.array([low, high])
+    # u as a sum of Chebyshev polynomials of s = (q − middle)/half_width.
+    constant = edge + bend * (middle * middle + 0.5 * half_width * half_width)
+    linear, quadratic = 2.0 * bend * middle * half_width, 0.5 * bend * half_width * half_width
+    curve[events.COEFFICIENTS : events.COEFFICIENTS + 3] = constant, linear, quadratic
     curve[events.REACH] = find_reach(potential, energy, curve)
     return curve
 

@@ -232,7 +232,7 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 
 def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> tuple[LyapunovOrbit, ...]:
     """Find orbits that do not meet, directly or by continuation in energy. Orbits of mirror channels are exact mirror images."""
-    found: dict[int, LyapunovOrbit] = {}
+    orbits: dict[int, LyapunovOrbit] = {}
     merged = {exit.channels[0]: exit for exit in potential.well.merged_exits(energy)}
     numbers = potential.well.exit_numbers(energy)
     mirror_numbers = potential.well.mirror_numbers(energy) if potential.well.mirror_in_x else numbers
@@ -242,20 +242,21 @@ def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> 
             continue
         mirror_channel = int(mirror_numbers[channel])
         others = merged[channel].channels[1:] if channel in merged else ()
-        if mirror_channel in found:
-            found[channel] = replace(_mirrored(found[mirror_channel], channel), others=others)
+        if mirror_channel in orbits:
+            orbits[channel] = replace(_mirrored(orbits[mirror_channel], channel), others=others)
         elif channel in merged:
-            found[channel] = _find_merged(potential, energy, merged[channel])
+            orbits[channel] = _find_merged(potential, energy, merged[channel])
         else:
-            found[channel] = _find_orbit(potential, energy, channel, follow)
+            orbits[channel] = _find_orbit(potential, energy, channel, follow)
         if mirror_channel == channel and potential.well.mirror_in_x:
-            found[channel] = _symmetrized(found[channel])
-    orbits = tuple(found.values())
-    _check_exits_apart(orbits)
-    return orbits
+            orbits[channel] = _symmetrized(orbits[channel])
+    in_channel_order = tuple(orbits.values())
+    _check_exits_apart(in_channel_order)
+    return in_channel_order
 
 
 def _check_separate(potential: Potential, energy: float) -> None:
+    """Raise an error if several channels form one exit."""
     for merged in potential.well.merged_exits(energy):
         raise _SearchError(
             f"{_describe(potential, merged)}, which has no Lyapunov orbit in a rotating frame; choose a lower energy"
@@ -263,11 +264,12 @@ def _check_separate(potential: Potential, energy: float) -> None:
 
 
 def _describe(potential: Potential, merged: MergedExit) -> str:
+    """Return which channels form an exit, and above which maximum of V, for messages."""
     # The mergers are sorted by energy.
     lowest = next(merger for merger in potential.well.channel_mergers if set(merger.channels) <= set(merged.channels))
     units = potential.well.stated_units
-    place = f"({lowest.x * units.length:.6g}, {lowest.y * units.length:.6g})"
-    return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {place}"
+    position = f"({lowest.x * units.length:.6g}, {lowest.y * units.length:.6g})"
+    return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {position}"
 
 
 def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> LyapunovOrbit:
@@ -281,9 +283,9 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
         if curve is None:
             reason = max(reason, _SHARP_BEND)
             continue
-        found = _exit_over(potential, energy, merged.channels[0], orbit, curve)
-        if not has_returns(potential, energy, orbit, found.curve):
-            return replace(found, others=merged.channels[1:])
+        lyapunov_orbit = _exit_over(potential, energy, merged.channels[0], orbit, curve)
+        if not has_returns(potential, energy, orbit, lyapunov_orbit.curve):
+            return replace(lyapunov_orbit, others=merged.channels[1:])
         reason = _RETURNS
     raise _SearchError(f"{_describe(potential, merged)}, and {_REASONS[reason]}")
 
@@ -300,9 +302,10 @@ def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
 
 
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
-    for one, other in itertools.combinations(orbits, 2):
-        if paths_meet(one.exit_path, other.exit_path):
-            raise _SearchError(f"the exits of channels {one.channel} and {other.channel} meet; choose a lower energy")
+    """Raise an error if two exits meet."""
+    for first, second in itertools.combinations(orbits, 2):
+        if paths_meet(first.exit_path, second.exit_path):
+            raise _SearchError(f"the exits of channels {first.channel} and {second.channel} meet; choose a lower energy")
 
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
@@ -331,6 +334,7 @@ def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> Lya
 
 
 def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
+    """Return the orbit over a saddle in a frame at rest, found directly or, with `follow`, by continuation in energy."""
     arguments = potential, energy, channel
     orbit = (continue_in_energy(*arguments) or find_from_both_ends(*arguments)) if follow else find_directly(*arguments)
     if orbit is None:

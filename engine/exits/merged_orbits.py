@@ -44,13 +44,13 @@ def axes_between(potential: Potential, channels: tuple[int, ...], share: float =
 def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int, ...]) -> Iterator[BrakeOrbit]:
     """Yield the orbits that can be the exit of several channels: orbits with all saddles of the channels between their ends."""
     saddles = potential.saddles[np.array(channels) - 1].T
-    size = float(np.hypot(*saddles).max())
+    search_size = float(np.hypot(*saddles).max())
     for share in _LINES:
         axes = axes_between(potential, channels, share)
         _, q = axes.coordinates(saddles)
-        for orbit in find_from_outside(potential, energy, axes, size):
-            ends = axes.coordinates(orbit.path[:, [0, -1]])[1]
-            if ends[0] < q.min() and q.max() < ends[1]:
+        for orbit in find_from_outside(potential, energy, axes, search_size):
+            _, end_q = axes.coordinates(orbit.path[:, [0, -1]])
+            if end_q[0] < q.min() and q.max() < end_q[1]:
                 yield orbit
 
 

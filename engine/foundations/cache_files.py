@@ -136,12 +136,12 @@ def _delete_least_recently_used(folder: Path, largest_size: int, most_files: int
                 if entry.name.endswith((SUFFIX, _PART)):
                     status = entry.stat()
                     files.append((status.st_atime_ns, status.st_size, entry.path))
-    count, size = len(files), sum(size for _, size, _ in files)
-    for _, file_size, path in sorted(files):
-        if count <= most_files and size <= largest_size:
+    file_count, total_size = len(files), sum(size for _, size, _ in files)
+    for _, size, path in sorted(files):
+        if file_count <= most_files and total_size <= largest_size:
             break
         Path(path).unlink(missing_ok=True)
-        count, size = count - 1, size - file_size
+        file_count, total_size = file_count - 1, total_size - size
 
 
 def _write_atomically(path: Path, content: bytes) -> None:

@@ -57,19 +57,19 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
             previous_x, x, opposite_x = x, opposite_x, x
             previous_value, value, opposite_value = value, opposite_value, value
         tolerance = (absolute + relative * abs(x)) / 2.0
-        half = (opposite_x - x) / 2.0
-        if value == 0.0 or abs(half) < tolerance:
+        half_width = (opposite_x - x) / 2.0
+        if value == 0.0 or abs(half_width) < tolerance:
             return x
         trial_step = math.inf
         if abs(last_step) > tolerance and abs(value) < abs(previous_value):
             trial_step = _interpolate((previous_x, previous_value), (x, value), (opposite_x, opposite_value))
         # Interpolate only if the steps shrink fast enough; otherwise bisect.
-        if 2.0 * abs(trial_step) < min(abs(last_step), 3.0 * abs(half) - tolerance):
+        if 2.0 * abs(trial_step) < min(abs(last_step), 3.0 * abs(half_width) - tolerance):
             last_step, step = step, trial_step
         else:
-            last_step = step = half
+            last_step = step = half_width
         previous_x, previous_value = x, value
-        x += step if abs(step) > tolerance else math.copysign(tolerance, half)
+        x += step if abs(step) > tolerance else math.copysign(tolerance, half_width)
         value = evaluate(x)
     return x
 

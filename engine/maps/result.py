@@ -271,8 +271,8 @@ def collect_map(
 def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, float]:
     """Return the share of each outcome, by code, among the interior starts of fates of any shape; 0 without interior starts."""
     interior = fate[find_interior(fate)]
-    ends = (code for code, outcome in enumerate(outcomes, 1) if outcome.occurs)
-    codes = (*ends, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
+    outcome_codes = (code for code, outcome in enumerate(outcomes, 1) if outcome.occurs)
+    codes = (*outcome_codes, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
     return {int(code): float(np.mean(interior == code)) if interior.size else 0.0 for code in codes}
 
 

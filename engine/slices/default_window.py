@@ -223,11 +223,11 @@ def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[
     if {Coordinate.X, Coordinate.Y} == set(plane.axes):
         points = _interior_points(potential, energy)
         return dict(zip((Coordinate.X, Coordinate.Y), map(_rounded_range, points), strict=True))
-    held = {Coordinate.X: 0.0, Coordinate.Y: 0.0} | dict(plane.fixed)
+    fixed = {Coordinate.X: 0.0, Coordinate.Y: 0.0} | dict(plane.fixed)
     return {
-        coordinate: _rounded_range(_interior_interval(potential, energy, coordinate, held))
+        coordinate: _rounded_range(_interior_interval(potential, energy, coordinate, fixed))
         if coordinate in plane.axes
-        else (held[coordinate], held[coordinate])
+        else (fixed[coordinate], fixed[coordinate])
         for coordinate in (Coordinate.X, Coordinate.Y)
     }
 
@@ -276,11 +276,11 @@ def _run_around_middle(mask: np.ndarray) -> slice:
     return slice(begin, end)
 
 
-def _interior_interval(potential: Potential, energy: float, axis: Coordinate, held: dict[Coordinate, float]) -> np.ndarray:
+def _interior_interval(potential: Potential, energy: float, axis: Coordinate, fixed: dict[Coordinate, float]) -> np.ndarray:
     """Return x or y of the interior on a line of constant y or x, of shape (n,), to about a thousandth of the radius."""
     radius = _search_radius(potential, energy)
     line = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
-    x, y = (line if axis is coordinate else np.full_like(line, held[coordinate]) for coordinate in (Coordinate.X, Coordinate.Y))
+    x, y = (line if axis is coordinate else np.full_like(line, fixed[coordinate]) for coordinate in (Coordinate.X, Coordinate.Y))
     inside = _is_inside(potential, energy, x, y)
     return line[inside if potential.escape_radius is not None else _run_around_middle(inside)]
 

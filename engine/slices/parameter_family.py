@@ -159,19 +159,19 @@ class ParameterFamily:
             return value
         return node
 
-    def _connect(self, known: float, new: float) -> None:
-        """Add a node at `new`, next to the node `known`; if their exits differ, first insert nodes between them."""
-        potential = self._axis.potential(new)
+    def _connect(self, node: float, new_node: float) -> None:
+        """Add a new node next to a node; if their exits differ, add nodes between them, as far as the exits can be matched."""
+        potential = self._axis.potential(new_node)
         for _ in range(_HALVINGS):
-            if _match(self._nodes[known].potential, potential) is not None:
+            if _match(self._nodes[node].potential, potential) is not None:
                 break
-            middle = 0.5 * (known + new)
-            if _match(self._nodes[known].potential, self._axis.potential(middle)) is None:
-                new, potential = middle, self._axis.potential(middle)
+            middle = 0.5 * (node + new_node)
+            if _match(self._nodes[node].potential, self._axis.potential(middle)) is None:
+                new_node, potential = middle, self._axis.potential(middle)
             else:
-                self._nodes[middle] = self._linked(middle, known)
-                known = middle
-        self._nodes[new] = self._linked(new, known)
+                self._nodes[middle] = self._linked(middle, node)
+                node = middle
+        self._nodes[new_node] = self._linked(new_node, node)
 
     def _linked(self, value: float, node: float) -> Member:
         """Find the potential at a value. Exits that also exist at a node get their numbers there, and other exits new numbers."""

@@ -42,7 +42,7 @@ def write_slice(plane: Slice) -> tuple[str, str]:
     return ",".join(map(_write_axis, plane.axes)), ",".join(parts)
 
 
-def read_slice(axes: str, held: str, system: System) -> Slice:
+def read_slice(axes: str, fixed_values: str, system: System) -> Slice:
     """Return the slice given by two texts, in which parameters of `system` can be axes.
 
     Parameters
@@ -50,7 +50,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
     axes
         The key of a named slice, "x_px", or abscissa and ordinate, "x,theta": x, y, px, py, theta, beta, h, a parameter of the
         system with its range, "epsilon=0.5:2", or a direction with its components along x, y, px and py, "u=1:0.3:0:0".
-    held
+    fixed_values
         Values of the other coordinates, "y=0.1,px=0", by default 0; "py=-" if the energy determines py, with a negative sign.
     system
         The system of the picture.
@@ -60,7 +60,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
     ValueError
         If a text is not legal; the message names the part, its value and the legal values.
     """
-    if axes in {plane.key for plane in Plane} and not held:
+    if axes in {plane.key for plane in Plane} and not fixed_values:
         return checked_slice(axes)
     names = axes.split(",")
     if len(names) != len(("abscissa", "ordinate")):
@@ -69,7 +69,7 @@ def read_slice(axes: str, held: str, system: System) -> Slice:
     abscissa, ordinate = (_read_axis(name, system) for name in names)
     fixed: list[tuple[Coordinate, float]] = []
     solved, sign = None, 1
-    for part in held.split(",") if held else ():
+    for part in fixed_values.split(",") if fixed_values else ():
         name, _, value = part.partition("=")
         coordinate = _COORDINATES.get(_without_alias(name))
         if coordinate is None:

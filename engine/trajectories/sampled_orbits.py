@@ -158,8 +158,9 @@ def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) ->
 def _join(potential: Potential, states: np.ndarray, times: np.ndarray, results: list[Any]) -> SampledOrbits:
     """Join the results of `_sample_orbit` for all orbits, in units of the well."""
     paths = np.array([path for path, _ in results]).reshape(len(results), _COMPONENTS, times.shape[1])
-    ends = (np.concatenate([getattr(outcome, name) for _, outcome in results]) for name in ("fate", "escape_time", "crossings"))
-    arrays = (times, *paths.transpose(1, 0, 2), *ends, np.atleast_1d(potential.energy(states)))
+    names = ("fate", "escape_time", "crossings")
+    outcomes = (np.concatenate([getattr(outcome, name) for _, outcome in results]) for name in names)
+    arrays = (times, *paths.transpose(1, 0, 2), *outcomes, np.atleast_1d(potential.energy(states)))
     fields: list[Any] = [read_only(np.ascontiguousarray(array)) for array in arrays]
     return SampledOrbits(*fields)
 

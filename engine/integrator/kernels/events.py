@@ -203,8 +203,8 @@ def count_upward_crossings(y_jet, i, duration):
     for part in range(1, _PARTS + 1):
         high = duration * part / _PARTS
         y_high, slope_high = series_value(y_jet, i, high), series_slope(y_jet, i, high)
-        begin, end = crossing_between(y_jet, i, 1.0, low, y_low, slope_low, high, y_high, slope_high)
-        if end > begin:
+        before, after = crossing_between(y_jet, i, 1.0, low, y_low, slope_low, high, y_high, slope_high)
+        if after > before:
             count += 1
         low, y_low, slope_low = high, y_high, slope_high
     return count

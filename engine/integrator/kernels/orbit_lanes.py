@@ -68,7 +68,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     `VECTOR` up to `LANES`; passages (lanes, m, 3): set to x, px and time; found (lanes,): zeros, set to the numbers of passages.
     """
     lanes = state.shape[1]
-    most = passages.shape[1]
+    most_passages = passages.shape[1]
     now, new, flag, crossed, lane_orbit = fill_lanes(state)
     buffer = _StepBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
     buffered = 0
@@ -78,7 +78,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
         call_step(step, coefficients, width, tolerance, horizon, gates, now, new, flag, crossed)
         for i in range(active - 1, -1, -1):
             orbit = lane_orbit[i]
-            is_full = found[orbit] == most
+            is_full = found[orbit] == most_passages
             passes = now[1, i] > 0.0 and new[1, i] <= 0.0
             if flag[i] == 0 and not passes and not is_full:
                 continue

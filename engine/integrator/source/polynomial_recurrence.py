@@ -143,7 +143,9 @@ def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], .
 def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...], ...]) -> _Difference:
     """Return two squares that enter some derivatives of V only as their difference."""
     derived = [_derivative(polynomial, axes) for axes in derivatives]
-    polynomials = [{monomial: factor * polynomial[term] for monomial, (term, factor) in each.items()} for each in derived]
+    polynomials = [
+        {monomial: factor * polynomial[term] for monomial, (term, factor) in derived_terms.items()} for derived_terms in derived
+    ]
     return find_difference(_plan(tuple(polynomial), derivatives), polynomials)
 
 

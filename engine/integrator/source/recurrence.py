@@ -159,9 +159,10 @@ def _root_of_tolerance(program: StraightLine, norm: Value) -> Value:
     The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa; a shift by four bits
     divides this logarithm by 16.
     """
-    one = 1023 << 52
+    # The bits of 1.0.
+    one_bits = 1023 << 52
     bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
-    return program.apply("double_of", (one + one // 16) - (bits >> 4))
+    return program.apply("double_of", (one_bits + one_bits // 16) - (bits >> 4))
 
 
 def _horner(series: Series, h: Value) -> tuple[Value, Value]:

@@ -139,8 +139,8 @@ def compute_lagrangian_descriptor(
     --------
     >>> from escape_explorer import CASES, MapSpec, Plane, compute_lagrangian_descriptor, compute_map
     >>> escapes = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (20, 20), t_max=100.0))
-    >>> found = compute_lagrangian_descriptor(escapes, duration=5.0)
-    >>> round(float(found.descriptor[10, 5]), 6)
+    >>> descriptors = compute_lagrangian_descriptor(escapes, duration=5.0)
+    >>> round(float(descriptors.descriptor[10, 5]), 6)
     7.549268
     """
     escape_map = as_map("escape_map", escape_map)
