@@ -28,7 +28,7 @@ from engine.exits.periodic_orbits import find_orbit_in_rotating_frame, monodromy
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.foundations.validation import checked_number, checks_types
-from engine.integrator.kernels import events
+from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.merged_channels import MergedExit, name_channels
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
@@ -133,7 +133,7 @@ class LyapunovOrbit(Result):
     @property
     def outward(self) -> np.ndarray:
         """(2,) unit vector out of the well, across the exit."""
-        return self.curve[events.OUTWARD_X : events.OUTWARD_Y + 1]
+        return self.curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
 
     @property
     def half_path(self) -> np.ndarray:
@@ -151,7 +151,7 @@ class LyapunovOrbit(Result):
 
     @property
     def _is_closed_curve(self) -> bool:
-        return bool(self.curve[events.SHAPE] == events.LINE)
+        return bool(self.curve[geometry.SHAPE] == geometry.LINE)
 
 
 @checks_types(potential=Potential)
@@ -215,7 +215,7 @@ class _SearchError(Exception):
     """No Lyapunov orbit was found, or the orbit found cannot be used as an exit."""
 
 
-@functools.lru_cache(maxsize=4096)
+@functools.lru_cache(maxsize=1024)
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """Return the orbits of a potential in units of its well."""
     if potential.rotation:
@@ -296,7 +296,7 @@ def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
         return orbit
     curve = orbit.curve * units.length
     # These columns have no unit.
-    unitless = slice(events.OUTWARD_X, events.SHAPE + 1)
+    unitless = slice(geometry.OUTWARD_X, geometry.SHAPE + 1)
     curve[unitless] = orbit.curve[unitless]
     return replace(units.restore(orbit), curve=curve)
 
@@ -348,7 +348,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
     """Return an orbit between two points at rest, with its exit `curve`, in which the reach is set in place."""
-    curve[events.REACH] = find_reach(potential, energy, curve)
+    curve[geometry.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
     path = x[there_and_back], y[there_and_back]

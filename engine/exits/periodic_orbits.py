@@ -62,14 +62,11 @@ class PeriodicOrbit(NamedTuple):
     edge
         Value of u − a q² on the parabola just outside the orbit, dimensionless; u and q are in the axes of the saddle, and a is
         its `ridge_bend`.
-    multipliers
-        (4,) complex eigenvalues of the monodromy matrix, the largest modulus first.
     """
 
     period: float
     path: np.ndarray
     edge: float
-    multipliers: np.ndarray
 
 
 class _Family(NamedTuple):
@@ -271,7 +268,7 @@ def _product(matrices: np.ndarray) -> np.ndarray:
 
 
 def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
-    """Return the orbit with its path, edge and multipliers; None if its parts do not join within `_LARGEST_GAP`."""
+    """Return the orbit with its path and edge; None if its parts do not join within `_LARGEST_GAP`."""
     sigma, period = float(np.sqrt(energy - family.saddle_energy)), float(unknowns[-1])
     states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)
     parts = _trace(family.potential, states, period)
@@ -282,8 +279,7 @@ def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrb
     times = np.arange(_POINTS_PER_NODE) * (duration / _POINTS_PER_NODE)
     pieces = [sample_path(kernels, steps, times) for steps in parts.steps]
     path = np.concatenate([*pieces, states[:1].T], axis=1)
-    edge = _edge(family, path)
-    return PeriodicOrbit(period, path, edge, multipliers_of(_product(parts.matrices)))
+    return PeriodicOrbit(period, path, _edge(family, path))
 
 
 def _edge(family: _Family, path: np.ndarray) -> float:

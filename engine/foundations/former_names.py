@@ -65,7 +65,9 @@ def with_former_fields[T](cls: type[T]) -> type[T]:
     for old, new in FORMER_FIELDS.items():
         if hasattr(cls, new) or new in names:
             setattr(cls, old, _former_attribute(old, new))
-    _accept_former_parameters(cls, {old: new for old, new in FORMER_FIELDS.items() if new in names})
+    former = {old: new for old, new in FORMER_FIELDS.items() if new in names}
+    # `dataclasses.replace` also passes the current value under its new name, which the given value replaces.
+    cls.__init__ = with_former_parameters(**former)(cls.__init__)  # type: ignore[method-assign]
     return cls
 
 
@@ -77,21 +79,6 @@ def _former_attribute(old: str, new: str) -> property:
         return getattr(self, new)
 
     return property(get)
-
-
-def _accept_former_parameters(cls: Any, new_names: Mapping[str, str]) -> None:
-    """Make the constructor of a class accept former names of parameters, given the new name for each former name."""
-    initialize = cls.__init__
-
-    @functools.wraps(initialize)
-    def __init__(self: Any, *args: Any, **options: Any) -> None:  # noqa: N807
-        for old in new_names.keys() & options.keys():
-            _warn(old, new_names[old])
-            # The former name wins, because `dataclasses.replace` also passes the present value under the new name.
-            options[new_names[old]] = options.pop(old)
-        initialize(self, *args, **options)
-
-    cls.__init__ = __init__
 
 
 def with_former_parameters[**P, T](**new_names: str) -> Callable[[Callable[P, T]], Callable[P, T]]:

@@ -29,7 +29,7 @@ from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import straight_line, table_reader
 from engine.integrator.kernels import fixed_step, interior, orbit_lanes, periodic_shooting, propagate
 from engine.integrator.source.recurrence import Definition, GeneratedCode, find_structure, generate
-from engine.integrator.source.series import REACH, Setting, Structure
+from engine.integrator.source.series import Setting, Structure
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
 # Number of cached potentials; to bind the coefficients of another potential of a known structure takes milliseconds.
@@ -45,7 +45,6 @@ _outlines: set[tuple[Hashable, Setting]] = set()
 def load_kernels(
     definition: Definition,
     channels: int,
-    reach: float = REACH,
     *,
     sides: tuple[int, ...] = (),
     rotation: float = 0.0,
@@ -58,8 +57,6 @@ def load_kernels(
         ((i, j, c), …) of V = Σ c x^i y^j, or an expression.
     channels
         Number of exit channels, 0 or more.
-    reach
-        Radius about the origin, above 0, that contains all orbits.
     sides
         For each circle at which orbits end: −1 if they end inside it, 1 if they end outside.
     rotation
@@ -71,13 +68,13 @@ def load_kernels(
     this structure first uses a kernel, the generated functions that it calls are loaded from the cache or compiled, which takes
     some seconds.
     """
-    return _load(definition, Setting(channels, sides, rotation != 0.0), rotation, reach)
+    return _load(definition, Setting(channels, sides, rotation != 0.0), rotation)
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
     """Return whether functions were generated for a potential of the same structure; to generate them takes up to 0.3 s."""
     # Outlines are compared first, because to find the structure of a new formula takes up to 0.2 s.
-    return (_outline(definition), setting) in _outlines and find_structure(definition, setting, REACH) in _code_by_structure
+    return (_outline(definition), setting) in _outlines and find_structure(definition, setting) in _code_by_structure
 
 
 class GeneratedKernel:
@@ -140,8 +137,8 @@ class _BoundKernel:
 
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)
-def _load(definition: Definition, setting: Setting, rotation: float, reach: float) -> ModuleType:
-    code, module_name, generated = _define(find_structure(definition, setting, reach))
+def _load(definition: Definition, setting: Setting, rotation: float) -> ModuleType:
+    code, module_name, generated = _define(find_structure(definition, setting))
     _outlines.add((_outline(definition), setting))
     coefficients = code.tabulate(definition, rotation)
     bound_module = ModuleType(module_name)

@@ -295,8 +295,14 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
 
 
 def _as_finished[Key, Result](keys: dict[Future[Result], Key], execution: Execution) -> Iterator[tuple[Key, Result]]:
-    """Yield the key and the result of each call when it is finished, except calls that were dropped by a cancellation."""
+    """Yield the key and the result of each call when it is finished.
+
+    When the computation is cancelled, calls that have not begun are dropped.
+    """
     for future in as_completed(keys):
+        if execution.is_cancelled:
+            for pending in keys:
+                pending.cancel()
         result = execution.collect(future)
         if result is not None:
             yield keys[future], result

@@ -165,9 +165,9 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
     starts = read_starts("frame", frame)
     made_by = dict(starts.made_by)
     if window is not None:
-        edges = checked_window(window)
-        starts = starts.inside(edges)
-        made_by["counted_in"] = (edges.x_low, edges.x_high, edges.ordinate_low, edges.ordinate_high)
+        rectangle = checked_window(window)
+        starts = starts.inside(rectangle)
+        made_by["counted_in"] = rectangle.edges
     has_escaped = starts.fate >= 1
     times = starts.escape_time[has_escaped]
     # The number of starts by code; the lowest code, which is negative, has index 0.

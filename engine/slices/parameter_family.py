@@ -31,7 +31,7 @@ _NEWTON_STEPS = 20
 # Number of potentials along the axis that `find_members` finds.
 _SCAN_VALUES = 112
 # Largest last step of Newton's method that has converged, as a share of the distance from the origin.
-_CONVERGED = 1e-12
+_TOLERANCE = 1e-12
 # Largest distance by which Newton's method may move a saddle, as a share of the distance to the nearest other saddle.
 _LARGEST_SHARE = 0.5
 # Largest distance between two saddles that count as the same, as a share of their distance from the origin.
@@ -151,7 +151,7 @@ class ParameterFamily:
         has no potential at the node, the value itself is the next node.
         """
         distance = abs(end - self._own_value)
-        next_multiple = self._step * (math.floor(distance / self._step * (1.0 + _CONVERGED)) + 1)
+        next_multiple = self._step * (math.floor(distance / self._step * (1.0 + _TOLERANCE)) + 1)
         node = self._own_value + sign * (next_multiple if distance < self._reach else 2.0 * distance)
         try:
             self._axis.potential(node)
@@ -275,12 +275,12 @@ def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
     with np.errstate(all="ignore"):
         step = np.full_like(points, np.inf)
         for _ in range(_NEWTON_STEPS):
-            if not np.any(np.hypot(*step.T) > _CONVERGED * np.hypot(*points.T)):
+            if not np.any(np.hypot(*step.T) > _TOLERANCE * np.hypot(*points.T)):
                 break
             (gx, gy), (vxx, vxy, vyy) = potential.gradient(*points.T), potential.hessian(*points.T)
             step = np.column_stack([gx * vyy - gy * vxy, gy * vxx - gx * vxy]) / (vxx * vyy - vxy * vxy)[:, None]
             points = points - step
-        has_converged = np.hypot(*step.T) <= _CONVERGED * np.hypot(*points.T)
+        has_converged = np.hypot(*step.T) <= _TOLERANCE * np.hypot(*points.T)
         is_near = np.hypot(*(points - start).T) <= _LARGEST_SHARE * _separation(start)
     result: np.ndarray = np.where((has_converged & is_near)[:, None], points, np.nan)
     return result

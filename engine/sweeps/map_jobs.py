@@ -66,8 +66,8 @@ def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | No
     return longest if longest is not None and longest.batch is not None else None
 
 
-def _measure_point(point: SweepPoint, frame: EscapeMap, *, execution: Execution) -> xr.Dataset:
-    return compute_point(point, frame=frame, execution=execution)
+def _measure_point(point: SweepPoint, escape_map: EscapeMap, *, execution: Execution) -> xr.Dataset:
+    return compute_point(point, escape_map=escape_map, execution=execution)
 
 
 # The manager passes the options; `find_result` returns the results of other jobs.

@@ -28,7 +28,7 @@ class MeasuredMap:
 
     Attributes
     ----------
-    frame
+    escape_map
         The map.
     box
         Window of the starts that count; None for all starts.
@@ -38,7 +38,7 @@ class MeasuredMap:
         Number of additional orbits as a share of the usual number; a tenth makes intervals up to three times as wide.
     """
 
-    frame: EscapeMap
+    escape_map: EscapeMap
     box: Window | None = None
     execution: Execution = DEFAULT_EXECUTION
     effort: float = 1.0
@@ -46,12 +46,12 @@ class MeasuredMap:
     @property
     def spec(self) -> MapSpec:
         """The request of the map."""
-        return self.frame.spec
+        return self.escape_map.spec
 
     @cached_property
     def starts(self) -> Starts:
         """The starts that count."""
-        starts = read_starts("frame", self.frame)
+        starts = read_starts("escape_map", self.escape_map)
         return starts if self.box is None else starts.inside(self.box)
 
     @cached_property
@@ -64,8 +64,8 @@ class MeasuredMap:
 
         If there are more starts than `effort` allows, some are drawn at random.
         """
-        index = np.s_[:, :] if self.box is None else read_starts("frame", self.frame).place(self.box)
-        is_bounded = np.zeros(self.frame.fate.shape, bool)
+        index = np.s_[:, :] if self.box is None else read_starts("escape_map", self.escape_map).place(self.box)
+        is_bounded = np.zeros(self.escape_map.fate.shape, bool)
         is_bounded[index] = self.starts.fate == Fate.BOUNDED
         pixels = np.flatnonzero(is_bounded)
         most_pixels = round(self.effort * MOST_JUDGED)
@@ -79,11 +79,11 @@ class MeasuredMap:
 
     def _map_of(self, pixels: np.ndarray) -> EscapeMap:
         """Return the map with the fates of n pixels and of their mirror images; all other starts are outside."""
-        frame = self.frame
-        is_kept = np.zeros(frame.fate.size, bool)
+        escape_map = self.escape_map
+        is_kept = np.zeros(escape_map.fate.size, bool)
         is_kept[pixels] = True
-        is_kept[MirrorPixels(frame.spec, frame.x, frame.ordinate).partner[pixels]] = True
-        return replace(frame, fate=np.where(is_kept.reshape(frame.fate.shape), frame.fate, Fate.OUTSIDE))
+        is_kept[MirrorPixels(escape_map.spec, escape_map.x, escape_map.ordinate).partner[pixels]] = True
+        return replace(escape_map, fate=np.where(is_kept.reshape(escape_map.fate.shape), escape_map.fate, Fate.OUTSIDE))
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 # Name of the attribute of the group with the number of values on the disk.
-_FINISHED = "finished"
+_COUNT_ATTRIBUTE = "finished"
 # Pattern of the names of the temporary files of Zarr.
 _PARTIAL_FILES = "*.partial"
 # Names of attributes that follow from the potential, in words that may change from version to version.
@@ -80,11 +80,11 @@ class SweepStore:
 
         mode: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
         with _naming(self._path):
-            point.assign_attrs(self._attributes | {_FINISHED: self._finished}).to_zarr(self._path, **mode, **_OPTIONS)
+            point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(self._path, **mode, **_OPTIONS)
             for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*"):
                 for file in self._path.glob(pattern):
                     _sync_to_disk(file)
-            zarr.open_group(self._path, mode="r+", use_consolidated=False).attrs[_FINISHED] = self._finished + 1
+            zarr.open_group(self._path, mode="r+", use_consolidated=False).attrs[_COUNT_ATTRIBUTE] = self._finished + 1
             _consolidate(self._path)
         self._finished += 1
 
@@ -98,7 +98,7 @@ class SweepStore:
         if "result" not in group.attrs:
             raise ValueError(f"store={self._path}: is of an earlier version, which `open_result` reads; must be a new folder")
         check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
-        self._finished = int(group.attrs[_FINISHED])  # type: ignore[arg-type]
+        self._finished = int(group.attrs[_COUNT_ATTRIBUTE])  # type: ignore[arg-type]
         if self._finished == self._attributes["count"]:
             return
         # If the store is not writable, this fails before anything is computed.

@@ -82,9 +82,7 @@ class Well(ReadOnlyArrays):
         if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
         form, points, indices = self.form, self.critical_points, self.critical_indices
-        leads_out = stored_points(
-            "exit_saddles", form, lambda: leads_out_of_well(form.downhill, form.hessian, points, indices, form.singular_points)
-        )
+        leads_out = stored_points("exit_saddles", form, lambda: leads_out_of_well(form, points, indices, form.singular_points))
         return self._in_channel_order(points[leads_out])
 
     def _in_channel_order(self, points: np.ndarray) -> np.ndarray:
@@ -164,7 +162,7 @@ class Well(ReadOnlyArrays):
             return ()
         form, points, indices = self.form, self.critical_points, self.critical_indices
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
-        beside = stored_points("maxima", form, lambda: find_maxima_beside(form.downhill, form.hessian, points, indices, saddles))
+        beside = stored_points("maxima", form, lambda: find_maxima_beside(form, points, indices, saddles))
         maxima = np.flatnonzero(beside.sum(axis=0) > 1)
         return self._mergers_at(points[maxima], [np.flatnonzero(beside[:, k]) + 1 for k in maxima])
 

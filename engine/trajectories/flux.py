@@ -157,7 +157,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
     """Return the area of the interior and its error, from the lengths of its sections with evenly spaced lines."""
     window = default_window(potential, SPACE, h)
-    row_height = (window.ordinate_high - window.ordinate_low) / _ROWS
+    row_height = window.height / _ROWS
     y = window.ordinate_low + row_height * (np.arange(_ROWS) + 0.5)
     x = np.linspace(window.x_low, window.x_high, _COLUMNS)
     inside = _is_inside(potential, h, *np.meshgrid(x, y))

@@ -47,7 +47,7 @@ class PointSpacing:
     @classmethod
     def for_window(cls, plane_window: Window, window: Window | None) -> PointSpacing:
         """Return the spacing for a window, or for the window of the whole plane, both on the plane of the stable manifold."""
-        coarse = SPACING * (plane_window.x_high - plane_window.x_low)
+        coarse = SPACING * plane_window.width
         if window is None:
             return cls(coarse, coarse)
         low, high = np.array([[window.x_low, -window.ordinate_high], [window.x_high, -window.ordinate_low]])

@@ -23,7 +23,7 @@ from engine.foundations.extras import require_package
 from engine.results import SampledOrbits
 from plots.pictures.orbit_curves import find_well_window
 from plots.pictures.palette import LIGHT, Palette
-from plots.printed.figure_axes import RENDER_LOCK, label_axes, name_panel, new_figure, set_font, style_axes
+from plots.printed.figure_axes import RENDER_LOCK, new_figure, set_font, style_axes
 from plots.printed.figure_style import FigureStyle
 from plots.printed.map_figure import show_window
 from plots.printed.potential_figure import draw_well
@@ -136,9 +136,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
     axes.set_xlim(0.0, last)
     axes.set_ylim(max(least, 0.5 * np.exp(-rate * last)), 1.2)
     axes.yaxis.set_major_locator(LogLocator())
-    style_axes(axes, style, grid=True)
-    label_axes(axes, "t", "share inside", style)
-    name_panel(axes, "Share still inside", style)
+    style_axes(axes, style, grid=True, names=("t", "share inside"), title="Share still inside")
     axes.legend(loc="upper right", fontsize=style.small_size, frameon=False)
     line: Line2D = survival
     return line
@@ -147,8 +145,8 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
 def _show(stage: _Stage, orbits: SampledOrbits, place: int) -> None:
     """Show the orbits at the time with the index `place`."""
     window, t = stage.window, float(orbits.t[0, place])
-    across = (orbits.x[:, place] - window.x_low) / (window.x_high - window.x_low)
-    up = (orbits.y[:, place] - window.ordinate_low) / (window.ordinate_high - window.ordinate_low)
+    across = (orbits.x[:, place] - window.x_low) / window.width
+    up = (orbits.y[:, place] - window.ordinate_low) / window.height
     stage.particles.set_offsets(np.column_stack([across, up]))
     left = np.sort(orbits.escape_time[orbits.fate > Fate.BOUNDED])
     left = left[left <= t]

@@ -44,5 +44,5 @@ def draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float)
 def enlarge(window: Window) -> Window:
     """Return a square window around a window, larger by a margin."""
     across, up = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
-    half = 0.5 * _ENLARGED * (window.x_high - window.x_low)
+    half = 0.5 * _ENLARGED * window.width
     return Window(across - half, across + half, up - half, up + half)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine import EscapeMap, Fate, compute_uncertainty_exponent
+from reproduction.numbers.map_structure import neighbouring_fates
 
 ISLAND_PIXELS = 2
 """Largest distance, in pixels, from a bounded start to a start that counts as next to an island."""
@@ -16,7 +17,6 @@ LATE = 0.01
 
 # Limit of the integration time of the pairs, in time units of the well.
 _WORK = 1e7
-_NEIGHBOURHOOD = (3, 3)
 
 
 @dataclass(frozen=True)
@@ -49,11 +49,8 @@ def bounded_share_beside(frame: EscapeMap, sign: int) -> float:
 
 def end_times(frame: EscapeMap) -> EndTimes:
     """Return the median times to the end inside basins and at their boundaries."""
-    from scipy import ndimage
-
-    fate, counts, most = frame.fate, frame.interior, len(frame.spec.outcomes)
-    lowest = ndimage.minimum_filter(np.where(counts, fate, most), _NEIGHBOURHOOD, mode="nearest")
-    highest = ndimage.maximum_filter(np.where(counts, fate, 0), _NEIGHBOURHOOD, mode="nearest")
+    fate = frame.fate
+    lowest, highest = neighbouring_fates(fate, frame.interior, len(frame.spec.outcomes))
     at_basins = (fate > Fate.BOUNDED) & (lowest > Fate.BOUNDED)
     times = [frame.escape_time[at_basins & place] for place in (lowest == highest, lowest < highest)]
     return EndTimes(*(float(np.median(each)) if each.size else float("nan") for each in times))

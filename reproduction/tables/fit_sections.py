@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from engine import CASES, Plane, compute_statistics, fit_decay_laws
 from engine.foundations.wording import format_number
-from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
-from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from reproduction.analyses.published_fits import ShareCurve
+from reproduction.analyses.share_fits import ShareFit, fit_case, measure_deviation
 from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
 from reproduction.paper_ranges import three_energies
@@ -27,17 +25,11 @@ def write_fits(cache: MapCache) -> str:
     """Return a table of the fitted parameters with intervals, and the deviations of the published and new curves."""
     rows, sentences = [], []
     for case in CASES:
-        table, paper = cache.curves(case, Plane.X_PX), PAPER_FITS[case]
-        h, escaped, direct = table.values, table["share"][:, 1:].sum(axis=1), table["direct_share"]
-        curves: tuple[tuple[str, np.ndarray, ShareCurve, ShareFit], ...] = (
-            ("Ne/N0", escaped, paper.escaped, fit_escape_shares(h, escaped)),
-            ("Nde/N0", direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree)),
-        )
-        for name, shares, published, fitted in curves:
-            rows += list(_fit_rows(f"{case}, {name}", published, fitted))
-            off = measure_deviation(published, h, shares)
-            new = fitted.deviation.describe()
-            sentences.append(f"- Case {case}, {name}: the paper's curve lies {off.describe()}; the new fit {new}.")
+        for fit in fit_case(case, cache.curves(case, Plane.X_PX)):
+            rows += list(_fit_rows(f"{case}, {fit.name}", fit.published, fit.fitted))
+            off = measure_deviation(fit.published, fit.h, fit.shares)
+            new = fit.fitted.deviation.describe()
+            sentences.append(f"- Case {case}, {fit.name}: the paper's curve lies {off.describe()}; the new fit {new}.")
     intro = _FITS.format(count=cache.quality.curve_points)
     heads = ("fit", "parameter", "paper", "new fit", "95 % interval", "paper's inside")
     return "\n\n".join([intro, write_rows(heads, rows), "\n".join(sentences)])

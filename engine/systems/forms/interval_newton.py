@@ -17,7 +17,7 @@ Program = tuple[Graph, tuple[float, ...]]
 """A graph and its numbers."""
 
 # Factor by which the box of a proof is larger than the searched box, on whose edge a point may lie.
-_ENLARGED = 1.3
+_ENLARGEMENT = 1.3
 # Share of the box that covers the rounding errors of Krawczyk's operator.
 _MARGIN = 1e-9
 # Steps of Newton's method that refine a point after the proof.
@@ -115,7 +115,7 @@ def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[n
     matrix J on the box and Y its inverse at c. All critical points of the box lie in K. If K lies inside the box, the box has
     exactly one.
     """
-    jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGED * half))
+    jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGEMENT * half))
     slopes = enclose(*derivatives.slopes, *box(centres, 0.0))
     with np.errstate(all="ignore"):
         middle, spread = (each.reshape(-1, 2, 2) for each in _middle_and_spread(jacobian.values))
@@ -123,10 +123,10 @@ def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[n
         inverse = _inverse(derivatives.jacobian_at(centres))
         step = -np.einsum("nij,nj->ni", inverse, slope)
         rest = np.abs(np.eye(2) - inverse @ middle) + np.abs(inverse) @ spread
-        reach = _ENLARGED * half * rest.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
+        reach = _ENLARGEMENT * half * rest.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
         reach = reach * (1.0 + _MARGIN) + _MARGIN * half
         known = jacobian.defined & slopes.defined & np.isfinite(step + reach).all(axis=1)
-        single = known & (np.abs(step) + reach < _ENLARGED * half).all(axis=1)
+        single = known & (np.abs(step) + reach < _ENLARGEMENT * half).all(axis=1)
         empty = known & (np.abs(step) - reach > half).any(axis=1)
     return refined(derivatives, (centres + step)[single]), single | empty
 

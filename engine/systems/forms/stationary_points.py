@@ -34,7 +34,7 @@ _NEWTON_STEPS = 60
 # Second derivatives up to this are near the subnormal numbers.
 _SUBNORMAL = 1e-290
 # Length of a step of Newton's method below which it has converged, relative to the distance from the origin.
-_CONVERGED = 1e-12
+_TOLERANCE = 1e-12
 # Points closer than this, relative to their distance from the origin plus that of the nearest point, are the same.
 _SAME = 1e-8
 # The same for degenerate points, whose places are less accurate.
@@ -165,7 +165,7 @@ def _newton(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
     for _ in range(_NEWTON_STEPS):
         step = newton_step(derivatives, points)
         length = np.hypot(*step.T)
-        converged = length <= _CONVERGED * np.maximum(np.hypot(*points.T), _ZERO)
+        converged = length <= _TOLERANCE * np.maximum(np.hypot(*points.T), _ZERO)
         points = points - step
         roots.append(points[converged])
         points = points[~converged & np.isfinite(length)]
