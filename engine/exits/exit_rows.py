@@ -27,7 +27,7 @@ def closed_exits(potential: Potential) -> np.ndarray:
     Raises
     ------
     ValueError
-        If there are no exits although the well is not closed, so that it is undefined which orbits escape, or if V is not defined
+        If it is undefined which orbits escape, because there are no exits although the well is not closed, or if V is not defined
         somewhere within the escape radius.
     """
     if potential.escape_radius is not None:

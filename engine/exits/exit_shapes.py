@@ -182,7 +182,7 @@ def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndar
 
 
 def paths_meet(one: np.ndarray, other: np.ndarray) -> bool:
-    """Return whether two paths, (n, 2) and (m, 2), intersect or have the same ends; in the latter case they are the same path."""
+    """Return whether two paths, (n, 2) and (m, 2), intersect, or have the same ends and thus are the same path."""
     return _paths_cross(one, other) or bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
 
 

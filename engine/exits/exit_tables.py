@@ -1,4 +1,4 @@
-"""Exits tabulated over a range of energies, so that they can be interpolated where Lyapunov orbits cannot be computed.
+"""Exits tabulated over a range of energies, for programs that interpolate exits because they cannot compute Lyapunov orbits.
 
 The Lyapunov orbit over a saddle of energy E depends smoothly on σ = √(h − E). The width of the orbit is proportional to σ, its
 height to σ². The table has the columns of the exit curve, in the axes of the orbit's chord, at Chebyshev nodes in σ, for

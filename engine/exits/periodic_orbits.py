@@ -209,7 +209,7 @@ def _relative_size(change: np.ndarray, unknowns: np.ndarray) -> float:
 def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndarray | None:
     """Return the least-squares solution of the linearised equations; None where the trial orbit cannot be integrated.
 
-    The equations: each part ends where the next one begins, the energy is that of the saddle plus σ², and q̇ = 0 at the start.
+    The equations: each part ends where the next part begins, the energy is σ² above the saddle, and q̇ = 0 at the start.
     """
     states = family.saddle_state + sigma * unknowns[:-1].reshape(_NODES, 4)
     parts = _trace(family.potential, states, unknowns[-1])

@@ -44,8 +44,8 @@ FORMER_NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
 def find_former_name(name: str, stacklevel: int = 2) -> Any:
     """Return the object of a former public name of `escape_explorer`, and warn; raise an AttributeError for any other name.
 
-    Former names are those of `FORMER_NAMES`, and those that have moved to `escape_explorer.results`. `stacklevel` has the meaning
-    of `warnings.warn`; by default the warning refers to the caller.
+    Former names are the keys of `FORMER_NAMES`, and names that have moved to `escape_explorer.results`. `stacklevel` has the
+    meaning of `warnings.warn`; by default the warning refers to the caller.
     """
     results = import_module("..results", __package__)
     if name in results.__all__:

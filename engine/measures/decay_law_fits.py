@@ -26,8 +26,8 @@ from engine.measures.starts import Measurable, Starts, read_starts
 _DEVIATIONS = 1.96
 # Number of escapes in the next window that is tried, as a share of the number in the present window.
 _WINDOW_RATIO = 0.9
-# Share of the escapes, the latest, that the fit uses of the first window in which a law appears to hold; in the earlier ones, an
-# undetectable remainder of the transient still biases the rate.
+# Share of the escapes in the first window in which a law appears to hold, the latest, that the fit uses; with all of them, an
+# undetectable remainder of the transient would bias the rate.
 _SETTLED_SHARE = 0.5
 # Degrees of the Legendre polynomials in the test of a law; degree 1 is almost the score.
 _DEGREES = (2, 3, 4)

@@ -47,14 +47,14 @@ def run_sweep(spec: SweepSpec, store: Any, **options: Any) -> xr.Dataset:
 
 @checks_types(potential=Potential, orbit=LyapunovOrbit)
 def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
-    """Return the multipliers of an orbit; ValueError if the potential is not that of the orbit."""
+    """Return the multipliers of an orbit; ValueError if the orbit belongs to another potential."""
     _check_same_motion(potential, orbit.potential)
     return orbit.find_multipliers()
 
 
 @checks_types(potential=Potential, orbit=Orbit)
 def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
-    """Return the crossings of y = 0 of an orbit; ValueError if the potential is not that of the orbit."""
+    """Return the crossings of y = 0 of an orbit; ValueError if the orbit belongs to another potential."""
     if orbit.potential is not None:
         _check_same_motion(potential, orbit.potential)
     return replace(orbit, potential=potential).find_section_crossings()

@@ -58,7 +58,7 @@ def open_result(path: str | os.PathLike[str], kind: type[Any] = Result) -> Any:
 
     Returns
     -------
-    A result equal to the one that was written. A map has no integration state and cannot be resumed. `compute_sweep` accepts a
+    A result equal to the written result. A map has no integration state and cannot be resumed. `compute_sweep` accepts a
     `Sweep` as `earlier`. The dataset of a sweep in a store is read on access; measures and analyses accept a map of the sweep,
     ``sweep.dataset.sel(h=0.3)``. Sweeps and curves of earlier versions are opened as datasets.
 

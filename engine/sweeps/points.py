@@ -40,7 +40,7 @@ def compute_point(
 
     Returns
     -------
-    The dataset of the measures. Its first dimension, of size 1, is that of the values of the sweep.
+    The dataset of the measures. Its first dimension, of size 1, has the name of the varied quantity.
 
     Raises
     ------

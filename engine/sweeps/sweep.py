@@ -193,7 +193,7 @@ def _measure_all(
     measure: Callable[[SweepPoint], xr.Dataset] | None,
     execution: Execution,
 ) -> Sweep:
-    """Measure the values that the storage lacks: those of the request in the given order, then those that refine it."""
+    """Measure the values that the storage lacks: values of the request in the given order, then values that refine it."""
     dataset = storage.read()
     while (value := _next_value(spec, dataset, order)) is not None:
         part = execution.part(dataset.sizes[spec.name], spec.count)

@@ -153,8 +153,8 @@ def split_curve(curve: np.ndarray, spacing: PointSpacing, closed: bool) -> list[
     runs = [(begin, end) for begin, end in itertools.pairwise(edges) if end - begin > 1]
     pieces = [curve[begin:end, :2] for begin, end in runs]
     if closed and runs and runs[0][0] == 0 and runs[-1][1] == len(curve):
-        # The first and the last point of a closed curve are those of one orbit. Without a gap, only the first point replaces the
-        # last.
+        # The first and the last point of a closed curve belong to the same orbit. The first piece, or without a gap its first
+        # point, replaces the last point.
         last = pieces.pop()
         pieces[:1] = [np.concatenate([last[:-1], pieces[0] if pieces else last[:1]])]
     return pieces

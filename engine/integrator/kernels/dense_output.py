@@ -223,7 +223,7 @@ def sample_steps(jets, coefficients, steps, count, end, path):
     steps (n, 5): x, y, px, py, t at the start of each step; end: the time at which the last of the `count` steps ends.
     """
     points = path.shape[1] // count
-    # WebAssembly computes the series of pairs, so that two steps are processed at a time.
+    # Two steps are processed at a time, because WebAssembly computes the series of pairs.
     start = np.zeros((4, 2))
     x_series, y_series = np.zeros((ORDER + 1, 2)), np.zeros((ORDER + 1, 2))
     for first in range(0, count, 2):

@@ -62,7 +62,7 @@ def launch_from_radius(x, y, speed, angle):
 
 @subroutine
 def _place(motion, points, i, start):
-    """Set the coordinates of a start (COORDINATES,); the momentum that the energy determines is still that of `motion`."""
+    """Set the coordinates of a start (COORDINATES,); the momentum that the energy determines is set later."""
     for column in range(COORDINATES):
         start[column] = motion[0, column]
         for axis in range(points.shape[0]):

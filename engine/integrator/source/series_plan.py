@@ -72,7 +72,7 @@ def _find_needed(results: Sequence[int], nodes: Sequence[Node], groups: Sequence
         index = pending.pop()
         if index not in needed:
             needed.add(index)
-            # A product in a group is not computed itself, but from its first factor and the root of the group.
+            # The sum over a group is computed from the first factors of its products, and from the root of the group.
             root_by_product = {product: root for root, products in groups[index].items() for product in products}
             pending += [operand for operand in nodes[index].operands if operand not in root_by_product]
             pending += [node for product, root in root_by_product.items() for node in (nodes[product].operands[0], root)]
