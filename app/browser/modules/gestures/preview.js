@@ -95,7 +95,9 @@ export class Preview {
   #energy = null
   /** Default window at this energy; null if the ranges keep their window. @type {import("../engine/starts.js").Window | null} */
   #window = null
+  /** Whether the energy is being dragged or played. */
   #isHeld = false
+  /** Whether a call of `#follow` waits for the end of the task. */
   #followsSoon = false
   /** The preview on the page. @type {import("../engine/pixels.js").View | null} */
   #shownView = null
