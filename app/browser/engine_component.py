@@ -1,4 +1,4 @@
-"""The engine in the visitor's browser, which shows previews while energy or window moves, and the orbit under the cursor."""
+"""The engine in the visitor's browser: previews while the energy or the window changes, and the orbit under the cursor."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class EngineComponent(JSComponent):
     address = param.String(doc="address of the first module")
     system = param.Dict(default={}, doc="see `BrowserSystem.to_dict`")
     view = param.Dict(default={}, doc="see `BrowserEngine.show_view`")
-    command = param.Dict(default={}, doc="name: play or stop; energy, low, high; number that makes repeats differ")
+    command = param.Dict(default={}, doc="name: play or stop; energy, low, high; number: makes equal commands differ")
 
     _esm = Path(__file__).with_suffix(".js")
 
@@ -58,7 +58,7 @@ class BrowserEngine(param.Parameterized):
         self._component.view = view
 
     def play(self, energy: float, low: float, high: float) -> None:
-        """Animate the energy from `energy` up to `high`, or from `low` at the end of the range."""
+        """Animate the energy from `energy` up to `high`, or from `low` if `energy` is the end of the range."""
         self.playing = True
         self._component.command = {"name": "play", "energy": energy, "low": low, "high": high, "number": next(self._numbers)}
 

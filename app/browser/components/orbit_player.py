@@ -1,4 +1,4 @@
-"""The player of the time along the orbits, whose steps the browser counts and reports."""
+"""The player of the time along the orbits. The browser counts and reports its steps."""
 
 from __future__ import annotations
 

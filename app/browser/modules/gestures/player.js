@@ -27,7 +27,8 @@ export class Player {
   }
 
   /**
-   * Start at an energy, or at the beginning of the range if the energy is its end or outside. During an animation, this has no effect.
+   * Start at an energy, or at the low end of the range if the energy is its high end or outside.
+   * During an animation, this has no effect.
    *
    * @param {number} energy
    * @param {number} low
