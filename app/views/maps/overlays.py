@@ -1,4 +1,4 @@
-"""The marks of pixels, and the curves, that layers draw over the pictures."""
+"""Marks of pixels, and curves, which layers draw over the pictures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CURVE_COLUMNS = ("xs", "ys", "colour", "width", "alpha", "halo_width", "halo_al
 
 
 class Overlays:
-    """Draws marks and curves of layers over the pictures; a layer is added to the figures when it is first shown.
+    """Draws marks and curves of layers over the pictures. A layer is added to the figures when it is first shown.
 
     Parameters
     ----------
@@ -39,7 +39,8 @@ class Overlays:
     def draw(self, plot: figure, picture: str) -> None:
         """Add a figure of a picture, over which layers will be drawn."""
         for layer in _LAYERS.values():
-            self._figures_without[layer.name] += [plot] if layer.over_picture(picture) is not None else []
+            if layer.over_picture(picture) is not None:
+                self._figures_without[layer.name].append(plot)
 
     def begin(self, spec: MapSpec) -> None:
         """Remove the curves of another map."""

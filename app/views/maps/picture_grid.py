@@ -1,4 +1,4 @@
-"""The arrangement of the pictures: side by side, or one enlarged above a row of the others."""
+"""The arrangement of the pictures: side by side, or one picture enlarged above a row of the other pictures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SHORT_TITLES = {"well": "Well"} | {name: picture.short_title for name, picture i
 FIRST = "basins"
 """The picture that is largest, or on narrow screens the only picture, until another is chosen."""
 
-# Largest number of pictures of the same size; of more pictures, one is twice as large as the others.
+# Largest number of pictures of the same size. Among more pictures, one is twice as large as the others.
 _MOST_EQUAL = 4
 
 
@@ -54,20 +54,20 @@ class PictureGrid:
         return tuple(self._panes)
 
     def show(self, panes: dict[str, FigurePane]) -> None:
-        """Put pictures on the page in this order, and remove other pictures, which would be painted with each frame if hidden."""
+        """Put pictures on the page in this order, and remove other pictures: hidden pictures would be painted with each frame."""
         self._panes = panes
         self._place()
 
     def enlarge(self, name: str) -> None:
-        """Show a picture large; all are side by side if the name is empty or its picture not on the page."""
+        """Show a picture large. If the name is empty or the picture is not on the page, all pictures are side by side."""
         self._enlarged_picture = name
         self._place()
 
     def mark_empty(self, name: str, empty: bool) -> None:
         """Set whether a picture shows nothing. The picture of a layer is not the largest if it shows nothing."""
-        marked = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
-        if marked != self._empty_pictures:
-            self._empty_pictures = marked
+        empty_pictures = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
+        if empty_pictures != self._empty_pictures:
+            self._empty_pictures = empty_pictures
             self._place()
 
     def mark_stale(self, stale: bool) -> None:
@@ -80,7 +80,7 @@ class PictureGrid:
         self._place()
 
     def _choose(self, name: str | None) -> None:
-        # Other values come from the page itself, which the picker follows.
+        # The largest picture comes from `_place`: the picker follows the page.
         if name is not None and name != self._largest_picture:
             self._on_choose(name)
 
@@ -92,18 +92,19 @@ class PictureGrid:
 
     def _place(self) -> None:
         # A Bokeh pane on the page cannot change its CSS classes, but its figure can.
-        largest, is_enlarged = self._largest_picture, self._enlarged_picture in self._panes
+        largest = self._largest_picture
+        is_enlarged = self._enlarged_picture in self._panes
         are_many = len(self._panes) > _MOST_EQUAL
-        other = "small" if is_enlarged else "compact" if are_many else "equal"
+        other_kind = "small" if is_enlarged else "compact" if are_many else "equal"
         with pn.io.hold():
             self._set_class("enlarged", is_enlarged)
             self._set_class("many", are_many and not is_enlarged)
             for name, pane in self._panes.items():
                 plot: figure = pane.object
-                kinds = ["well" if name == "well" else "map", "picked" if name == largest else other]
-                if plot.css_classes != kinds:
-                    plot.css_classes = kinds
-                    set_borders(plot, kinds[1])
+                classes = ["well" if name == "well" else "map", "picked" if name == largest else other_kind]
+                if plot.css_classes != classes:
+                    plot.css_classes = classes
+                    set_borders(plot, classes[1])
             self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=largest)
             parts = [*([self.picker] if self.picker.visible else []), *self._panes.values()]
             if parts != self._column.objects:
