@@ -1,4 +1,4 @@
-"""The time that all pictures of orbits show, which is dragged or played."""
+"""The time that all pictures of orbits show. The user drags or plays this time."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Playback:
         begin, end = interval or (0.0, 0.0)
         if (begin, end) != (self.player.begin, self.player.end):
             self.player.param.update(begin=begin, end=end)
-            # At the beginning, a cross marks the start. The moving point appears later.
+            # At the beginning, no moving point is shown: a cross marks the start.
             self._on_time(None)
 
     def _report(self, step: int) -> None:

@@ -15,27 +15,28 @@ from engine.propagation.fates import UNRESOLVED
 
 
 class AccessibleTable:
-    """Writes what the page shows into a table, while the table is open."""
+    """Writes what the page shows into a table while the table is open."""
 
     def __init__(self, state: ViewState, results: ShownResults) -> None:
         self._state, self._results = state, results
         self.text = TextPane("", name="accessible-table", sizing_mode="stretch_width", margin=(0, 10))
         self.fold = Fold("This page as a table", lambda: [self.text])
-        self.fold.button.on_click(lambda event: self._write())
-        results.param.watch(lambda *events: self._write(), ["frame", "orbits"])
+        self.fold.button.on_click(lambda event: self._update())
+        results.param.watch(lambda *events: self._update(), ["frame", "orbits"])
 
-    def _write(self) -> None:
+    def _update(self) -> None:
         if self.fold.is_open:
-            self._fill()
+            self._write_table()
 
-    def _fill(self) -> None:
-        cells = (*self._view(), *self._map(), *self._chosen())
+    def _write_table(self) -> None:
+        cells = (*self._view_rows(), *self._map_rows(), *self._orbit_rows())
         rows = "".join(f"<tr><th scope=row>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in cells)
         head = "<tr><th scope=col>quantity</th><th scope=col>value</th></tr>"
         self.text.object = f"<table><caption>What is shown</caption>{head}{rows}</table>"
 
-    def _view(self) -> list[tuple[str, str]]:
-        state, reviewed = self._state, self._state.reviewed
+    def _view_rows(self) -> list[tuple[str, str]]:
+        state = self._state
+        reviewed = state.reviewed
         rows = [("system", reviewed.system.title), ("potential V(x, y)", reviewed.formula)]
         rows += [("plane", state.plane.title), ("t_max", format_whole(state.t_max))]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
@@ -44,19 +45,20 @@ class AccessibleTable:
             rows += [("window", f"x from {w.x_low!r} to {w.x_high!r}, ordinate from {w.ordinate_low!r} to {w.ordinate_high!r}")]
         return [*rows, ("energy h", f"{state.energy!r}")]
 
-    def _map(self) -> list[tuple[str, str]]:
+    def _map_rows(self) -> list[tuple[str, str]]:
         frame = self._results.whole_map
         if frame is None:
             return []
         statistics = compute_statistics(frame)
         shares = statistics.shares
         rows = [(end.action, format_share(shares[fate], 2)) for fate, end in enumerate(statistics.outcomes, 1)]
-        rows += [(UNRESOLVED, format_share(shares[Fate.FAILED], 2))] if statistics.failed else []
+        if statistics.failed:
+            rows += [(UNRESOLVED, format_share(shares[Fate.FAILED], 2))]
         rows += [("bounded", format_share(shares[Fate.BOUNDED], 2)), ("direct escapes", format_share(statistics.direct_share, 2))]
         rows += [("mean escape time", _time(statistics.mean_escape_time))]
         return [*rows, ("median escape time", _time(statistics.median_escape_time))]
 
-    def _chosen(self) -> list[tuple[str, str]]:
+    def _orbit_rows(self) -> list[tuple[str, str]]:
         return [
             (f"orbit {place + 1}, from {format_number(one.start[0], 6)}, {format_number(one.start[1], 6)}", one.describe())
             for place, one in enumerate(self._results.orbits)

@@ -19,7 +19,7 @@ from plots.layers import table
 _TITLES = {"well": "the well"} | {name: picture.title for name, picture in table.PICTURES.items()}
 
 PICTURE_KEYS: Mapping[str, str] = MappingProxyType({str(number): name for number, name in enumerate(PICTURES, 1)})
-"""The picture that each key enlarges, or shows at its usual size again."""
+"""The picture that each key enlarges. A second press shows the picture at its usual size again."""
 
 WINDOW_KEYS: Mapping[str, str] = MappingProxyType(
     {
@@ -57,8 +57,8 @@ class BrowserListener(JSComponent):
     """Listens in the browser, and sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
 
     keys = param.List(default=list(KEYS))
-    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number, see `command`")
-    command = param.Dict(default={}, doc="name, as back or copy; text to copy; number that makes repeats differ")
+    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number: see `command`")
+    command = param.Dict(default={}, doc="name, such as back or copy; text to copy; number: makes equal commands differ")
 
     _esm = Path(__file__).with_suffix(".js")
 
@@ -72,18 +72,18 @@ class BrowserActions:
     key
         Handles a key of `KEYS`, unless a field, slider or menu uses the key.
     navigate
-        Shows the entry to which the browser's Back or Forward leads, given by query string and number, and notes the number of
-        such steps so far.
+        Shows the entry to which the browser's Back or Forward leads. The arguments are the query string and the number of the
+        entry, and the number of such steps so far.
     dark
-        Uses the dark theme or not, after each change of the theme and for a page that begins dark.
+        Sets whether the theme is dark: after each change of the theme, and at the beginning of a dark page.
     touch
         Adapts the page to touch input.
     narrow
         Adapts the page to the layout of a phone, at the beginning or after a change of width.
     copied
-        Handles whether a text could be copied.
+        Takes whether the browser has copied the text.
     enlarge
-        Handles the button of the picture of this name.
+        Handles a click on the button of the picture of this name.
     """
 
     key: Callable[[str], None]
@@ -96,10 +96,11 @@ class BrowserActions:
 
 
 class BrowserEvents:
-    """Passes events of the browser to callbacks, and commands to the browser; of `KEYS`, it passes only `keys`."""
+    """Passes events of the browser to callbacks, and commands to the browser. Only the `keys` among `KEYS` are passed."""
 
     def __init__(self, actions: BrowserActions, keys: Collection[str] = KEYS) -> None:
-        self._actions, self._keys = actions, keys
+        self._actions = actions
+        self._keys = keys
         self._numbers = count()
         self._steps = 0
         self._listener = BrowserListener(keys=list(keys), width=0, height=0, margin=0, styles={"position": "absolute"})
@@ -110,7 +111,7 @@ class BrowserEvents:
         return self._listener
 
     def copy(self, text: str | None) -> None:
-        """Copy a text, or with None the address of the page; browsers allow copying only soon after a click or a key."""
+        """Copy a text; None copies the address of the page. Browsers allow copying only soon after a click or a key."""
         self._command("copy", text=text)
 
     def write_link(self, link: str, entry: int) -> None:
@@ -118,7 +119,7 @@ class BrowserEvents:
         self._listener.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
 
     def follow_steps(self, steps: int) -> None:
-        """Note the number of steps in the history that the view has followed; addresses written for fewer steps are ignored."""
+        """Note the number of steps in the history that the view has followed. Addresses with fewer steps are ignored."""
         self._steps = steps
 
     def go_back(self) -> None:
