@@ -16,7 +16,7 @@ from engine.measures.decay_laws import LawFit
 from engine.results import DecayLaws, EscapeStatistics, Sweep
 from plots.pictures.charts import BINS, CURVE_PANELS, MOST_CROSSINGS, SHARES, is_measured
 from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
-from plots.printed.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
+from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_title, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 
 # Equal curves, such as the shares of mirror-image channels, coincide. The second is dashed, so that both are visible.
@@ -53,11 +53,11 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
     grid = np.ravel(figure.subplots(math.ceil((1 + len(shown)) / columns), columns)).tolist()
     draw_shares(grid[0], curves.values, curves["share"], curves.outcomes, style)
     label_axes(grid[0], curves.symbol, SHARES.curve.axis, style)
-    name_panel(grid[0], SHARES.title, style)
+    set_title(grid[0], SHARES.title, style)
     add_panel_legend(grid[0], "best", style)
     for axes, measure in zip(grid[1:], shown, strict=False):
         draw_measure(axes, curves, measure, style)
-        name_panel(axes, measure.title, style)
+        set_title(axes, measure.title, style)
     for axes in grid[1 + len(shown) :]:
         axes.remove()
     return figure
@@ -87,14 +87,14 @@ def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> 
     figure = new_figure(style, style.width * (0.45 if columns == 2 else 1.6), "Statistics of the escapes")
     times, probabilities = figure.subplots(2 // columns, columns).ravel().tolist()
     draw_escape_times(times, statistics, style)
-    name_panel(times, "Escape times", style)
+    set_title(times, "Escape times", style)
     chances = statistics.escape_probabilities[: MOST_CROSSINGS + 1]
     probabilities.bar(np.arange(len(chances)), chances, color=MEASURED)
     probabilities.set_xlim(-0.6, MOST_CROSSINGS + 0.6)
     probabilities.set_ylim(0.0, 1.0)
     style_axes(probabilities, style, grid=True)
     label_axes(probabilities, "upward crossings n", "p", style)
-    name_panel(probabilities, "Escapes after n crossings", style)
+    set_title(probabilities, "Escapes after n crossings", style)
     return figure
 
 
@@ -159,7 +159,7 @@ def _mathtext(number: float) -> str:
     return f"{number:.3g}" if abs(int(power)) < 3 else rf"{digits} \times 10^{{{int(power)}}}"
 
 
-def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, across: str, up: str, *, logarithmic: str = "") -> None:
+def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, x_label: str, y_label: str, *, logarithmic: str = "") -> None:
     """Draw one measured curve. `logarithmic` contains the letters of the logarithmic axes, such as "xy"."""
     axes.plot(x, y, color=MEASURED, linewidth=1.4, marker="o" if x.size <= _MOST_MARKERS else "", markersize=3.0)
     if "x" in logarithmic:
@@ -167,4 +167,4 @@ def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, across: str, up: str, *,
     if "y" in logarithmic:
         axes.set_yscale("log")
     style_axes(axes, grid=True)
-    label_axes(axes, across, up)
+    label_axes(axes, x_label, y_label)

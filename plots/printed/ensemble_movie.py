@@ -23,7 +23,7 @@ from engine.foundations.extras import require_package
 from engine.results import SampledOrbits
 from plots.pictures.orbit_curves import find_well_window
 from plots.pictures.palette import LIGHT, Palette
-from plots.printed.figure_axes import RENDER_LOCK, label_axes, name_panel, new_figure, set_font, style_axes
+from plots.printed.figure_axes import RENDER_LOCK, label_axes, new_figure, set_font, set_title, style_axes
 from plots.printed.figure_style import FigureStyle
 from plots.printed.map_figure import show_window
 from plots.printed.potential_figure import draw_well
@@ -138,7 +138,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
     axes.yaxis.set_major_locator(LogLocator())
     style_axes(axes, style, grid=True)
     label_axes(axes, "t", "share inside", style)
-    name_panel(axes, "Share still inside", style)
+    set_title(axes, "Share still inside", style)
     axes.legend(loc="upper right", fontsize=style.small_size, frameon=False)
     line: Line2D = survival
     return line

@@ -86,10 +86,10 @@ def fit_height(figure: Figure) -> None:
     figure.set_figheight((panels.height + lines) / figure.dpi + gaps * _GAP)
 
 
-def label_axes(axes: Axes, across: str, up: str, style: FigureStyle = SCREEN) -> None:
+def label_axes(axes: Axes, x_label: str, y_label: str, style: FigureStyle = SCREEN) -> None:
     """Name both axes."""
-    axes.set_xlabel(across, fontsize=style.font_size)
-    axes.set_ylabel(up, fontsize=style.font_size)
+    axes.set_xlabel(x_label, fontsize=style.font_size)
+    axes.set_ylabel(y_label, fontsize=style.font_size)
 
 
 def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -> None:
@@ -107,16 +107,16 @@ def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -
         axes.grid(alpha=0.25, linewidth=0.5)
 
 
-def name_panel(axes: Axes, words: str, style: FigureStyle = SCREEN) -> None:
+def set_title(axes: Axes, words: str, style: FigureStyle = SCREEN) -> None:
     """Write the title of a panel above its left end, if the style has titles."""
     if style.titles:
         axes.set_title(words, loc="left", fontsize=style.font_size, color=LIGHT.text, pad=4.0)
 
 
-def name_panels(panels: Iterable[Axes], words: Sequence[str]) -> None:
+def set_titles(panels: Iterable[Axes], words: Sequence[str]) -> None:
     """Title panels with (a), (b), … and their words."""
     for letter, axes, word in zip("abcdefghi", panels, words, strict=False):
-        name_panel(axes, f"({letter}) {word}")
+        set_title(axes, f"({letter}) {word}")
 
 
 def legend_handles(entries: Iterable[Entry]) -> list[Artist]:

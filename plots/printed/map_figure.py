@@ -46,9 +46,9 @@ from plots.printed.figure_axes import (
     fit_height,
     label_axes,
     legend_handles,
-    name_panel,
     new_figure,
     set_font,
+    set_title,
     size_in_points,
     style_axes,
     write_below,
@@ -163,7 +163,7 @@ def draw_picture(
             draw_strokes(axes, over.strokes(result), window, palette)
     show_window(axes, window, *spec.plane.axis_symbols, style)
     letters = int(_LETTERS_PER_EM * size_in_points(axes)[0] / style.font_size)
-    name_panel(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
+    set_title(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
 
 
 def _explain_picture(
@@ -287,10 +287,11 @@ def mark_starts(
         )  # fmt: skip
 
 
-def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
+def show_window(axes: Axes, shown: Window, x_name: str, y_name: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
     """Set limits, ticks and names of axes that show a window. `equal` gives both axes the same scale."""
     style_axes(axes, style)
-    x, y = label_axis(across, shown.x_low, shown.x_high), label_axis(up, shown.ordinate_low, shown.ordinate_high)
+    x = label_axis(x_name, shown.x_low, shown.x_high)
+    y = label_axis(y_name, shown.ordinate_low, shown.ordinate_high)
     axes.set_xticks(*zip(*_spaced(x.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
     axes.set_yticks(*zip(*y.ticks, strict=True))
     axes.set_xlim(0.0, 1.0)

@@ -20,8 +20,8 @@ from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
     label_axes,
-    name_panel,
     new_figure,
+    set_title,
     style_axes,
     write_below,
 )
@@ -99,7 +99,7 @@ def draw_path(
     _draw_paths(axes, orbits, window, palette)
     draw_limits(axes, potential, SPACE, widest.orbit.energy, window, palette.channels)
     show_window(axes, window, "x", "y", style, equal=True)
-    name_panel(axes, "Path", style)
+    set_title(axes, "Path", style)
 
 
 def _draw_paths(axes: Axes, orbits: Sequence[OrbitCurves], window: Window, palette: Palette) -> None:
@@ -129,7 +129,7 @@ def draw_quantity(
         axes.axhline(quantity.threshold, color=THRESHOLD, linestyle="--", linewidth=1.0)
     style_axes(axes, style)
     label_axes(axes, "t", quantity.label, style)
-    name_panel(axes, quantity.title, style)
+    set_title(axes, quantity.title, style)
 
 
 def _draw_history(axes: Axes, history: History, colour: str, label: str) -> None:

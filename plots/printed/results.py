@@ -28,7 +28,7 @@ from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, PALETTES, Entry, Palette, rgba
 from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_measure, draw_shares
-from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, legend_handles, name_panel, set_font, style_axes
+from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, legend_handles, set_font, set_title, style_axes
 from plots.printed.map_figure import draw_limits, draw_picture, draw_pixels, draw_strokes, show_window
 from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
@@ -114,12 +114,12 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
     if chart.by_channel:
         axes.bar(list(map(str, x)), y, color=[palette.channels[channel - 1] for channel in x])
         style_axes(axes)
-        label_axes(axes, chart.across, chart.up)
+        label_axes(axes, chart.x_label, chart.y_label)
     else:
         shown = np.maximum(y, 10.0**-_MOST_DECADES) if "y" in chart.logarithmic else y
-        draw_line(axes, x, shown, chart.across, chart.up, logarithmic=chart.logarithmic)
+        draw_line(axes, x, shown, chart.x_label, chart.y_label, logarithmic=chart.logarithmic)
     if chart.title:
-        name_panel(axes, chart.title.format(**result.numbers()))
+        set_title(axes, chart.title.format(**result.numbers()))
 
 
 def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> None:
@@ -136,7 +136,7 @@ def _draw_layer(layer: Layer, result: Result, axes: Axes, palette: Palette) -> N
     if layer.over is not None and layer.over.strokes is not None:
         draw_strokes(panel, layer.over.strokes(result), window, palette)
     show_window(panel, window, *spec.plane.axis_symbols)
-    name_panel(panel, layer.title)
+    set_title(panel, layer.title)
 
 
 def _panel(axes: Axes, window: Window) -> Axes:
@@ -193,7 +193,7 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
     axes.set_aspect("equal")
     style_axes(axes)
     label_axes(axes, "x", "y")
-    name_panel(axes, "Paths")
+    set_title(axes, "Paths")
     _add_legend_below(axes, entries)
 
 
@@ -203,7 +203,7 @@ def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     style_axes(axes)
     label_axes(axes, "x", "y")
-    name_panel(axes, f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
+    set_title(axes, f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
 
 
 @_draw.register
@@ -219,7 +219,7 @@ def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     axes.set_aspect("equal")
     style_axes(axes)
     label_axes(axes, "x", "y")
-    name_panel(axes, f"{result.name}: escape energy {result.escape_energy:.6g}")
+    set_title(axes, f"{result.name}: escape energy {result.escape_energy:.6g}")
 
 
 @_draw.register

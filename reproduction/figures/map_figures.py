@@ -16,7 +16,7 @@ from plots.layers.map_images import picture_pixels
 from plots.layers.picture import ColourScale
 from plots.pictures.palette import PAPER
 from plots.pictures.time_scale import TimeScale, common_scale
-from plots.printed.figure_axes import add_figure_legend, label_axes, legend_handles, name_panel, new_figure
+from plots.printed.figure_axes import add_figure_legend, label_axes, legend_handles, new_figure, set_title
 from plots.printed.figure_style import SCREEN
 from plots.printed.map_figure import add_colour_bar, draw_limits, draw_pixels, show_window
 from reproduction.map_cache import MapCache
@@ -38,7 +38,7 @@ def draw_nine_maps(case: str, cache: MapCache, *, plane: Plane, picture: str) ->
     panels = figure.subplots(_SIDE, _SIDE, sharex=True, sharey=True)
     for axes, frame in zip(panels.flat, frames, strict=True):
         draw_map_panel(axes, frame, picture, shown, times=times)
-        name_panel(axes, f"$h = {frame.spec.energy:.2f}$")
+        set_title(axes, f"$h = {frame.spec.energy:.2f}$")
         place = axes.get_subplotspec()
         label_axes(axes, axes.get_xlabel() if place.is_last_row() else "", axes.get_ylabel() if place.is_first_col() else "")
     if picture == "times":

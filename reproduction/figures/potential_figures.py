@@ -12,7 +12,7 @@ from engine import CASES, LyapunovOrbit, Plane, Potential, Window, find_lyapunov
 from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from plots.pictures.palette import LIGHT, PAPER
-from plots.printed.figure_axes import label_axes, name_panels, new_figure, style_axes
+from plots.printed.figure_axes import label_axes, new_figure, set_titles, style_axes
 from plots.printed.figure_style import SCREEN
 from plots.printed.potential_figure import draw_equipotentials, draw_pieces, enlarge
 from reproduction.map_cache import MapCache
@@ -44,7 +44,7 @@ def draw_potential(case: str, cache: MapCache) -> Figure:
         style_axes(axes)
         label_axes(axes, axis_label("x"), axis_label("y") if axes is panels[0] else "")
     escape = f"equipotentials, the escape energy ${potential.escape_energy:.4g}$ in red"
-    name_panels(
+    set_titles(
         panels, [escape, f"channels and Lyapunov orbits, $h = {energy}$", f"one orbit through each channel, $h = {energy}$"]
     )
     return figure

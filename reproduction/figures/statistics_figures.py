@@ -14,7 +14,7 @@ from engine import Plane, compute_statistics, fit_decay_laws
 from engine.results import EscapeStatistics
 from plots.pictures.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from plots.printed.curve_figures import draw_decay_laws, draw_shares
-from plots.printed.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
+from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_titles, style_axes
 from plots.printed.figure_style import SCREEN
 from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
 from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares
@@ -49,7 +49,7 @@ def draw_statistics(case: str, cache: MapCache) -> Figure:
     crossings = {energy: compute_statistics(cache.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
     _draw_crossings(panels[2], panels[3], crossings)
     after = "after $n$ crossings"
-    name_panels(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
+    set_titles(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
     return figure
 
 
@@ -93,7 +93,7 @@ def draw_percentages(case: str, cache: MapCache) -> Figure:
         table = cache.curves(case, plane)
         draw_shares(axes, table.values, table["share"], table.outcomes)
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
-    name_panels(panels, [f"the {plane_label(plane)} plane" for plane in planes])
+    set_titles(panels, [f"the {plane_label(plane)} plane" for plane in planes])
     add_panel_legend(panels[1], "center right")
     return figure
 
@@ -109,5 +109,5 @@ def draw_survival(case: str, cache: MapCache) -> Figure:
         statistics = compute_statistics(cache.map(case, Plane.X_PX, energy))
         draw_decay_laws(axes, fit_decay_laws(statistics), cache.quality.t_max)
         label_axes(axes, "$t$", "$S(t)$" if axes is panels[0] else "")
-    name_panels(panels, [f"$h = {energy:.2f}$" for energy in energies])
+    set_titles(panels, [f"$h = {energy:.2f}$" for energy in energies])
     return figure

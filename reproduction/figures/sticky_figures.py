@@ -18,8 +18,8 @@ from plots.printed.figure_axes import (
     add_panel_legend,
     label_axes,
     legend_handles,
-    name_panels,
     new_figure,
+    set_titles,
     style_axes,
 )
 from plots.printed.figure_style import SCREEN
@@ -70,7 +70,7 @@ def draw_super_sticky(cache: MapCache) -> Figure:
         style_axes(axes)
     label_axes(panels[0], "$t / 10^5$", "$R^2 = x^2 + y^2$")
     label_axes(panels[1], r"$t - t_{\mathrm{esc}}$", "")
-    name_panels(panels, ["from the start to the escape", "the last hundredth of the time"])
+    set_titles(panels, ["from the start to the escape", "the last hundredth of the time"])
     add_panel_legend(panels[0], "upper right")
     return figure
 
