@@ -1,4 +1,4 @@
-"""Limits of the charts of statistics and curves. A sweep has a panel for the shares, and one for each other measure."""
+"""Limits of the charts of statistics and curves. A sweep has a panel for the shares, and a panel for each other measure."""
 
 from __future__ import annotations
 

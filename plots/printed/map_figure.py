@@ -1,7 +1,7 @@
 """Draw maps with Matplotlib: pixels, limiting curve, exits, curves of layers, marks of starts, legend and provenance.
 
-Maps are drawn in shares of the window that their axes show, from 0 to 1, because in a deep zoom the transform from plane
-coordinates to pixels would lose all digits.
+The coordinates of a drawing are shares of the window that its axes show, from 0 to 1. In a deep zoom, the transform of
+coordinates of the plane to pixels would lose all digits.
 """
 
 from __future__ import annotations
@@ -55,9 +55,9 @@ from plots.printed.figure_axes import (
 )
 from plots.printed.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
 
-# Distance from a map to the text below its axis label, in units of the font size.
+# Distance from a map to the next element below the axis label, in units of the font size.
 _BELOW_AXIS = 3.7
-# Distance from a colour bar to the text below its labels, in units of the font size.
+# Distance from a colour bar to the next element below the labels of the bar, in units of the font size.
 _BELOW_BAR = 3.4
 # Distance from a map to the left edge of its legend, in units of the font size.
 _LEFT_OF_AXIS = 3.0
@@ -75,13 +75,15 @@ _LETTER_WIDTH = 0.5
 _BETWEEN_LABELS = 1.0
 # Smallest distance between ticks of a colour bar, as a share of its length.
 _BETWEEN_TICKS = 0.15
+# Dashes of exits without colours.
 _EXIT_DASHES = (0, (2.0, 1.5))
 # Width of the curves of layers in a file, relative to the width on the page.
 _LINE_SCALE = 0.6
+# Drawing order of halos: over pixels, below curves.
 _HALO_ORDER = 1.5
 # Curves are cut at this distance outside the window, as a share of the window.
 _RIM = 0.02
-# The number of a start is written inward within this distance of the right and upper edge of the picture, as a share of its side.
+# Width of the rim at the right and the upper edge, as a share of the side, where numbers of starts are on the inner side.
 _EDGE = 0.06
 
 
@@ -95,7 +97,7 @@ def draw_map_figure(
     starts: Sequence[tuple[float, float]] = (),
     times: TimeScale | None = None,
 ) -> Figure:
-    """Draw pictures of a map in rows, each with title, axes, curves and legend, and the provenance below all pictures.
+    """Draw pictures of a map in rows. Each has a title, axes, curves and a legend. The provenance is below all pictures.
 
     Parameters
     ----------
@@ -110,7 +112,7 @@ def draw_map_figure(
     analyses
         Results of the layers.
     starts
-        (x, ordinate) of each chosen orbit. Starts are numbered from 1; starts outside the window are counted but not drawn.
+        (x, ordinate) of each chosen orbit. Starts are numbered from 1. Starts outside the window are counted but not drawn.
     times
         Scale of the escape times; None for `fitted_scale`.
 
@@ -121,11 +123,11 @@ def draw_map_figure(
     """
     if not pictures:
         raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
-    times = times or fitted_scale(frame)
+    time_scale = times or fitted_scale(frame)
     columns = style.columns(len(pictures))
     rows = math.ceil(len(pictures) / columns)
     figure = new_figure(style, rows * _ROW_HEIGHT * style.width / columns, equal=True)
-    # Texts are measured at low resolution, because Matplotlib allocates all pixels of the figure to measure a text.
+    # Measure texts at low resolution, because Matplotlib allocates all pixels of the figure to measure a text.
     figure.set_dpi(POINTS_PER_INCH)
     grid = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
     for axes in grid[len(pictures) :]:
@@ -133,9 +135,9 @@ def draw_map_figure(
     for axes, picture in zip(grid, pictures, strict=False):
         axes.set_label(picture)
         axes.set_box_aspect(1.0)
-        draw_picture(axes, frame, picture, palette, analyses, times, style)
+        draw_picture(axes, frame, picture, palette, analyses, time_scale, style)
         mark_starts(axes, starts, palette, frame.spec.find_window(), style)
-        _explain_picture(axes, frame, picture, palette, analyses, times, style.inches / columns, style)
+        _explain_picture(axes, frame, picture, palette, analyses, time_scale, style.inches / columns, style)
     if style.titles:
         write_below(figure, [provenance_line(frame)], style, style.smallest_size)
     set_font(figure)
@@ -154,7 +156,8 @@ def draw_picture(
     style: FigureStyle = SCREEN,
 ) -> None:
     """Draw title, pixels, curves and axes of one of `TITLES`. `times` is the scale of the escape times."""
-    spec, window = frame.spec, frame.spec.find_window()
+    spec = frame.spec
+    window = spec.find_window()
     draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
     for name, result in analyses.items():
@@ -176,13 +179,13 @@ def _explain_picture(
     width: float,
     style: FigureStyle,
 ) -> None:
-    """Draw colour bar and legend below a map in a column `width` inches wide."""
+    """Draw the colour bar and the legend below a map, in a column that is `width` inches wide."""
     depth = _BELOW_AXIS * style.font_size
     legend = map_legend(picture, ShownMap.of(frame, palette, analyses, times))
     if legend.scale is not None:
-        bar = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
-        add_colour_bar(figure_of(axes), legend.scale, style, cax=bar, orientation="horizontal")
-        bar.get_xticklabels()[-1].set_horizontalalignment("right")
+        bar_axes = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
+        add_colour_bar(figure_of(axes), legend.scale, style, cax=bar_axes, orientation="horizontal")
+        bar_axes.get_xticklabels()[-1].set_horizontalalignment("right")
         depth += _BELOW_BAR * style.font_size
     handles = legend_handles([*legend.entries, *legend.others])
     # Matplotlib gives curves without a label names such as "_child0".
@@ -207,15 +210,15 @@ def draw_limits(
 ) -> None:
     """Draw the limiting curve of a slice and, on (x, y), the known Lyapunov orbits.
 
-    The orbits have the colours of their channels, or without colours are black and dashed.
+    Without `channel_colours`, the orbits are black and dashed.
     """
-    limit: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
-    draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit)
+    limit_style: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
+    draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit_style)
     h = common_energy(energy)
     orbits = find_known_exits(potential, h) if plane.shows_positions and h is not None else ()
     if channel_colours is None:
         paths = [orbit.half_path for orbit in orbits]
-        draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit)
+        draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit_style)
         return
     for orbit in orbits:
         style: dict[str, Any] = {"colors": channel_colours[orbit.channel - 1], "linewidths": 2.2}
@@ -236,14 +239,14 @@ def draw_strokes(axes: Axes, strokes: Sequence[Stroke], shown: Window, palette: 
 def draw_curve(
     axes: Axes, pieces: Iterable[np.ndarray], shown: Window, label: str = "", *, halo: bool = False, **style: Any
 ) -> None:
-    """Draw a curve that consists of pieces, as far as the window shows it.
+    """Draw the part of a curve that is inside the window. The curve consists of pieces.
 
     Parameters
     ----------
     axes
         Axes that show `shown`.
     pieces
-        Pieces, each (n, 2) points of the plane. Pieces of a single point are skipped.
+        Points of each piece in the plane, of shape (n, 2). Pieces of a single point are skipped.
     shown
         Window of the axes.
     label
@@ -253,15 +256,16 @@ def draw_curve(
     style
         Properties of `matplotlib.collections.LineCollection`.
     """
-    # Matplotlib clips lines after the transform to pixels, which has too few digits for lines far outside a deep zoom.
+    # Matplotlib clips lines after the transform to pixels. Far outside a deep zoom, this transform has too few digits.
     lines = [shapely.LineString(_shares(shown, piece)) for piece in pieces if len(piece) > 1]
-    visible = shapely.get_parts(shapely.clip_by_rect(lines, -_RIM, -_RIM, 1.0 + _RIM, 1.0 + _RIM))
-    if not len(visible):
+    visible_parts = shapely.get_parts(shapely.clip_by_rect(lines, -_RIM, -_RIM, 1.0 + _RIM, 1.0 + _RIM))
+    if not len(visible_parts):
         return
     if halo:
         style["path_effects"] = [withStroke(linewidth=1.8 * style["linewidths"], foreground=LIGHT.halo)]
     axes.add_collection(
-        LineCollection([shapely.get_coordinates(part) for part in visible], label=label, **({"zorder": 2} | style)), autolim=False
+        LineCollection([shapely.get_coordinates(part) for part in visible_parts], label=label, **({"zorder": 2} | style)),
+        autolim=False,
     )
 
 
@@ -278,11 +282,12 @@ def mark_starts(
         for colour, width in ((LIGHT.halo, 7.0), (MARK_EDGE, 4.8), (palette.orbits[(number - 1) % len(palette.orbits)], 2.4)):
             size: dict[str, Any] = {"markersize": scale * (9.6 + width), "markeredgewidth": scale * width}
             axes.plot(x, y, "+", color=colour, zorder=3, **size)
-        right, high = x > 1.0 - _EDGE, y > 1.0 - _EDGE
-        aside = (-6.0 * scale if right else 6.0 * scale, -3.6 * scale if high else 3.6 * scale)
+        is_right, is_high = x > 1.0 - _EDGE, y > 1.0 - _EDGE
+        offset = (-6.0 * scale if is_right else 6.0 * scale, -3.6 * scale if is_high else 3.6 * scale)
         axes.annotate(
-            str(number), (x, y), aside, textcoords="offset points",
-            ha="right" if right else "left", va="top" if high else "bottom", fontsize=style.font_size, color=LIGHT.text, zorder=4,
+            str(number), (x, y), offset, textcoords="offset points",
+            ha="right" if is_right else "left", va="top" if is_high else "bottom",
+            fontsize=style.font_size, color=LIGHT.text, zorder=4,
             path_effects=[withStroke(linewidth=4.0, foreground=LIGHT.halo)],
         )  # fmt: skip
 
@@ -302,9 +307,9 @@ def show_window(axes: Axes, shown: Window, x_name: str, y_name: str, style: Figu
 
 
 def _spaced(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
-    """Select every k-th tick so that the labels do not touch. `width` is in units of their font size."""
-    needed = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
-    return ticks[:: max(1, math.ceil(needed / width))]
+    """Select every k-th tick so that the labels do not touch. `width` of the axis is in units of the font size of the labels."""
+    needed_width = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
+    return ticks[:: max(1, math.ceil(needed_width / width))]
 
 
 def add_colour_bar(figure: Figure, scale: ColourScale, style: FigureStyle = SCREEN, **place: Any) -> Colorbar:
@@ -325,17 +330,17 @@ def _inner_ticks(scale: ColourScale) -> list[float]:
     if not scale.is_logarithmic:
         return [float(f"{0.5 * (scale.low + scale.high):.3g}")]
     powers = [10.0**k for k in range(math.ceil(math.log10(scale.low)), math.floor(math.log10(scale.high)) + 1)]
-    room = (scale.high / scale.low) ** _BETWEEN_TICKS
-    return [power for power in powers if scale.low * room < power < scale.high / room]
+    least_ratio = (scale.high / scale.low) ** _BETWEEN_TICKS
+    return [power for power in powers if scale.low * least_ratio < power < scale.high / least_ratio]
 
 
 def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
-    """Convert (n, 2) points of the plane to shares of a window's width and height."""
+    """Convert points of the plane, of shape (n, 2), to shares of a window's width and height."""
     low, high = _corners(shown)
     shares: np.ndarray = (points - low) / (high - low)
     return shares
 
 
 def _corners(window: Window) -> np.ndarray:
-    """Return the lower left and the upper right corner, (2, 2)."""
+    """Return the lower left and the upper right corner, of shape (2, 2)."""
     return np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])
