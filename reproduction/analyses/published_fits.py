@@ -77,7 +77,7 @@ class PaperFits:
     direct
         Fit of Nde/N0, the share of direct escapes.
     lowest_energy, highest_energy
-        Energy range of the fits, which begins at the escape energy. Dimensionless.
+        Energy range of the fits (dimensionless). It begins at the escape energy.
     """
 
     escaped: HyperbolicTangent

@@ -28,10 +28,11 @@ MOST_CROSSINGS = 40
 FEWEST_REMAINING = 50
 """Smallest number of remaining starts for which p_n is drawn. With fewer, p_n depends on the grid."""
 
-# First index of the part of the colour scale of escape times that contrasts with white.
+# First index of the colours of escape times that contrast with white.
 _LIGHTEST = 50
-# Last index of this part.
+# Last index of the colours of escape times.
 _DARKEST = 255
+# Number of points of a fitted curve.
 _SAMPLES = 400
 
 
@@ -40,8 +41,10 @@ def draw_statistics(case: str, cache: MapCache) -> Figure:
     figure = new_figure(SCREEN, 21.8, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
     table = cache.curves(case, Plane.X_PX)
-    h, paper = table.values, PAPER_FITS[case]
-    escaped, direct = table["share"][:, 1:].sum(axis=1), table["direct_share"]
+    h = table.values
+    paper = PAPER_FITS[case]
+    escaped = table["share"][:, 1:].sum(axis=1)
+    direct = table["direct_share"]
     _draw_fits(panels[0], h, escaped, paper.escaped, fit_escape_shares(h, escaped))
     _draw_fits(panels[1], h, direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree))
     label_axes(panels[0], "$h$", "$N_e/N_0$")
@@ -53,35 +56,36 @@ def draw_statistics(case: str, cache: MapCache) -> Figure:
     return figure
 
 
-def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: ShareCurve, own: ShareFit) -> None:
-    fine = np.linspace(h[0], h[-1], _SAMPLES)
+def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: ShareCurve, new_fit: ShareFit) -> None:
+    energies = np.linspace(h[0], h[-1], _SAMPLES)
     axes.plot(h, shares, "o", color=MEASURED, markersize=3.6, label="computed")
-    axes.plot(fine, paper(fine), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
-    if own.determined:
-        axes.plot(fine, own.curve(fine), color=LIGHT.text, linewidth=1.2, label="this fit")
+    axes.plot(energies, paper(energies), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
+    if new_fit.determined:
+        axes.plot(energies, new_fit.curve(energies), color=LIGHT.text, linewidth=1.2, label="this fit")
     axes.set_xlim(h[0], h[-1])
     style_axes(axes, grid=True)
     add_panel_legend(axes, "lower right")
 
 
-def _draw_crossings(shares: Axes, chances: Axes, statistics: Mapping[float, EscapeStatistics]) -> None:
-    """Draw both panels against n, with one line per energy, darker for lower energies."""
-    places = np.linspace(_DARKEST, _LIGHTEST, len(statistics)).astype(int)
-    for (energy, counted), place in zip(statistics.items(), places, strict=True):
-        style: dict[str, Any] = {"color": PAPER.escape_time[place], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
+def _draw_crossings(share_axes: Axes, probability_axes: Axes, statistics: Mapping[float, EscapeStatistics]) -> None:
+    """Draw both panels against n, with a line for each energy. Lower energies have darker lines."""
+    colour_indices = np.linspace(_DARKEST, _LIGHTEST, len(statistics)).astype(int)
+    for (energy, counted), colour_index in zip(statistics.items(), colour_indices, strict=True):
+        style: dict[str, Any] = {"color": PAPER.escape_time[colour_index], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
         escapes = counted.crossing_counts[: MOST_CROSSINGS + 1]
         remaining = counted.decided - np.cumsum(escapes) + escapes
         with np.errstate(divide="ignore"):
-            logarithm = np.where(escapes > 0, np.log10(escapes / counted.starts), np.nan)
-        n, chance = np.arange(escapes.size), counted.escape_probabilities[: escapes.size]
-        shares.plot(n, logarithm, label=f"$h = {energy:.2f}$", **style)
-        chances.plot(n, np.where(remaining >= FEWEST_REMAINING, chance, np.nan), **style)
-    label_axes(shares, "$n$", r"$\log_{10}(dN_n/N_0)$")
-    label_axes(chances, "$n$", "$p_n$")
-    for axes in (shares, chances):
+            log_shares = np.where(escapes > 0, np.log10(escapes / counted.starts), np.nan)
+        n = np.arange(escapes.size)
+        probabilities = np.where(remaining >= FEWEST_REMAINING, counted.escape_probabilities[: escapes.size], np.nan)
+        share_axes.plot(n, log_shares, label=f"$h = {energy:.2f}$", **style)
+        probability_axes.plot(n, probabilities, **style)
+    label_axes(share_axes, "$n$", r"$\log_{10}(dN_n/N_0)$")
+    label_axes(probability_axes, "$n$", "$p_n$")
+    for axes in (share_axes, probability_axes):
         axes.set_xlim(-0.5, MOST_CROSSINGS + 0.5)
         style_axes(axes, grid=True)
-    add_panel_legend(shares, "upper right", columns=3)
+    add_panel_legend(share_axes, "upper right", columns=3)
 
 
 def draw_percentages(case: str, cache: MapCache) -> Figure:
@@ -99,7 +103,7 @@ def draw_percentages(case: str, cache: MapCache) -> Figure:
 
 
 def draw_survival(case: str, cache: MapCache) -> Figure:
-    """Draw the share of remaining starts on (x, px) against time, in one panel per energy."""
+    """Draw the share of remaining starts on (x, px) against time, with a panel for each energy."""
     energies = three_energies(case)
     figure = new_figure(
         replace(SCREEN, width=32.0), 11.7, f"Case {case}, {plane_label(Plane.X_PX)} plane: share of the starts not yet escaped"
