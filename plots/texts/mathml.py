@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 from engine import Potential
 from engine.expressions.nodes import Expression, from_terms
 from engine.systems.forms.form import Form
-from plots.texts.mathml_elements import digits, number, op, raised, row, var
+from plots.texts.mathml_elements import digits, number, op, row, var, write_power
 from plots.texts.mathml_expressions import signed_parts
 
 # Words for operators and dots.
@@ -28,7 +28,7 @@ def equations(potential: Potential) -> str:
         "Effective potential" if potential.rotation else "Potential": [_potential(potential)],
         "Equations of motion": [_motion(axis, potential) for axis in ("x", "y")],
         _INTEGRALS[bool(potential.rotation)]: [
-            _energy(potential, 0.5 * potential.mass, *(raised(_above(axis, "˙"), 2) for axis in "xy")) + op("=") + var("h")
+            _energy(potential, 0.5 * potential.mass, *(write_power(_above(axis, "˙"), 2) for axis in "xy")) + op("=") + var("h")
         ],
         **_exits(potential),
     }

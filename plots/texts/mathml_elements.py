@@ -57,6 +57,6 @@ def row(formula: str) -> str:
     return f"<mrow>{formula}</mrow>"
 
 
-def raised(base: str, power: int) -> str:
-    """Return a base raised to a power of at least 0; empty for the power 0."""
+def write_power(base: str, power: int) -> str:
+    """Return a base to a power of at least 0; empty for the power 0."""
     return "" if power == 0 else base if power == 1 else f"<msup>{base}{digits(power)}</msup>"

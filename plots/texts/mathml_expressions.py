@@ -19,8 +19,8 @@ def signed_parts(expression: Expression) -> list[str]:
 def _signed(coefficient: float, part: Expression) -> str:
     factors = part.factors if isinstance(part, Product) else ((part, 1.0),)
     factors = tuple(sorted(factors, key=lambda factor: _place(factor[0])))
-    numerator = "".join(_raised(base, exponent) for base, exponent in factors if exponent > 0.0)
-    denominator = "".join(_raised(base, -exponent) for base, exponent in factors if exponent < 0.0)
+    numerator = "".join(_write_power(base, exponent) for base, exponent in factors if exponent > 0.0)
+    denominator = "".join(_write_power(base, -exponent) for base, exponent in factors if exponent < 0.0)
     magnitude = "" if abs(coefficient) == 1.0 and numerator else number(abs(coefficient), COEFFICIENT_DIGITS)
     fraction = f"<mfrac>{row(magnitude + numerator)}{row(denominator)}</mfrac>" if denominator else magnitude + numerator
     return op("−" if coefficient < 0.0 else "+") + fraction
@@ -31,7 +31,7 @@ def _place(base: Expression) -> int:
     return 0 if isinstance(base, CoordinateNode) else 2 if isinstance(base, Function) else 1
 
 
-def _raised(base: Expression, exponent: float) -> str:
+def _write_power(base: Expression, exponent: float) -> str:
     match base:
         case CoordinateNode(axis):
             written = var("xy"[axis])
