@@ -62,13 +62,16 @@ export function start(model, el) {
   )
   document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyreleased", () => preview.release())
+  // The last system and its compiled modules.
   /** @type {{system: import("./engine/system.js").System, modules: import("./engine/integrator.js").Modules} | null} */
-  let known = null
+  let compiled = null
   const updatePresent = () => {
     const colours = () => model.view.colours ?? []
     const labels = () => model.view.labels ?? []
     setPresent(
-      known && model.view.system === known.system.key ? {...known, scene: () => preview.scene, colours, labels, host: el} : null,
+      compiled && model.view.system === compiled.system.key
+        ? {...compiled, scene: () => preview.scene, colours, labels, host: el}
+        : null,
     )
   }
   const receiveView = () => {
@@ -84,7 +87,7 @@ export function start(model, el) {
     if (model.system.key !== key) return
     const {module: _, ...system} = model.system
     for (const part of [card, preview]) part.setSystem(system, modules)
-    known = {system, modules}
+    compiled = {system, modules}
     updatePresent()
   }
   const runCommand = () => {
