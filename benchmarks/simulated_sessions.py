@@ -16,6 +16,7 @@ from typing import Any
 from urllib.parse import parse_qsl, urljoin
 
 from tornado.httpclient import AsyncHTTPClient, HTTPClientError
+from tornado.simple_httpclient import HTTPTimeoutError
 
 from app.server.admission import RETRY_SECONDS
 from engine import Plane
@@ -31,6 +32,9 @@ POLL_SECONDS = 0.05
 PAUSE_SECONDS = 1.0, 5.0
 FRAME_TIMEOUT_SECONDS = 30.0
 """Longest permitted wait for a frame; longer waits are errors."""
+
+ANSWER_SECONDS = 60.0
+"""Longest permitted wait for the answer to a request."""
 
 ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
 """Actions and their weights."""
@@ -147,20 +151,20 @@ class SimulatedSession:
         self.follow_link(link)
         await self._wait_for_review(time.perf_counter())
 
-    async def type_formula(self, text: str) -> None:
-        """Type a formula and wait until it is reviewed."""
+    async def type_formula(self, text: str, *, done: bool = True) -> None:
+        """Type a formula, with Enter if `done`, and wait until it is reviewed."""
         if "FormulaBox" not in self._models:
             self.press("Other …")
         while "FormulaBox" not in self._models:
             await asyncio.sleep(POLL_SECONDS)
         self._reviewed.clear()
-        self._give("FormulaBox", text)
+        self._give("FormulaBox", text, done=done)
         await self._wait_for_review(time.perf_counter())
 
-    def _give(self, component: str, value: Any) -> None:
-        """Give an input a value."""
+    def _give(self, component: str, value: Any, *, done: bool = True) -> None:
+        """Give an input a value; `done` is False while the visitor is still typing or dragging."""
         self._steps += 1
-        entries = [["value", value], ["count", self._steps], ["done", True]]
+        entries = [["value", value], ["count", self._steps], ["done", done]]
         self._open_channel.emit("data_event", model={"id": self._models[component]}, data={"type": "map", "entries": entries})
 
     async def _wait_for_review(self, begin: float) -> None:
@@ -234,10 +238,13 @@ class SimulatedSession:
         """Whether the page is connected."""
         return self._reader is not None and not self._reader.done()
 
-    async def fetch(self, path: str) -> int:
-        """Request a path of the server as another visitor would, and return the status."""
+    async def fetch(self, path: str) -> None:
+        """Request a path of the server as another visitor would, and wait for the answer."""
         address = urljoin(self._address, path)
-        return (await AsyncHTTPClient().fetch(address, raise_error=False, request_timeout=60.0, **self._options)).code
+        try:
+            await AsyncHTTPClient().fetch(address, raise_error=False, request_timeout=ANSWER_SECONDS, **self._options)
+        except HTTPTimeoutError:
+            self._record.errors.append(f"no answer within {ANSWER_SECONDS:g} s")
 
     async def connect(self, token: str) -> None:
         """Open a WebSocket with this token, which the server may refuse, wait for the first message, and close the WebSocket."""
@@ -250,7 +257,7 @@ class SimulatedSession:
         """Show the view of a link, as the browser's Back does."""
         self._steps += 1
         entries = [["link", link], ["entry", 0], ["steps", self._steps]]
-        model = {"id": self._models["BrowserListener"]}
+        model = {"id": self._models["BrowserEvents"]}
         self._open_channel.emit("data_event", model=model, data={"type": "map", "entries": entries})
 
     def press(self, label: str) -> None:

@@ -4,16 +4,19 @@ These are the public names of the library. All results show themselves in notebo
 `to_holoviews`, see `Result`; the classes of results that are not named here are in `results`. Names of other modules are for the
 programs of this repository, and may change with any version.
 
-- systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `write_formula`, `review_potential`
-- starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `start_states`, `sample_starts`
-- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `judge_orbit`, `compute_separation`,
-  `find_divergent_start`, `compute_flux`
-- maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`,
-  `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`
-- measures: `MEASURES`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`,
-  `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`, `fit_decay_laws`
-- files: `Result.save`, `open_result`
+- systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `parse_formula`, `FormulaError`, `write_formula`,
+  `review_potential`
+- starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `start_states`, `sample_starts`,
+  `sample_entrances`, `sample_entrances_by_exit`
+- orbits: `integrate_orbit`, `Orbit`, `sample_orbits`, `classify_orbits`, `find_lyapunov_orbits`, `LyapunovOrbit`, `judge_orbit`,
+  `compute_separation`, `find_divergent_start`, `compute_flux`
+- maps of escapes: `MapSpec`, `compute_map`, `EscapeMap`, `Fate`, `Evidence`, `compute_regularity`, `Regularity`, `compute_trust`,
+  `Trust`, `compute_origin_fates`, `find_stable_manifolds`, `compute_lagrangian_descriptor`, `TimeDirection`
+- measures: `MEASURES`, `Measure`; of basins and statistics `compute_basin_entropy`, `compute_wada_test`,
+  `compute_uncertainty_exponent`, `compute_statistics`, `compute_islands`, `compute_chaotic_share`, `compute_exit_matching`,
+  `fit_decay_laws`
 - sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
+- files and execution: `Result`, `open_result`, `Execution`
 """
 
 import types

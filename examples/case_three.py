@@ -3,14 +3,14 @@
 # %% [markdown]
 # # Escapes in case III
 #
-# The potential V = ½(x² + y²) − x² y² is a well with four exit channels. Below the escape energy h = 1/4 all of them are closed.
-# Slightly above they are narrow, and the exit channel and escape time of an orbit depend sensitively on its start. This example
-# computes which orbits escape, through which channel and when, which pixels of a map are reliable, and how predictable the
-# channel is.
+# The potential V = ½(x² + y²) − x² y² is a well with four exit channels. Below the escape energy h = 1/4 all channels are closed.
+# Slightly above h = 1/4 they are narrow, and the channel and the escape time of an orbit depend sensitively on its start. This
+# example computes which orbits escape, through which channel and when, which pixels of a map are reliable, and how predictable
+# the channel is.
 #
 # The file is a script (`python examples/case_three.py`) and a notebook: open it in VS Code, or in Jupyter with Jupytext. It
-# writes a NetCDF file, which needs the extra `files`, and three pictures to the working directory. The maps are small, so that
-# it runs within seconds; for figures increase `SIDE` to 500 and `T_MAX` to 1e5.
+# writes a NetCDF file, which needs the extra `files`, and three pictures to the working directory. The maps are small, and the
+# example runs within seconds. For figures increase `SIDE` to 500 and `T_MAX` to 1e5.
 
 # %%
 import matplotlib.pyplot as plt
@@ -40,8 +40,8 @@ SIDE, T_MAX = 120, 1e4
 # %% [markdown]
 # ## Exits
 #
-# Each open channel contains one unstable periodic orbit, the Lyapunov orbit. An orbit that crosses it outward never returns, so
-# escape is defined by this crossing.
+# Each open channel contains one unstable periodic orbit, the Lyapunov orbit. An orbit that crosses the Lyapunov orbit outward
+# never returns, so this crossing defines the escape.
 
 # %%
 print(f"escape energy: {CASE.escape_energy}")
@@ -69,13 +69,13 @@ print(f"chaotic among the bounded: {compute_regularity(escape_map).chaotic_share
 
 # %% [markdown]
 # The potential is even in x, so orbits from (x, px) and (−x, −px) are mirror images. Channels 1 and 2 therefore have exactly the
-# same share, and so have 3 and 4. All starts have py > 0, which favours the upper channels 1 and 2.
+# same share, and so have channels 3 and 4. All starts have py > 0, which favours the upper channels 1 and 2.
 #
 # ## Reliable pixels
 #
 # Near a fractal basin boundary the fate changes when the start moves by much less than a pixel, or with the tolerance. Shares
-# of such pixels are meaningful, single ones are not. `compute_trust` integrates every boundary pixel twice more and marks those
-# whose fate changes.
+# of such pixels are meaningful, single pixels are not. `compute_trust` integrates every boundary pixel twice more and marks the
+# pixels whose fate changes.
 
 # %%
 trust = compute_trust(escape_map)
@@ -84,9 +84,10 @@ print(f"doubtful pixels: {trust.doubtful_share:.4f}")
 # %% [markdown]
 # ## Two orbits
 #
-# A bounded orbit, and the orbit with the longest escape time. SALI, the smaller alignment index, stays of order one on a torus
-# and decreases exponentially along chaotic orbits; on sticky orbits only after they have left the surroundings of an island. The
-# SALI of an escaping orbit shows that neighbouring orbits diverge; such an orbit is called neither regular nor chaotic.
+# We compare a bounded orbit and the orbit with the longest escape time. SALI, the smaller alignment index, stays of order one on
+# a torus and decreases exponentially along a chaotic orbit. Along a sticky orbit this begins only when the orbit leaves the
+# surroundings of an island. An escaping orbit is called neither regular nor chaotic. Its SALI shows whether neighbouring orbits
+# diverge.
 
 # %%
 rows, columns = np.nonzero(escape_map.fate == Fate.BOUNDED)
@@ -115,9 +116,9 @@ plt.close(figure)
 # %% [markdown]
 # ## Escapes against energy
 #
-# Zotos (2014) fits the escaping share by ½[1 + tanh(15.85 h − 4.93)]. Here it is counted at nine energies, and so is the share of
-# direct escapes, without a crossing of y = 0. Reasons for the difference: the paper counts starts outside the exits as escaped in
-# some places, while the shares here refer to the interior; the form is only a convention; and this grid is coarse.
+# Zotos (2014) fits the escaping share by ½[1 + tanh(15.85 h − 4.93)]. We count this share at nine energies, and the share of
+# direct escapes, which do not cross y = 0. The counts differ from the fit for three reasons. The paper counts some starts outside
+# the exits as escaped, while the shares here refer to the interior. The function is only a convention. This grid is coarse.
 
 # %%
 energies = np.linspace(0.27, 0.67, 9)
@@ -129,10 +130,10 @@ print(f"published fit: at most {100.0 * np.abs(published - escaped).max():.1f} p
 # %% [markdown]
 # ## Predictability of the channel
 #
-# Basin entropy measures it by one number: the mean entropy of the fates in boxes of 5 × 5 starts. S_b is 0 if every box has a
-# single fate, and ln 5 if four channels and bounded motion are equally likely everywhere. S_bb is the mean over boxes with
-# several fates; S_bb > ln 2 means that the boundary is not smooth at this scale (`docs/measures.md`). The same sweep
-# measures it.
+# Basin entropy measures the predictability by one number, S_b: the mean entropy of the fates in boxes of 5 × 5 starts. S_b is
+# 0 if every box has a single fate, and ln 5 if four channels and bounded motion are equally likely everywhere. S_bb is the mean
+# over boxes with several fates. S_bb > ln 2 means that the boundary is not smooth at this scale (`docs/measures.md`). The sweep
+# above has measured both.
 
 # %%
 for h, s_b, s_bb in zip(energies, sweep["s_b"], sweep["s_bb"], strict=True):
@@ -156,7 +157,7 @@ plt.close(figure)
 # ## Save and load
 #
 # `save` writes a NetCDF file with named axes and the provenance of the map: potential, window, integrator and version. xarray
-# reads it; `open_result` makes the map of it again.
+# reads the file as a dataset, and `open_result` reads it as the map.
 
 # %%
 escape_map.save("case-three.nc")
@@ -183,8 +184,9 @@ plt.close(figure)
 # %% [markdown]
 # ## More functions
 #
-# - `find_divergent_start`: the nearest start with another fate; `compute_separation`: the distance of two orbits against time.
-# - `find_stable_manifolds`: the curves that bound the basins; `compute_wada_test`: whether the boundaries are Wada.
-# - `fit_decay_laws`: exponential or algebraic decay; `judge_orbit`: several chaos indicators of one orbit.
-# - `open_result`: results from files.
-# - `compute_sweep` with a store: maps at hundreds of energies, resumable (`docs/sweeps.md`).
+# - `find_divergent_start` finds the nearest start with another fate.
+# - `compute_separation` computes the distance of two orbits against time.
+# - `find_stable_manifolds` computes the curves that bound the basins.
+# - `compute_wada_test` tests whether the boundaries are Wada.
+# - `fit_decay_laws` tells exponential from algebraic decay.
+# - `compute_sweep` with a store computes maps at hundreds of energies, and resumes after an interruption (`docs/sweeps.md`).

@@ -103,7 +103,9 @@ class MapCache:
         spec = SweepSpec(CASES[case], plane, energies, resolution, t_max=self.quality.t_max, measures=("shares", "accuracy"))
         return compute_sweep(
             spec,
-            measure=lambda point: compute_point(point, frame=self._values.get(point.map_spec) or self._compute(point.map_spec)),
+            measure=lambda point: compute_point(
+                point, escape_map=self._values.get(point.map_spec) or self._compute(point.map_spec)
+            ),
             execution=self.execution,
         )
 

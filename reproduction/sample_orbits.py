@@ -1,10 +1,10 @@
-"""Select one orbit through each exit of a map."""
+"""Select one orbit through each exit of a map, and measure the Lyapunov orbits over the exits."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from engine import EscapeMap
+from engine import EscapeMap, Potential, find_lyapunov_orbits
 
 SHOWN_CROSSINGS = 3
 """Smallest number of upward crossings of y = 0 of a selected orbit."""
@@ -39,3 +39,9 @@ def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float,
         x_start, y_start, px_start, py_start = frame.spec.start_states(x, ordinate)[0].tolist()
         starts[channel] = (x_start, y_start, px_start, py_start)
     return starts
+
+
+def find_lyapunov_r2(potential: Potential, energy: float) -> tuple[float, float]:
+    """Return the smallest and the largest R² = x² + y² on the Lyapunov orbits at an energy."""
+    r2 = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in find_lyapunov_orbits(potential, energy)])
+    return float(r2.min()), float(r2.max())

@@ -24,10 +24,10 @@ from engine.integrator.jit.compiled_operations import compiled_operations
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-# Of two processes that import the same libraries at the same time, each compiles them all: the second begins with the last ones.
-if os.environ.get("PYTEST_XDIST_WORKER") == "gw1":
-    for library in ("sympy", "matplotlib.pyplot", "distributed", "xarray", "scipy.stats"):
-        importlib.import_module(library)
+# Of processes that import the same libraries at the same time, each compiles them all: each begins with others.
+FIRST = {"gw1": ("sympy", "matplotlib.pyplot", "scipy.stats"), "gw2": ("zarr", "distributed", "xarray")}
+for library in FIRST.get(os.environ.get("PYTEST_XDIST_WORKER", ""), ()):
+    importlib.import_module(library)
 
 # Servers under test refuse no page, however busy the machine.
 os.environ.setdefault("ESCAPE_EXPLORER_CORES_PER_PAGE", "0.001")
@@ -41,16 +41,27 @@ settings.register_profile("random", derandomize=False, deadline=None, max_exampl
 settings.load_profile("fixed")
 
 
-class OneBrowser(LoadScopeScheduling):
-    """Runs the tests of a file in one process, and all tests that open the page in Chromium, which share a server."""
+OF_RESULTS = (
+    "tests/engine/foundations/test_result.py",
+    "tests/engine/sweeps/test_opened_results.py",
+    "tests/plots/printed/test_results.py",
+)
+
+
+class SharedProcesses(LoadScopeScheduling):
+    """Runs the tests of a file in one process.
+
+    Tests in Chromium share a process, because they share a server, and so do tests of the results that `tests.results` computes.
+    """
 
     def _split_scope(self, nodeid: str) -> str:
-        return "tests/browser" if nodeid.startswith("tests/browser/") else nodeid.partition("::")[0]
+        file = nodeid.partition("::")[0]
+        return "tests/browser" if file.startswith("tests/browser/") else "results" if file in OF_RESULTS else file
 
 
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> OneBrowser:
-    """Schedule by `OneBrowser`."""
-    return OneBrowser(config, log)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SharedProcesses:
+    """Schedule by `SharedProcesses`."""
+    return SharedProcesses(config, log)
 
 
 def pytest_collection_finish() -> None:

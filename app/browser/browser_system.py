@@ -76,7 +76,7 @@ def _tabulate_windows(potential: Potential, plane: Slice, energies: tuple[float,
             if windows:
                 break
             continue
-        windows[energy] = [window.x_low, window.x_high, window.ordinate_low, window.ordinate_high]
+        windows[energy] = list(window.edges)
     return {"energies": list(windows), "windows": list(windows.values())}
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import count
 from math import isfinite
 from pathlib import Path
@@ -11,65 +10,86 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-from app.browser.browser_system import BrowserSystem
+from app.browser.browser_system import BrowserSystem, make_browser_system
 from app.browser.module_files import ADDRESS
+from app.browser.views import describe_view
+from app.job_clients.latest_request import LatestRequest, Locked
+from app.job_clients.shown_results import ShownResults
+from app.state.view_state import ViewState
+from engine import EscapeMap
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job, Queue
 
 
-class EngineComponent(JSComponent):
-    """Runs the engine in the browser, and sends {energy} when an animation of the energy has ended."""
-
-    address = param.String(doc="address of the first module")
-    system = param.Dict(default={}, doc="see `BrowserSystem.to_dict`")
-    view = param.Dict(default={}, doc="see `BrowserEngine.show_view`")
-    command = param.Dict(default={}, doc="name: play or stop; energy, low, high; number: makes equal commands differ")
-
-    _esm = Path(__file__).with_suffix(".js")
-
-
-class BrowserEngine(param.Parameterized):
-    """Sends the system and the view of the page to the engine in the browser.
+class BrowserEngine(JSComponent):
+    """An invisible component that runs the engine in the browser, and sends {energy} when an animation of the energy has ended.
 
     Parameters
     ----------
-    on_energy
-        Takes the energy at which an animation ends.
+    state
+        View state, which the engine follows, and which receives the energy at which an animation ends.
+    results
+        The results of the session, whose first frame follows the compilation of the kernels.
+    jobs, locked
+        See `LatestRequest`.
     """
 
+    address = param.String(default=ADDRESS, doc="address of the first module")
+    system = param.Dict(default={}, doc="see `BrowserSystem.to_dict`")
+    view = param.Dict(default={}, doc="see `describe_view`")
+    command = param.Dict(default={}, doc="name: play or stop; energy, low, high; number that makes repeats differ")
     playing = param.Boolean(default=False, doc="whether an animation of the energy is running")
 
-    def __init__(self, on_energy: Callable[[float], None]) -> None:
-        super().__init__()
-        self._on_energy = on_energy
+    _esm = Path(__file__).with_suffix(".js")
+
+    def __init__(self, state: ViewState, results: ShownResults, jobs: JobSubmitter, locked: Locked) -> None:
+        super().__init__(width=0, height=0, margin=0, styles={"position": "absolute"}, css_classes=["engine"])
+        self._state = state
         self._numbers = count()
-        options = {"width": 0, "height": 0, "margin": 0, "styles": {"position": "absolute"}, "css_classes": ["engine"]}
-        self._component = EngineComponent(address=ADDRESS, **options)
-        self._component.on_msg(lambda event: self._receive(event.data))
+        self._end = locked(self._on_end)
+        self._systems = LatestRequest(jobs, self._show_system, lambda sentence: None, locked)
+        self.on_msg(lambda event: self._receive(event.data))
+        results.param.watch(lambda event: self._request_system(event.new), "frame")
+        shown = ["system", "plane", "energy", "resolution", "window", "palette"]
+        state.param.watch(lambda *events: self.show_view(), shown)
 
-    def layout(self) -> EngineComponent:
-        """Return an invisible component that must be on the page."""
-        return self._component
+    def show_view(self) -> None:
+        """Send the view to the browser."""
+        self.view = describe_view(self._state)
 
-    def show_system(self, system: BrowserSystem) -> None:
-        """Send the system that the page shows or is about to show."""
-        self._component.system = system.to_dict()
-
-    def show_view(self, view: dict[str, Any]) -> None:
-        """Send the view of the page, in the form of `app.browser.views.describe_view`."""
-        self._component.view = view
-
-    def play(self, energy: float, low: float, high: float) -> None:
-        """Animate the energy from `energy` up to `high`, or from `low` if `energy` is the end of the range."""
-        self.playing = True
-        self._component.command = {"name": "play", "energy": energy, "low": low, "high": high, "number": next(self._numbers)}
+    def play(self) -> None:
+        """Animate the energy up to its highest value, from the lowest if it is there already; stop a running animation."""
+        state, energies = self._state, self._state.energies
+        if self.playing:
+            self.stop()
+        elif state.plane.energy_axis is None:
+            self.playing = True
+            self._command("play", energy=state.energy, low=energies.low, high=energies.high)
 
     def stop(self) -> None:
         """Stop the animation at the current energy."""
         if self.playing:
-            self._component.command = {"name": "stop", "number": next(self._numbers)}
+            self._command("stop")
+
+    def _command(self, name: str, **details: float) -> None:
+        self.command = {"name": name, **details, "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
             case {"energy": float() | int() as energy} if self.playing and isfinite(energy):
-                self.playing = False
-                self._on_energy(float(energy))
+                self._end(float(energy))
+
+    def _on_end(self, energy: float) -> None:
+        self.playing = False
+        self._state.energy = round(energy, self._state.energies.decimals)
+
+    def _request_system(self, frame: EscapeMap | None) -> None:
+        """Request the system for the browser once a frame has arrived, because it needs the compiled kernels."""
+        state = self._state
+        if frame is not None and frame.spec.potential == state.potential:
+            arguments = state.potential, state.energies.low, state.energies.high
+            self._systems.submit(Job(make_browser_system, arguments, queue=Queue.LONG_CALL))
+
+    def _show_system(self, system: BrowserSystem) -> None:
+        self.system = system.to_dict()

@@ -42,6 +42,13 @@ KERNELS_ADDRESS = f"{_FOLDER}/kernels.wasm"
 """Address of the kernels, relative to the page."""
 
 
+def accepts_gzip(accepted: str) -> bool:
+    """Return whether gzip is among the accepted encodings, the value of a header ``Accept-Encoding``, with a weight above 0."""
+    encodings = (encoding.replace(" ", "").lower().split(";q=") for encoding in accepted.split(","))
+    weights = {name: weight[0] if weight else "1" for name, *weight in encodings}
+    return weights.get("gzip", weights.get("*", "0")).strip("0.") != ""
+
+
 class ModuleHandler(StaticFileHandler):
     """Serves a module."""
 
@@ -59,7 +66,7 @@ class KernelsHandler(RequestHandler):
         self.set_header("Content-Type", "application/wasm")
         self.set_header("Cache-Control", f"public, max-age={StaticFileHandler.CACHE_MAX_AGE}")
         self.set_header("Vary", "Accept-Encoding")
-        if "gzip" in self.request.headers.get("Accept-Encoding", ""):
+        if accepts_gzip(self.request.headers.get("Accept-Encoding", "")):
             self.set_header("Content-Encoding", "gzip")
             module = gzip.compress(module)
         self.finish(module)

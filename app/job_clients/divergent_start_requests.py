@@ -37,10 +37,6 @@ class DivergentStartRequests:
         arguments = (state.potential, state.plane, state.energy, *start, state.t_max)
         self._request.submit(Job(find_divergent_start, arguments))
 
-    def close(self) -> None:
-        """Cancel the search."""
-        self._request.cancel()
-
     def _on_result(self, divergent: DivergentStart | None) -> None:
         if self._origin is None or self._state.chosen_start != self._origin:
             return

@@ -89,17 +89,16 @@ class MapRequests:
 
     def request_map(self) -> None:
         """Cancel the current map, and request the map of the view state."""
-        self.close()
+        self._cancel()
         self._request.submit(*jobs_of_map(self._state.map_spec()))
 
     def stop_map(self) -> None:
         """Cancel an incomplete map for the user."""
         if not self._has_complete_map:
-            self.close()
+            self._cancel()
             self._listener.map_stopped()
 
-    def close(self) -> None:
-        """Cancel the current map."""
+    def _cancel(self) -> None:
         self._has_complete_map = False
         self._request.cancel()
 

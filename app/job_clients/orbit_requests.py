@@ -96,11 +96,6 @@ class OrbitRequests:
         self._orbits.follow([job for job in map(self._state.orbit_job, self._state.starts) if job is not None])
         self._update()
 
-    def close(self) -> None:
-        """Cancel all requests."""
-        for results in (self._orbits, self._digits):
-            results.follow(())
-
     def _take_digits(self, arrived: Mapping[Job[Any], BirkhoffDigits | str]) -> None:
         for result in arrived.values():
             if isinstance(result, str):

@@ -45,10 +45,6 @@ class SeparationRequests:
             self._request.cancel()
             self._show(None, None)
 
-    def close(self) -> None:
-        """Cancel the request."""
-        self._request.cancel()
-
     def _find_pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
         """Return the pair to compare; None unless both orbits are computed."""
         chosen = self._state.chosen

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import threading
 import time
@@ -11,7 +12,7 @@ from concurrent.futures import TimeoutError as FutureTimeoutError
 from contextlib import suppress
 from functools import partial
 from math import ceil
-from queue import LifoQueue
+from queue import PriorityQueue
 
 from loky import ProcessPoolExecutor
 
@@ -24,6 +25,9 @@ COMPILATION_SECONDS = 60
 PROCESSES = 2
 """Number of processes. While one process is busy with a visitor's formula, the other serves other visitors."""
 
+START_SECONDS = 60.0
+"""Longest time until a process begins, in seconds."""
+
 IDLE_SECONDS = 300
 """Time without a call after which a process ends, in seconds. A process uses 100 MB."""
 
@@ -34,8 +38,6 @@ MEMORY = 2**30
 _WATCH_SECONDS = 2.0
 # Longest duration of a call on a busy machine, in units of the limit of the processor time.
 _PATIENCE = 4
-# Longest time until a process begins, in seconds.
-_START_SECONDS = 60.0
 # Interval at which a waiting call checks whether it is cancelled, in seconds.
 _POLL_SECONDS = 0.1
 # Time from the start of a call during which the call cannot be cancelled, in seconds.
@@ -49,7 +51,8 @@ class LimitError(ValueError):
 class LimitedProcess:
     """Makes calls in a process, one at a time. The process starts with the first call, and again after it has ended.
 
-    The process ends when a call exceeds a limit, after `IDLE_SECONDS` without a call, or with the server.
+    The process ends after `IDLE_SECONDS` without a call, or with the server. When a call exceeds a limit or is cancelled, another
+    process begins at once, so that the next call need not wait for it.
 
     Parameters
     ----------
@@ -57,6 +60,10 @@ class LimitedProcess:
         Limit of the processor time of a call, in seconds; a whole number from 1.
     memory
         Memory that the process may use in addition to its memory at the start, in bytes.
+    task
+        The task of the process, which begins the sentence about a call that exceeds a limit.
+    start_seconds
+        Longest time until the process begins, in seconds.
 
     Attributes
     ----------
@@ -64,14 +71,24 @@ class LimitedProcess:
         Number of calls that exceeded a limit.
     computed
         Processor time of the ended calls, in seconds.
+    has_begun
+        Whether the process has answered a call.
     """
 
-    def __init__(self, seconds: int = SECONDS, memory: int = MEMORY) -> None:
-        self._seconds, self._memory = seconds, memory
+    def __init__(
+        self,
+        seconds: int = SECONDS,
+        memory: int = MEMORY,
+        task: str = "reviewing this formula",
+        start_seconds: float = START_SECONDS,
+    ) -> None:
+        self._seconds, self._memory, self._task, self._start_seconds = seconds, memory, task, start_seconds
         self._lock = threading.Lock()
         self._executor: ProcessPoolExecutor | None = None
+        self._is_closed = False
         self.stopped = 0
         self.computed = 0.0
+        self.has_begun = False
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
         """Return the result of a function. Function and result are pickled.
@@ -100,19 +117,34 @@ class LimitedProcess:
 
     def close(self) -> None:
         """End the process."""
-        executor, self._executor = self._executor, None
+        self._is_closed = True
+        self._end()
+
+    def _end(self) -> None:
+        executor, self._executor, self.has_begun = self._executor, None, False
         if executor is not None:
             executor.shutdown(wait=False, kill_workers=True)
 
+    def _replace(self) -> None:
+        """End the process, and start another one unless the server is stopping."""
+        self._end()
+        if not self._is_closed:
+            self._submit(os.getpid)
+
     def _call[Result](self, function: Callable[[], Result], cancel: threading.Event) -> Result:
         try:
-            self._wait(self._submit(os.getpid), cancel, _START_SECONDS)
+            self._wait(self._submit(os.getpid), cancel, self._start_seconds)
+            self.has_begun = True
+        except (BrokenExecutor, FutureTimeoutError, MemoryError):
+            self._end()
+            raise LimitError(f"{self._task} could not begin: the machine is busy or short of memory; try again later") from None
+        try:
             call = self._submit(partial(_call_limited, self._seconds, function))
             result, seconds = self._wait(call, cancel, _PATIENCE * self._seconds)
         except (BrokenExecutor, FutureTimeoutError, MemoryError):
-            self.close()
+            self._replace()
         except CancelledError:
-            self.close()
+            self._replace()
             raise
         except RecursionError:
             # The process survives.
@@ -120,9 +152,7 @@ class LimitedProcess:
         else:
             self.computed += seconds
             return result
-        raise LimitError(
-            f"this formula needs more than {self._seconds} s or {self._memory // 2**20} MB to be understood; choose a simpler one"
-        )
+        raise LimitError(f"{self._task} needs more than {self._seconds} s or {self._memory // 2**20} MB; choose a simpler one")
 
     def _wait[Result](self, future: Future[Result], cancel: threading.Event, most_seconds: float) -> Result:
         """Return the result of a call; raise an error if it takes too long or is cancelled."""
@@ -149,21 +179,25 @@ class LimitedProcess:
 
 
 class LimitedProcesses:
-    """Makes calls in several limited processes. A process starts only when the other processes are busy."""
+    """Makes calls in several limited processes. A process that has not begun is used only when the other processes are busy."""
 
     def __init__(self, count: int = PROCESSES) -> None:
         self._processes = [LimitedProcess() for _ in range(count)]
-        self._free: LifoQueue[LimitedProcess] = LifoQueue()
-        for process in self._processes:
-            self._free.put(process)
+        # Numbers of the free processes, those that have begun first.
+        self._free: PriorityQueue[tuple[bool, int]] = PriorityQueue()
+        for number in range(count):
+            self._put(number)
+
+    def _put(self, number: int) -> None:
+        self._free.put((not self._processes[number].has_begun, number))
 
     def __call__[Result](self, function: Callable[[], Result], cancel: threading.Event | None = None) -> Result:
         """Return the result of a function, called in a free process; see `LimitedProcess`."""
-        process = self._free.get()
+        _, number = self._free.get()
         try:
-            return process(function, cancel)
+            return self._processes[number](function, cancel)
         finally:
-            self._free.put(process)
+            self._put(number)
 
     @property
     def stopped(self) -> int:
@@ -197,6 +231,8 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> tuple
 def _begin(memory: int, server_id: int) -> None:
     """Prepare the process for calls."""
     threading.Thread(target=_end_with, args=(server_id,), daemon=True).start()
+    # A visitor would wait for this import, which the first review needs.
+    importlib.import_module("engine.systems.review.potential_review")
     _limit_memory(memory)
 
 

@@ -23,6 +23,8 @@ from app.runtime.visitors import visitor_of
 from engine.integrator.jit.compiled_operations import compiled_operations
 from engine.jobs.manager import Jobs
 
+_COMPILATION = "compiling the integrator of this potential"
+
 
 @dataclass(eq=False)
 class ProcessState:
@@ -64,7 +66,7 @@ class ProcessState:
     making_page: asyncio.Lock = field(default_factory=asyncio.Lock, init=False)
     jobs: Jobs = field(init=False)
     limited: LimitedProcesses = field(default_factory=LimitedProcesses, init=False)
-    compiler: LimitedProcess = field(default_factory=lambda: LimitedProcess(COMPILATION_SECONDS), init=False)
+    compiler: LimitedProcess = field(default_factory=lambda: LimitedProcess(COMPILATION_SECONDS, task=_COMPILATION), init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
     capacity: Capacity = field(init=False)
     metrics: ServerMetrics = field(default_factory=ServerMetrics, init=False)

@@ -9,6 +9,8 @@ from pathlib import Path
 from tornado.ioloop import IOLoop
 from tornado.web import StaticFileHandler
 
+from app.browser.module_files import accepts_gzip
+
 # Suffixes of the files to compress. Other types are compressed already.
 _SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map"})
 # Number of compressed files that are kept; together they take some megabytes.
@@ -18,10 +20,15 @@ _KEPT_FILES = 64
 class CompressedFiles(StaticFileHandler):
     """Mixin for handlers of static files, which answers with a compressed file."""
 
+    _is_compressed = False
+
     async def get(self, path: str, include_body: bool = True) -> None:
         """Answer with a compressed file if the browser accepts it and the type is worth it, otherwise as the other handler."""
-        accepts = "gzip" in self.request.headers.get("Accept-Encoding", "") and "Range" not in self.request.headers
-        if not accepts or Path(path).suffix not in _SUFFIXES:
+        if Path(path).suffix in _SUFFIXES:
+            self.set_header("Vary", "Accept-Encoding")
+            headers = self.request.headers
+            self._is_compressed = accepts_gzip(headers.get("Accept-Encoding", "")) and "Range" not in headers
+        if not self._is_compressed:
             await super().get(path, include_body)
             return
         self.path = self.parse_url_path(path)
@@ -31,7 +38,6 @@ class CompressedFiles(StaticFileHandler):
         self.absolute_path = absolute_path
         self.modified = self.get_modified_time()
         self.set_headers()
-        self.set_header("Vary", "Accept-Encoding")
         if self.should_return_304():
             self.set_status(304)
             return
@@ -42,6 +48,11 @@ class CompressedFiles(StaticFileHandler):
         self.set_header("Content-Length", len(content))
         if include_body:
             self.write(content)
+
+    def compute_etag(self) -> str | None:
+        """Return the tag of the file; the compressed file has a tag of its own."""
+        tag = super().compute_etag()
+        return f'{tag[:-1]}-gzip"' if tag and self._is_compressed else tag
 
 
 @functools.lru_cache(maxsize=_KEPT_FILES)

@@ -18,7 +18,7 @@ from app.state.view_state import WINDOW_UNKNOWN
 from app.views.analysis.basin_measures import DESCRIBED_MEASURES, BasinMeasuresView, counts_in_box
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
-from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
+from app.views.maps.map_plots import MapsView
 from engine import MEASURES, EscapeMap, MapSpec, ParameterAxis, SweepSpec
 from engine.jobs.job import Job
 from engine.results import Sweep
@@ -97,21 +97,13 @@ class AnalysisPresenter:
         self.show_notes(**dict.fromkeys(LAYERS, ""))
         self._explain_refusals()
 
-    def close(self) -> None:
-        """Cancel all requests at the end of the session."""
-        self._follow_ups.follow(None)
-        self._cancel_measures()
-        self._sweep_request.cancel()
-
     def _connect(self) -> None:
         watch = self._state.param.watch
         self._results.param.watch(lambda event: self._follow_map(), "frame")
-        watch(lambda *events: self._show_pictures(), ["layers", "compared"])
         watch(self._switch_layers, "layers")
         watch(lambda event: self._apply_settings(), "settings")
         watch(lambda *events: self._stop_sweep(), ["system", "plane", "t_max"])
         watch(lambda *events: self._show_curves(None), "system")
-        self._show_pictures()
 
     def _layer_follow_up(self, layer: Layer) -> FollowUp:
         """Return the analysis of a layer, which is requested while the layer is on."""
@@ -131,11 +123,6 @@ class AnalysisPresenter:
         )
 
     # Layers.
-
-    def _show_pictures(self) -> None:
-        state = self._state
-        pictures = [layer.picture.name for layer in self._layers_on() if layer.picture is not None]
-        self._maps.show_pictures([*(PICTURES_ALONE if state.compared is None else PICTURES_COMPARED), *pictures])
 
     def _layers_on(self) -> list[Layer]:
         return [layer for name, layer in LAYERS.items() if name in self._state.layers]

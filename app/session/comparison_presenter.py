@@ -15,7 +15,6 @@ from app.state.view import View
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate, MapSpec
 from engine.foundations.wording import format_share, format_whole
-from engine.sweeps.warmup import is_ready_for_maps
 from engine.systems.review.potential_review import SystemReview
 from plots.texts.accepted_potentials import refusal
 
@@ -53,15 +52,6 @@ class ComparisonPresenter:
         context.results.param.watch(lambda event: self._follow_map(context.results.whole_map), "frame")
         self._continue()
 
-    def compare(self, on: bool) -> None:
-        """Compare later views with the present view in the same window, or end the comparison."""
-        state = self._state
-        if not on:
-            state.compared = None
-            return
-        window = state.find_window() if is_ready_for_maps(state.potential) else state.window
-        state.param.update(compared=state.view, window=window)
-
     def swap_views(self) -> None:
         """Exchange the view of the controls and the other view."""
         state, other = self._state, self._state.compared
@@ -77,19 +67,13 @@ class ComparisonPresenter:
             self._continue()
             self._describe()
 
-    def close(self) -> None:
-        """Cancel the requests at the end of the session."""
-        self._review.cancel()
-        self._request.cancel()
-
     def _restart(self) -> None:
         self._other_map = None
         self._maps.show_compared(None)
         self._say("")
-        if self._state.compared is None:
-            self.close()
-        else:
-            self._continue()
+        self._review.cancel()
+        self._request.cancel()
+        self._continue()
 
     def _continue(self) -> None:
         """Request what is missing next: the review of the other system, or its map."""

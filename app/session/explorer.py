@@ -9,6 +9,8 @@ from typing import Any
 
 import panel as pn
 
+from app.browser.components.ensemble_player import EnsemblePlayer
+from app.browser.engine_component import BrowserEngine
 from app.job_clients.shown_results import ShownResults
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
@@ -21,17 +23,16 @@ from app.session.link_presenter import LinkPresenter
 from app.session.map_presenter import MapPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
-from app.session.preview_presenter import PreviewPresenter
-from app.session.watch_presenter import WatchPresenter
+from app.state.help_texts import title_with_help
 from app.state.navigation import window_moves
 from app.state.presets import Preset
 from app.state.view import Analysis
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.collapsible_section import Drawers, Stack
 from app.views.components.notice import Notice
-from app.views.panels.accessible_table import AccessibleTable
-from app.views.panels.analysis_choice import AnalysisTabs
-from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents
+from app.views.components.texts import TextPane
+from app.views.panels.analysis_choice import analysis_tabs
+from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserEvents
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.embedding import embed_code, page_address
@@ -54,7 +55,7 @@ class Explorer:
     def __init__(self, loop: asyncio.AbstractEventLoop | None = None) -> None:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
-        self._document, self._by_touch = document, False
+        self._document = document
         callbacks = SessionCallbacks(document, loop)
         # Panel may run callbacks of widgets without the session's lock, but changes of Bokeh models need the lock.
         self._locked = callbacks.every
@@ -80,16 +81,15 @@ class Explorer:
             context, self.maps.view, lambda sentence: self.analyses.show_notes(compared=sentence), self.links.refuse_comparison
         )
         self.orbits = OrbitPresenter(context, self.maps.view.marks, self.maps.view.well, self.maps.add_start)
-        self.watch = WatchPresenter(context)
-        self.preview = PreviewPresenter(context)
+        self.engine = BrowserEngine(context.state, context.results, context.jobs, context.locked)
 
     def _make_views(self) -> None:
         state, results, locked = self.state, self.results, self._locked
         self.statistics = StatisticsView(state, results, self._copy)
-        self.accessible_table = AccessibleTable(state, results)
         self.downloads = Downloads(state, results, partial(self._copy, None), self._copy_embed_code, locked(self._copied))
         self.gallery = Gallery(state, locked(self._show_preset))
-        self.browser = self._make_browser_events()
+        keys = WINDOW_KEYS if self.links.embedded else KEYS
+        self.browser = BrowserEvents(state, keys, locked, self._press, self.links.navigate, self._copied)
         self.controls = self._make_controls()
         self.drawers = Drawers(
             {
@@ -97,7 +97,7 @@ class Explorer:
                 "slice": ("", "Slice", lambda: SlicePanel(state).build()),
                 "gallery": ("Gallery", "Gallery", self.gallery.build),
                 "share": ("Share", "Share and download", self.downloads.build),
-                "help": ("Help", "Help", lambda: [*help_panes(state), *self.accessible_table.fold.parts()]),
+                "help": ("Help", "Help", lambda: help_panes(state, results)),
             },
             self.browser.focus_drawer,
         )
@@ -107,73 +107,47 @@ class Explorer:
                 Analysis.STATISTICS: self.statistics.build,
                 Analysis.MEASURES: self.analyses.measures.build,
                 Analysis.ENERGIES: self.analyses.curves.build,
-                Analysis.WATCH: self.watch.build,
+                Analysis.WATCH: self._build_watch,
             },
             "analysis",
-            head=[AnalysisTabs(state).tabs],
+            head=[analysis_tabs(state)],
         )
 
-    def _make_browser_events(self) -> BrowserEvents:
-        locked = self._locked
-        actions = BrowserActions(
-            key=locked(self._press),
-            navigate=locked(self.links.navigate),
-            dark=locked(self.set_dark),
-            touch=locked(self._begin_touch),
-            narrow=locked(self.maps.view.grid.offer_choice),
-            copied=locked(self._copied),
-            enlarge=locked(self._enlarge),
-        )
-        return BrowserEvents(actions, WINDOW_KEYS if self.links.embedded else KEYS)
+    def _build_watch(self) -> list[pn.viewable.Viewable]:
+        title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
+        return [title, EnsemblePlayer(self.state, self.results, self._client, self._locked)]
 
     def _make_controls(self) -> Controls:
         state, maps = self.state, self.maps.view
         actions = ControlActions(
-            play=self.preview.play,
+            play=self.engine.play,
             choose_potential=lambda: self.drawers.toggle("potential"),
             choose_slice=lambda: self.drawers.toggle("slice"),
-            compare=self._locked(self.comparison.compare),
             swap=self.comparison.swap_views,
             lock_times=self._locked(lambda on: state.param.update(lock_times=maps.times if on else None)),
         )
         controls = Controls(state, actions)
-        self.preview.engine.param.watch(lambda event: controls.show_playing(event.new), "playing")
+        self.engine.param.watch(lambda event: controls.show_playing(event.new), "playing")
         return controls
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
-        for presenter in (self.maps, self.orbits, self.analyses, self.comparison, self.watch, self.potential, self.preview):
-            presenter.close()
         self._client.close()
-
-    def set_dark(self, dark: bool) -> None:
-        """Use the line colours of the dark or the light theme."""
-        with pn.io.hold():
-            self.maps.view.set_dark(dark)
 
     def _begin_view(self) -> None:
         """Show the first view; presenters then follow the changes of the state."""
-        self.preview.show_view()
+        self.engine.show_view()
         self.maps.requests.request_map()
         self.orbits.begin()
-
-    def _begin_touch(self) -> None:
-        self._by_touch = True
-        for part in (self.maps, self.controls, self.orbits):
-            part.begin_touch()
-
-    def _enlarge(self, name: str) -> None:
-        """Show a picture large; if it is large already, show all pictures side by side."""
-        self.state.focus = "" if name == self.state.focus else name
 
     def _open_view(self, system: System, values: dict[str, Any]) -> None:
         """Review a system, then show it with the given values of the state."""
         self.links.open(system, partial(self.state.show, **values))
 
     def _show_preset(self, preset: Preset) -> None:
-        self.preview.engine.stop()
+        self.engine.stop()
         # On a narrow screen the drawer covers the maps.
-        if self._by_touch:
+        if self.state.touch:
             self.drawers.show(None)
         self._open_view(preset.view.system, preset.view.within_limits().values())
 
@@ -193,11 +167,11 @@ class Explorer:
             **window_moves(self.maps.show_window, self.state.find_window),
             "b": self.browser.go_back,
             "f": self.browser.go_forward,
-            "p": self.preview.play,
+            "p": self.engine.play,
             "Enter": self.maps.add_middle,
             "Escape": self._escape,
             "?": lambda: self.drawers.toggle("help"),
-            **{key: partial(self._enlarge, name) for key, name in PICTURE_KEYS.items()},
+            **{key: partial(self.state.enlarge, name) for key, name in PICTURE_KEYS.items()},
         }
         try:
             moves[key]()
@@ -208,8 +182,8 @@ class Explorer:
         """Close the open drawer; if none is open, stop the animation, or show all pictures, or stop the map."""
         if self.drawers.shown is not None:
             self.drawers.show(None)
-        elif self.preview.engine.playing:
-            self.preview.engine.stop()
+        elif self.engine.playing:
+            self.engine.stop()
         elif self.state.focus:
             self.state.focus = ""
         else:

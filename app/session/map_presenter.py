@@ -20,7 +20,7 @@ from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.progress import ProgressView
 from engine import EscapeMap, Fate, Window
 from engine.propagation.fates import describe_fate
-from plots.pictures.palette import MOST_ORBITS, PALETTES
+from plots.pictures.palette import MOST_ORBITS
 
 
 class MapPresenter:
@@ -46,41 +46,21 @@ class MapPresenter:
         # The start that the last click added; None if the start was in the list already.
         self._added_start: Start | None = None
         self.view = MapsView(
+            state,
             MapActions(
                 tap=locked(self.add_start),
                 dive=locked(self._dive),
                 zoom=locked(self._zoom_to),
                 rest=locked(history.end_gesture),
                 box=locked(self._count_in),
-                choose=locked(lambda name: state.param.update(focus=name)),
             ),
             alone=alone,
         )
         self.toolbar = MapToolbar(state, locked(self.view.set_drag))
         self.requests = MapRequests(state, context.jobs, self, context.latest, process_state().is_crowded, prepare_curves)
-        self.progress = ProgressView(
-            locked(self.requests.stop_map), locked(self.requests.request_map), lambda name: state.switch_layer(name, on=True)
-        )
-        state.follow(self._set_palette, "palette")
-        state.follow(self.view.lock_times, "lock_times")
-        state.follow(self.view.grid.enlarge, "focus")
-        state.follow(self.view.marks.show_box, "box")
+        self.progress = ProgressView(state, locked(self.requests.stop_map), locked(self.requests.request_map))
         state.param.watch(self._go_to_window, ["system", "plane", "window"])
         state.param.watch(self._remove_box, ["system", "plane", "window", "box"])
-
-    def close(self) -> None:
-        """Cancel the requests at the end of the session."""
-        self.requests.close()
-
-    def _set_palette(self, name: str) -> None:
-        with pn.io.hold():
-            self.view.set_palette(PALETTES[name])
-            self.progress.set_palette(PALETTES[name])
-
-    def begin_touch(self) -> None:
-        """Adapt to touch input."""
-        self.toolbar.begin_touch()
-        self.view.begin_touch()
 
     # Windows, starts and boxes.
 

@@ -10,6 +10,7 @@ from typing import Any
 import panel as pn
 from param.parameterized import Event
 
+from app.browser.components.orbit_player import OrbitPlayer
 from app.job_clients.divergent_start_requests import DivergentStartRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
@@ -21,12 +22,10 @@ from app.views.orbits.inspector import Inspector
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.path_picture import path_picture
-from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
 from engine.slices.planes import SECTION
 from engine.trajectories.chaos_indicators import evaluate_indicators
 from plots.pictures.orbit_curves import OrbitCurves, restrict_curves
-from plots.pictures.palette import PALETTES
 
 REMOVED = "The orbits are removed, because they start on another slice. The Back button of the browser shows them again."
 
@@ -57,7 +56,6 @@ class OrbitPresenter:
         state, jobs, locked, latest = context.state, context.jobs, context.locked, context.latest
         self._state, self._results, self._marks, self._well = state, context.results, marks, well
         self._open_view, self._notice = context.open_view, context.notice
-        self._by_touch = False
         # The start of the last tap, until a message about its orbit is shown.
         self._tapped_start: Start | None = None
         self._orbits: tuple[ChosenOrbit, ...] = ()
@@ -75,51 +73,33 @@ class OrbitPresenter:
             copy=context.copy,
         )
         self.controls: OrbitControls = OrbitControls(state, actions)
-        self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
+        self.plots: OrbitPlots = OrbitPlots(state, locked(self._brush))
         # Under load the server skips times, to keep up with the player.
-        self.playback = Playback(latest(self._set_time))
-        self._separation_plot: SeparationPlot = SeparationPlot()
-        self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot, latest)
+        self.player = OrbitPlayer(latest(self._set_time), sizing_mode="stretch_width", margin=(4, 10), css_classes=["player"])
+        self._separation_plot: SeparationPlot = SeparationPlot(state)
+        self.inspector = Inspector(self.controls, self.player, self.plots, self._separation_plot, latest)
         self._orbit_requests = OrbitRequests(state, jobs, self._show, self.controls.say, latest)
         self._divergent_start_requests = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation_requests = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         state.param.watch(self._end_message, ["starts", "chosen", "system", "plane", "energy", "t_max"])
-        state.param.watch(lambda event: self._show(self._orbits), "chosen")
+        state.param.watch(lambda *events: self._show(self._orbits), ["chosen", "palette"])
         state.param.watch(self._note_tapped, "starts")
-        state.follow(self._set_palette, "palette")
 
     def begin(self) -> None:
         """Request the orbits of the first view state."""
         self._end_message()
         self._orbit_requests.follow()
 
-    def _set_palette(self, name: str) -> None:
-        """Use the colours of another palette."""
-        with pn.io.hold():
-            for view in (self.plots, self._separation_plot):
-                view.set_palette(PALETTES[name])
-            self._show(self._orbits)
-
-    def begin_touch(self) -> None:
-        """Adapt to touch input."""
-        self._by_touch = True
-        self.plots.begin_touch()
-
     def _note_tapped(self, event: Event) -> None:
         added = [start for start in event.new if start not in event.old]
-        self._tapped_start = added[0] if len(added) == 1 and self._by_touch else None
+        self._tapped_start = added[0] if len(added) == 1 and self._state.touch else None
 
     def _announce_tapped(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Show verdict and path of the tapped start in a message, because on a phone the panel and the path are out of view."""
-        for one, colour in zip(orbits, PALETTES[self._state.palette].orbits, strict=False):
+        for one, colour in zip(orbits, self._state.colours.orbits, strict=False):
             if one.start == self._tapped_start and one.curves is not None:
                 self._tapped_start = None
                 self._notice.show(one.headline(), path_picture(one.curves, colour))
-
-    def close(self) -> None:
-        """Cancel all requests at the end of the session."""
-        for requests in (self._orbit_requests, self._divergent_start_requests, self._separation_requests):
-            requests.close()
 
     def _end_message(self, *events: Event) -> None:
         self.controls.end_message(has_orbits=bool(self._state.starts))
@@ -175,7 +155,7 @@ class OrbitPresenter:
         duration = (0.0, float(chosen_curves.orbit.t[-1])) if chosen_curves is not None else None
         self._well.show_orbits(curves, chosen)
         self.plots.show(curves, chosen, self._interval)
-        self.playback.follow(self._interval or duration)
+        self.player.follow(self._interval or duration)
         self.controls.show_interval(self._interval, duration[1] if duration is not None else 0.0)
 
     def _set_time(self, t: float | None) -> None:

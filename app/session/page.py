@@ -123,26 +123,25 @@ def _picture_alone(explorer: Explorer) -> pn.viewable.Viewable:
         explorer.maps.progress.bar,
         explorer.maps.view.grid.layout(),
         explorer.links.open_link.pane,
-        *(view.layout() for view in (explorer.browser, explorer.preview.engine, explorer.notice)),
+        explorer.browser,
+        explorer.engine,
+        explorer.notice.layout(),
         css_class="picture-alone",
     )
 
 
 def _stage(explorer: Explorer) -> pn.viewable.Viewable:
     """Return progress bar, maps, notes, and the chosen analysis, which the stylesheet arranges."""
-    views = (
-        explorer.analysis,
-        explorer.drawers,
-        explorer.browser,
-        explorer.preview.engine,
-        explorer.notice,
-    )
     return _column(
         explorer.maps.progress.bar,
         explorer.maps.toolbar.layout(*explorer.maps.progress.layout()),
         explorer.maps.view.grid.layout(),
         explorer.analyses.notes,
-        *(view.layout() for view in views),
+        explorer.analysis.layout(),
+        explorer.drawers.layout(),
+        explorer.browser,
+        explorer.engine,
+        explorer.notice.layout(),
         css_class="stage",
     )
 

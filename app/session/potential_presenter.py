@@ -72,10 +72,6 @@ class PotentialPresenter:
             self._proposal = None
             self._request.cancel()
 
-    def close(self) -> None:
-        """Cancel the request at the end of the session."""
-        self._request.cancel()
-
     def _take(self, system: System, *, done: bool) -> None:
         """Review a system of the panel. A running review is finished first: the maps could not follow a steady drag otherwise."""
         proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)

@@ -23,8 +23,8 @@ DIRECTIONS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowDown": (0, -1), 
 def pan(window: Window, key: str) -> Window:
     """Return a window moved by an arrow key."""
     x_direction, ordinate_direction = DIRECTIONS[key]
-    dx = PAN_SHARE * x_direction * (window.x_high - window.x_low)
-    dy = PAN_SHARE * ordinate_direction * (window.ordinate_high - window.ordinate_low)
+    dx = PAN_SHARE * x_direction * window.width
+    dy = PAN_SHARE * ordinate_direction * window.height
     return Window(window.x_low + dx, window.x_high + dx, window.ordinate_low + dy, window.ordinate_high + dy)
 
 

@@ -31,7 +31,7 @@ from engine.systems.catalogue.table import PAPER_ENERGIES
 from engine.systems.review.potential_review import SystemReview
 from engine.systems.system import TYPED
 from plots.layers.table import LAYERS, SETTINGS
-from plots.pictures.palette import MOST_ORBITS, PALETTES, Palette
+from plots.pictures.palette import DARK, LIGHT, MOST_ORBITS, PALETTES, LineColours, Palette
 from plots.pictures.time_scale import TimeScale
 
 WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
@@ -87,7 +87,7 @@ def longest_first_t_max(potential: Potential) -> float:
 
 
 class ViewState(param.Parameterized):
-    """What a session shows: the fields of `View` with their legal values, and choices that do not belong to a view."""
+    """What a session shows: the fields of `View` with their legal values, other choices, and what is known of the browser."""
 
     system = param.ClassSelector(class_=System, default=FIRST_VIEW.system)
     plane = param.ClassSelector(class_=Slice, default=FIRST_VIEW.plane)
@@ -107,6 +107,9 @@ class ViewState(param.Parameterized):
     )
     focus = param.Selector(default="", objects=["", *PICTURES], doc="picture that is shown large; empty for none")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
+    dark = param.Boolean(default=False, doc="whether the browser uses the dark theme")
+    touch = param.Boolean(default=False, doc="whether the visitor has touched the page with a finger")
+    narrow = param.Boolean(default=False, doc="whether the page has had the layout of a phone")
     lock_times = param.ClassSelector(
         class_=TimeScale, default=None, allow_None=True, doc="scale of the escape times; None fits it to the map in view"
     )
@@ -158,6 +161,11 @@ class ViewState(param.Parameterized):
         return PALETTES[self.palette]
 
     @property
+    def line_colours(self) -> LineColours:
+        """Colours of lines for the theme of the browser."""
+        return DARK if self.dark else LIGHT
+
+    @property
     def chosen_start(self) -> Start | None:
         """The chosen start; None if there are no starts."""
         return self.starts[self.chosen] if self.chosen < len(self.starts) else None
@@ -196,6 +204,15 @@ class ViewState(param.Parameterized):
     def switch_layer(self, name: str, *, on: bool) -> None:
         """Switch a layer on or off."""
         self.layers = self.layers | {name} if on else self.layers - {name}
+
+    def compare(self, *, on: bool) -> None:
+        """Compare later views with the present view in the same window, or end the comparison."""
+        window = self.find_window() if on and is_ready_for_maps(self.potential) else self.window
+        self.param.update(compared=self.view if on else None, window=window)
+
+    def enlarge(self, name: str) -> None:
+        """Show a picture large; if it is large already, show all pictures side by side."""
+        self.focus = "" if name == self.focus else name
 
     def show(self, reviewed: SystemReview, **values: Any) -> None:
         """Set a reviewed system together with other values."""

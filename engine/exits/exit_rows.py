@@ -11,7 +11,7 @@ from engine.exits.brake_orbits import saddle_axes
 from engine.exits.exit_shapes import absent_channel, closed_channel
 from engine.exits.lyapunov_orbits import UndefinedExitsError, find_orbits_in_well_units
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.integrator.kernels import events
+from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.potential import Potential
 from engine.systems.review.hill_region import check_closed_well
 from engine.systems.review.singularity_check import check_defined
@@ -38,7 +38,7 @@ def closed_exits(potential: Potential) -> np.ndarray:
         *(closed_channel(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)),
         *(end.row for end in potential.ends),
     ]
-    return np.array(rows).reshape(len(rows), events.CURVE_COLUMNS)
+    return np.array(rows).reshape(len(rows), geometry.CURVE_COLUMNS)
 
 
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
@@ -82,8 +82,8 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
     """
     outcomes, columns = curves.shape[-2:]
     rows = curves.reshape(math.prod(curves.shape[:-2]), outcomes, columns)
-    gates = np.ascontiguousarray(rows[0][:, [events.ORIGIN_X, events.ORIGIN_Y, events.HALF_WIDTH]])
-    is_line = rows[0, :, events.SHAPE] <= events.LINE
+    gates = np.ascontiguousarray(rows[0][:, [geometry.ORIGIN_X, geometry.ORIGIN_Y, geometry.HALF_WIDTH]])
+    is_line = rows[0, :, geometry.SHAPE] <= geometry.LINE
     gates[is_line] = _lines_inside(rows[:, is_line])
     return gates
 
@@ -91,12 +91,12 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
 def _lines_inside(rows: np.ndarray) -> np.ndarray:
     """Return lines across channels, slightly inside their exits (energies, channels, columns), of shape (channels, 3)."""
     s = np.linspace(-1.0, 1.0, 201)
-    u = chebyshev.chebval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0))
-    q = rows[..., events.MIDDLE, None] + rows[..., events.HALF_WIDTH, None] * s
-    origin_x, origin_y, outward_x, outward_y = np.moveaxis(rows[..., events.ORIGIN_X : events.OUTWARD_Y + 1, None], 2, 0)
+    u = chebyshev.chebval(s, np.moveaxis(rows[..., geometry.COEFFICIENTS :], -1, 0))
+    q = rows[..., geometry.MIDDLE, None] + rows[..., geometry.HALF_WIDTH, None] * s
+    origin_x, origin_y, outward_x, outward_y = np.moveaxis(rows[..., geometry.ORIGIN_X : geometry.OUTWARD_Y + 1, None], 2, 0)
     x, y = origin_x + u * outward_x - q * outward_y, origin_y + u * outward_y + q * outward_x
-    gates = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
+    gates = rows[0, :, geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
     lowest = (gates[:, :1] * x + gates[:, 1:] * y).min(axis=(0, -1))
-    origins = rows[0, :, events.ORIGIN_X : events.ORIGIN_Y + 1]
+    origins = rows[0, :, geometry.ORIGIN_X : geometry.ORIGIN_Y + 1]
     length = np.array([nearest_power_of_two(distance) for distance in np.hypot(*origins.T).tolist()])
     return np.column_stack([gates, lowest - _GATE_MARGIN * length])

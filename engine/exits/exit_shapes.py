@@ -1,4 +1,4 @@
-"""Exits over saddles as rows of numbers for the kernels of `integrator.kernels.events`: closed channels, curves, lines."""
+"""Exits over saddles as rows of numbers for the kernels of `integrator.kernels.exit_geometry`: closed channels, curves, lines."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.polynomial import chebyshev
 
 from engine.exits.brake_orbits import Axes, saddle_axes
 from engine.foundations.root_finding import bisect
-from engine.integrator.kernels import events
+from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.potential import Potential
 
 # Largest distance of a curve from the path that it follows, in units of the well.
@@ -44,19 +44,19 @@ _SAME_END = 1e-6
 
 def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
     """Return the row of a closed channel, (columns,): a short straight line just beyond the origin of the axes."""
-    curve = np.zeros(events.CURVE_COLUMNS)
-    curve[events.ORIGIN_X : events.OUTWARD_Y + 1] = *axes.origin, *axes.outward
-    curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
-    curve[events.HALF_WIDTH] = _CLOSED_HALF_WIDTH * np.hypot(*saddle)
-    curve[events.REACH] = 1.0
-    curve[events.COEFFICIENTS] = _CLOSED_OFFSET * np.hypot(*saddle)
+    curve = np.zeros(geometry.CURVE_COLUMNS)
+    curve[geometry.ORIGIN_X : geometry.OUTWARD_Y + 1] = *axes.origin, *axes.outward
+    curve[geometry.BEARING_X : geometry.BEARING_Y + 1] = saddle / np.hypot(*saddle)
+    curve[geometry.HALF_WIDTH] = _CLOSED_HALF_WIDTH * np.hypot(*saddle)
+    curve[geometry.REACH] = 1.0
+    curve[geometry.COEFFICIENTS] = _CLOSED_OFFSET * np.hypot(*saddle)
     return curve
 
 
 def absent_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
     """Return a row that no orbit crosses, (columns,), for a channel that is part of another exit."""
     curve = closed_channel(axes, saddle)
-    curve[events.REACH] = -1.0
+    curve[geometry.REACH] = -1.0
     return curve
 
 
@@ -86,14 +86,18 @@ def line_across(potential: Potential, energy: float, channel: int, edge: float) 
         return None
     low, high = walls[-1]
     curve = closed_channel(axes, potential.saddles[channel - 1])
-    curve[events.SHAPE] = events.LINE
+    curve[geometry.SHAPE] = geometry.LINE
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    curve[events.MIDDLE : events.HALF_WIDTH + 1] = middle, half
-    curve[events.SLOPE_LOW : events.SLOPE_HIGH + 1] = 2.0 * bend * half * np.array([low, high])
+    curve[geometry.MIDDLE : geometry.HALF_WIDTH + 1] = middle, half
+    curve[geometry.SLOPE_LOW : geometry.SLOPE_HIGH + 1] = 2.0 * bend * half * np.array([low, high])
     # u as a sum of Chebyshev polynomials of s = (q − middle)/half.
     constant = edge + bend * (middle * middle + 0.5 * half * half)
-    curve[events.COEFFICIENTS : events.COEFFICIENTS + 3] = constant, 2.0 * bend * middle * half, 0.5 * bend * half * half
-    curve[events.REACH] = find_reach(potential, energy, curve)
+    curve[geometry.COEFFICIENTS : geometry.COEFFICIENTS + 3] = (
+        constant,
+        2.0 * bend * middle * half,
+        0.5 * bend * half * half,
+    )
+    curve[geometry.REACH] = find_reach(potential, energy, curve)
     return curve
 
 
@@ -104,36 +108,39 @@ def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray 
     s = (q - middle) / half_width
     if np.any(np.diff(s) <= 0):
         return None
-    basis = chebyshev.chebvander(s, events.CURVE_DEGREE)
+    basis = chebyshev.chebvander(s, geometry.CURVE_DEGREE)
     fit = np.linalg.lstsq(basis, u, rcond=None)[0]
     if np.max(np.abs(basis @ fit - u)) > _LARGEST_FIT_ERROR:
         return None
     end_slopes = chebyshev.chebval([-1.0, 1.0], chebyshev.chebder(fit))
     curve = closed_channel(axes, saddle)
-    curve[events.SHAPE] = events.CURVE
-    curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *end_slopes
-    curve[events.COEFFICIENTS :] = fit
+    curve[geometry.SHAPE] = geometry.CURVE
+    curve[geometry.MIDDLE : geometry.SLOPE_HIGH + 1] = middle, half_width, *end_slopes
+    curve[geometry.COEFFICIENTS :] = fit
     return curve
 
 
 def mirrored_curve(curve: np.ndarray) -> np.ndarray:
     """Return an exit curve in the axes of the mirrored saddle, where u is unchanged and q has the opposite sign."""
     image = curve.copy()
-    image[[events.ORIGIN_X, events.OUTWARD_X, events.BEARING_X, events.MIDDLE]] *= -1.0
-    image[[events.SLOPE_LOW, events.SLOPE_HIGH]] = -curve[[events.SLOPE_HIGH, events.SLOPE_LOW]]
-    image[events.COEFFICIENTS + 1 :: 2] *= -1.0
+    image[[geometry.ORIGIN_X, geometry.OUTWARD_X, geometry.BEARING_X, geometry.MIDDLE]] *= -1.0
+    image[[geometry.SLOPE_LOW, geometry.SLOPE_HIGH]] = -curve[[geometry.SLOPE_HIGH, geometry.SLOPE_LOW]]
+    image[geometry.COEFFICIENTS + 1 :: 2] *= -1.0
     return image
 
 
 def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
     """Return the largest |s| at which a crossing counts: half-way from an end, along a straight line, to where V ≤ h."""
     reach = np.inf
-    saddle, outward = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
-    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
+    saddle, outward = (
+        curve[[geometry.ORIGIN_X, geometry.ORIGIN_Y]],
+        curve[[geometry.OUTWARD_X, geometry.OUTWARD_Y]],
+    )
+    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[geometry.HALF_WIDTH], 1.0)
     beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
-    for end, slope in ((-1.0, curve[events.SLOPE_LOW]), (1.0, curve[events.SLOPE_HIGH])):
-        u = chebyshev.chebval(end, curve[events.COEFFICIENTS :]) + slope * end * beyond
-        q = curve[events.MIDDLE] + curve[events.HALF_WIDTH] * end * (1.0 + beyond)
+    for end, slope in ((-1.0, curve[geometry.SLOPE_LOW]), (1.0, curve[geometry.SLOPE_HIGH])):
+        u = chebyshev.chebval(end, curve[geometry.COEFFICIENTS :]) + slope * end * beyond
+        q = curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * end * (1.0 + beyond)
         x, y = saddle[0] + outward[0] * u - outward[1] * q, saddle[1] + outward[1] * u + outward[0] * q
         reach = min(reach, 1.0 + 0.5 * beyond[potential.value(x, y) <= energy].min(initial=np.inf))
     return float(reach)
@@ -141,9 +148,15 @@ def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
 
 def line_points(curve: np.ndarray) -> np.ndarray:
     """Return x and y along an exit that is a line, from wall to wall, of shape (41, 2)."""
-    origin, outward = curve[events.ORIGIN_X : events.ORIGIN_Y + 1], curve[events.OUTWARD_X : events.OUTWARD_Y + 1]
+    origin, outward = (
+        curve[geometry.ORIGIN_X : geometry.ORIGIN_Y + 1],
+        curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1],
+    )
     s = np.linspace(-1.0, 1.0, _LINE_POINTS)
-    u, q = chebyshev.chebval(s, curve[events.COEFFICIENTS :]), curve[events.MIDDLE] + curve[events.HALF_WIDTH] * s
+    u, q = (
+        chebyshev.chebval(s, curve[geometry.COEFFICIENTS :]),
+        curve[geometry.MIDDLE] + curve[geometry.HALF_WIDTH] * s,
+    )
     points: np.ndarray = origin + u[:, None] * outward + q[:, None] * np.array([-outward[1], outward[0]])
     return points
 

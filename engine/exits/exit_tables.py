@@ -18,8 +18,8 @@ from engine.exits.exit_rows import exit_gates
 from engine.exits.exit_shapes import curve_along, find_reach
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
 from engine.foundations.arrays import read_only
-from engine.integrator.kernels import events
-from engine.integrator.kernels.exit_curves import MIDDLE_COLUMN, exit_points, interpolate_exit
+from engine.integrator.kernels import exit_geometry as geometry
+from engine.integrator.kernels.exit_geometry import MIDDLE_COLUMN, exit_points, interpolate_exit
 from engine.systems.potential import Potential
 
 LARGEST_ERROR = 1e-6
@@ -37,8 +37,8 @@ _NEGLIGIBLE = 1e-9
 _FARTHEST_REACH = 1e6
 # Values of s at which exits are compared.
 _POSITIONS = np.linspace(-1.0, 1.0, 21)
-# Columns of a row after gate and reach, see `engine.integrator.kernels.exit_curves`.
-_CURVE_COLUMNS = np.r_[events.ORIGIN_X : events.OUTWARD_Y + 1, events.MIDDLE : events.CURVE_COLUMNS]
+# Columns of a row after gate and reach, see `engine.integrator.kernels.exit_geometry`.
+_CURVE_COLUMNS = np.r_[geometry.ORIGIN_X : geometry.OUTWARD_Y + 1, geometry.MIDDLE : geometry.CURVE_COLUMNS]
 
 _Curves = Callable[[float], dict[int, np.ndarray]]
 
@@ -128,7 +128,7 @@ def _exit_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
         path = path[:, ::-1]
     curve = curve_along(chord_axes(path), potential.saddles[orbit.channel - 1], path)
     if curve is not None:
-        curve[events.REACH] = find_reach(potential, orbit.energy, curve)
+        curve[geometry.REACH] = find_reach(potential, orbit.energy, curve)
     return curve
 
 
@@ -167,14 +167,14 @@ def _between(count: int, largest: float) -> np.ndarray:
 
 def _row(curve: np.ndarray) -> np.ndarray:
     """Return the row of a table for an exit curve."""
-    gate, reach = exit_gates(curve[None])[0, 2], min(curve[events.REACH], _FARTHEST_REACH)
+    gate, reach = exit_gates(curve[None])[0, 2], min(curve[geometry.REACH], _FARTHEST_REACH)
     return np.concatenate([[gate, reach], curve[_CURVE_COLUMNS]])
 
 
 def _interpolate(nodes: np.ndarray, rows: np.ndarray, above: float) -> np.ndarray:
     """Return the row of the exit at an energy that is `above` the energy of its saddle."""
-    curves, gates = np.zeros((1, 1, events.CURVE_COLUMNS)), np.zeros((1, 3))
-    interpolate_exit(nodes, rows, 0.0, events.CURVE, np.array([above]), 0, curves, gates)
+    curves, gates = np.zeros((1, 1, geometry.CURVE_COLUMNS)), np.zeros((1, 3))
+    interpolate_exit(nodes, rows, 0.0, geometry.CURVE, np.array([above]), 0, curves, gates)
     found: np.ndarray = curves[0, 0]
     return found
 

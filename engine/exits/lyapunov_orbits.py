@@ -28,7 +28,7 @@ from engine.exits.periodic_orbits import find_orbit_in_rotating_frame, monodromy
 from engine.foundations.arrays import read_only
 from engine.foundations.result import Result
 from engine.foundations.validation import checked_number, checks_types
-from engine.integrator.kernels import events
+from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.merged_channels import MergedExit, name_channels
 from engine.systems.potential import Potential
 from engine.systems.provenance import describe_run
@@ -36,7 +36,7 @@ from engine.systems.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 
 # Reasons why an exit of several channels is not defined. The search meets them in this order.
 _NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
-_MISSING = {
+_REASONS = {
     _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
     _SHARP_BEND: "the orbit between its outer walls has too sharp a bend for a smooth curve; choose a higher energy",
     _RETURNS: "orbits that leave across the orbit between its outer walls come back; choose another energy",
@@ -133,7 +133,7 @@ class LyapunovOrbit(Result):
     @property
     def outward(self) -> np.ndarray:
         """(2,) unit vector out of the well, across the exit."""
-        return self.curve[events.OUTWARD_X : events.OUTWARD_Y + 1]
+        return self.curve[geometry.OUTWARD_X : geometry.OUTWARD_Y + 1]
 
     @property
     def half_path(self) -> np.ndarray:
@@ -151,7 +151,7 @@ class LyapunovOrbit(Result):
 
     @property
     def _is_closed_curve(self) -> bool:
-        return bool(self.curve[events.SHAPE] == events.LINE)
+        return bool(self.curve[geometry.SHAPE] == geometry.LINE)
 
 
 @checks_types(potential=Potential)
@@ -215,7 +215,7 @@ class _SearchError(Exception):
     """No Lyapunov orbit was found, or the orbit found cannot be used as an exit."""
 
 
-@functools.lru_cache(maxsize=4096)
+@functools.lru_cache(maxsize=1024)
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """Return the orbits of a potential in units of its well."""
     if potential.rotation:
@@ -283,7 +283,7 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
         if not has_returns(potential, energy, orbit, found.curve):
             return replace(found, others=merged.channels[1:])
         missing = _RETURNS
-    raise _SearchError(f"{_describe(potential, merged)}, and {_MISSING[missing]}")
+    raise _SearchError(f"{_describe(potential, merged)}, and {_REASONS[missing]}")
 
 
 def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
@@ -291,7 +291,7 @@ def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
     if units == WellUnits():
         return orbit
     curve = orbit.curve * units.length
-    directions = slice(events.OUTWARD_X, events.SHAPE + 1)
+    directions = slice(geometry.OUTWARD_X, geometry.SHAPE + 1)
     curve[directions] = orbit.curve[directions]
     return replace(units.restore(orbit), curve=curve)
 
@@ -341,7 +341,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
 
 def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
     """Return an orbit between two points at rest, with its exit `curve`, and set the reach of the exit."""
-    curve[events.REACH] = find_reach(potential, energy, curve)
+    curve[geometry.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
     path = x[there_and_back], y[there_and_back]

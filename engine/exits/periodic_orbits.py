@@ -61,14 +61,11 @@ class PeriodicOrbit(NamedTuple):
         (4, 201) x, y, ẋ, ẏ, evenly spaced in time; the last point is the first one.
     edge
         The value of u − a q², with a of `ridge_bend`, on a line just outside the orbit, in the axes of the saddle, dimensionless.
-    multipliers
-        (4,) complex eigenvalues of the monodromy matrix, the largest modulus first.
     """
 
     period: float
     path: np.ndarray
     edge: float
-    multipliers: np.ndarray
 
 
 class _Family(NamedTuple):
@@ -261,7 +258,7 @@ def _product(matrices: np.ndarray) -> np.ndarray:
 
 
 def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
-    """Return the path, the edge and the multipliers of an orbit; None if its parts do not fit."""
+    """Return the path and the edge of an orbit; None if its parts do not fit."""
     sigma, period = float(np.sqrt(energy - family.energy)), float(unknowns[-1])
     states = family.state + sigma * unknowns[:-1].reshape(_NODES, 4)
     parts = _trace(family.potential, states, period)
@@ -271,8 +268,7 @@ def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrb
     times = np.arange(_POINTS_PER_NODE) * (duration / _POINTS_PER_NODE)
     pieces = [sample_path(kernels, steps, times) for steps in parts.steps]
     path = np.concatenate([*pieces, states[:1].T], axis=1)
-    edge = _edge(family, path)
-    return PeriodicOrbit(period, path, edge, multipliers_of(_product(parts.matrices)))
+    return PeriodicOrbit(period, path, _edge(family, path))
 
 
 def _edge(family: _Family, path: np.ndarray) -> float:

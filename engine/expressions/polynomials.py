@@ -1,26 +1,17 @@
-"""Sparse polynomials in x and y, stored as {(i, j): c} for Σ c x^i y^j. Exact arithmetic limits the size of its results."""
+"""Sparse polynomials in x and y, stored as {(i, j): c} for Σ c x^i y^j."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 Powers = tuple[int, int]
 Terms = Mapping[Powers, float]
-ExactTerms = Mapping[Powers, Fraction]
 
 HIGHEST_DEGREE = 12
 """Highest degree of a potential. Searches for critical points are tested up to it, and higher degrees make Taylor steps slow."""
-
-# Largest number of bits of a numerator or denominator, so that a short formula cannot cause long computations.
-_MOST_BITS = 1000
-
-
-class TooLargeError(ValueError):
-    """The degree of a polynomial is too high, or one of its numbers has too many digits."""
 
 
 def degree(terms: Mapping[Powers, object]) -> int:
@@ -61,7 +52,7 @@ def derivative(terms: Terms, axis: int) -> dict[Powers, float]:
     return {(i, j - 1): j * c for (i, j), c in terms.items() if j}
 
 
-def multiply[C: (float, complex, Fraction)](a: Mapping[Powers, C], b: Mapping[Powers, C]) -> dict[Powers, C]:
+def multiply[C: (float, complex)](a: Mapping[Powers, C], b: Mapping[Powers, C]) -> dict[Powers, C]:
     """Return a · b. Terms that cancel remain as zeros."""
     total: dict[Powers, C] = {}
     for (i, j), c in a.items():
@@ -81,38 +72,3 @@ def substitute[C: (float, complex)](terms: Terms, x: Mapping[Powers, C], y: Mapp
         for powers, d in monomial.items():
             total[powers] = total.get(powers, 0) + c * d
     return total
-
-
-def exact_sum(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
-    """Return a + b, without the terms that cancel."""
-    zero = Fraction(0)
-    return _nonzero_terms({powers: a.get(powers, zero) + b.get(powers, zero) for powers in {**a, **b}})
-
-
-def exact_negative(a: ExactTerms) -> dict[Powers, Fraction]:
-    """Return −a."""
-    return {powers: -c for powers, c in a.items()}
-
-
-def exact_product(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
-    """Return a · b, without the terms that cancel; raise `TooLargeError` before multiplying if the degree would be too high."""
-    if a and b and degree(a) + degree(b) > HIGHEST_DEGREE:
-        raise TooLargeError(f"degree {degree(a) + degree(b)}; the highest degree is {HIGHEST_DEGREE}")
-    return _nonzero_terms(multiply(a, b))
-
-
-def exact_power(a: ExactTerms, exponent: int) -> dict[Powers, Fraction]:
-    """Return a to an integer power from 0 to `HIGHEST_DEGREE`."""
-    total: dict[Powers, Fraction] = {(0, 0): Fraction(1)}
-    for _ in range(exponent):
-        total = exact_product(total, a)
-    return total
-
-
-def _nonzero_terms(a: ExactTerms) -> dict[Powers, Fraction]:
-    """Return the nonzero terms; raise `TooLargeError` if a number has too many digits."""
-    nonzero = {powers: c for powers, c in a.items() if c}
-    for c in nonzero.values():
-        if max(c.numerator.bit_length(), c.denominator.bit_length()) > _MOST_BITS:
-            raise TooLargeError("a number of more than 300 digits")
-    return nonzero

@@ -15,6 +15,7 @@ import os
 import stat
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import platformdirs
@@ -73,6 +74,29 @@ def read_cached(path: Path) -> bytes | None:
         raise ValueError("its hash does not match")
     _mark_used(path)
     return payload
+
+
+def read_or_make(path: Path, kind: str, make: Callable[[], bytes]) -> bytes:
+    """Return the content of a file; if there is no valid file, make and write the content.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kind
+        What the file contains, for a warning if it is invalid.
+    make
+        Returns the content. Its errors are raised, and nothing is written.
+    """
+    try:
+        content = read_cached(path)
+    except (OSError, ValueError) as error:
+        log.warning("invalid %s %s: %s; making them again", kind, path, error)
+        content = None
+    if content is None:
+        content = make()
+        write_cached(path, content)
+    return content
 
 
 def write_cached(path: Path, payload: bytes, *, largest_size: int = LARGEST_SIZE, most_files: int = MOST_FILES) -> None:

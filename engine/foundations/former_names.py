@@ -64,7 +64,9 @@ def with_former_fields[T](cls: type[T]) -> type[T]:
     for old, new in FORMER_FIELDS.items():
         if hasattr(cls, new) or new in names:
             setattr(cls, old, _former_attribute(old, new))
-    _accept_former_parameters(cls, {old: new for old, new in FORMER_FIELDS.items() if new in names})
+    former = {old: new for old, new in FORMER_FIELDS.items() if new in names}
+    # `dataclasses.replace` also passes the current value under its new name, which the given value replaces.
+    cls.__init__ = with_former_parameters(**former)(cls.__init__)  # type: ignore[method-assign]
     return cls
 
 
@@ -74,20 +76,6 @@ def _former_attribute(old: str, new: str) -> property:
         return getattr(self, new)
 
     return property(get)
-
-
-def _accept_former_parameters(cls: Any, former: Mapping[str, str]) -> None:
-    initialize = cls.__init__
-
-    @functools.wraps(initialize)
-    def __init__(self: Any, *args: Any, **options: Any) -> None:  # noqa: N807
-        for old in former.keys() & options.keys():
-            _warn(old, former[old])
-            # `dataclasses.replace` also passes the current value under its new name.
-            options[former[old]] = options.pop(old)
-        initialize(self, *args, **options)
-
-    cls.__init__ = __init__
 
 
 def with_former_parameters[**P, T](**former: str) -> Callable[[Callable[P, T]], Callable[P, T]]:

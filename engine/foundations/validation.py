@@ -161,6 +161,18 @@ def checked_t_max(
     return float(t_max)
 
 
+def checked_states(name: str, states: Any) -> np.ndarray:
+    """Return an array (n, 4) of x, y, px and py, each of at most `LARGEST_NUMBER` in magnitude."""
+    array: np.ndarray = np.ascontiguousarray(checked_array(name, states))
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise ValueError(f"{name} of shape {array.shape}: must be (n, 4) with columns x, y, px, py")
+    legal = (np.abs(array) <= LARGEST_NUMBER).all(axis=1)
+    if not legal.all():
+        row = int(np.argmin(legal))
+        raise ValueError(f"{name}: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")
+    return array
+
+
 def checked_state(name: str, state: Any) -> np.ndarray:
     """Return an array of x, y, px and py, each of at most `LARGEST_NUMBER` in magnitude."""
     array = checked_array(name, state)

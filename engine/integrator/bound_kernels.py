@@ -29,7 +29,7 @@ from engine.integrator.jit.function_pointers import SIGNATURES
 from engine.integrator.jit.llvm_emitter import straight_line, table_reader
 from engine.integrator.kernels import fixed_step, interior, orbit_lanes, periodic_shooting, propagate
 from engine.integrator.source.recurrence import Definition, GeneratedCode, find_structure, generate
-from engine.integrator.source.series import REACH, Setting, Structure
+from engine.integrator.source.series import Setting, Structure
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, orbit_lanes, interior)
 # Number of cached potentials; binding the coefficients of another potential of a known structure takes milliseconds.
@@ -44,7 +44,6 @@ _outlines: set[tuple[Hashable, Setting]] = set()
 def load_kernels(
     definition: Definition,
     channels: int,
-    reach: float = REACH,
     *,
     sides: tuple[int, ...] = (),
     rotation: float = 0.0,
@@ -57,8 +56,6 @@ def load_kernels(
         ((i, j, c), …) of V = Σ c x^i y^j, or an expression.
     channels
         Number of exit channels, 0 or more.
-    reach
-        Radius about the origin, above 0, that contains all orbits.
     sides
         For each circle at which orbits end: −1 if they end inside it, 1 if they end outside.
     rotation
@@ -70,13 +67,13 @@ def load_kernels(
     functions that a kernel needs are compiled, which takes some seconds, or loaded from the cache, when a potential of the same
     structure first uses it.
     """
-    return _load(definition, Setting(channels, sides, rotation != 0.0), rotation, reach)
+    return _load(definition, Setting(channels, sides, rotation != 0.0), rotation)
 
 
 def is_generated(definition: Definition, setting: Setting) -> bool:
     """Return whether functions were generated for a potential of the same structure; generating them takes up to 0.3 s."""
     # Outlines are compared first, because finding the structure of a new formula takes up to 0.2 s.
-    return (_outline(definition), setting) in _outlines and find_structure(definition, setting, REACH) in _code_by_structure
+    return (_outline(definition), setting) in _outlines and find_structure(definition, setting) in _code_by_structure
 
 
 class GeneratedKernel:
@@ -138,8 +135,8 @@ class _BoundKernel:
 
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)
-def _load(definition: Definition, setting: Setting, rotation: float, reach: float) -> ModuleType:
-    code, name, generated = _define(find_structure(definition, setting, reach))
+def _load(definition: Definition, setting: Setting, rotation: float) -> ModuleType:
+    code, name, generated = _define(find_structure(definition, setting))
     _outlines.add((_outline(definition), setting))
     coefficients = code.tabulate(definition, rotation)
     bound = ModuleType(name)

@@ -7,7 +7,6 @@ process, and stored with the compiled kernels.
 from __future__ import annotations
 
 import functools
-import logging
 import os
 import subprocess
 import sys
@@ -17,23 +16,19 @@ from typing import Any
 from numba import types
 from numba.core.typing.templates import Signature
 
-from engine.foundations.cache_files import SUFFIX, cache_folder, read_cached, write_cached
+from engine.foundations.cache_files import SUFFIX, cache_folder, read_or_make
 from engine.integrator.jit.disk_cache import program_digest
 from engine.integrator.jit.kernel_module import SETTINGS, lower_kernels
 from engine.integrator.jit.webassembly import PAIR
 from engine.integrator.kernels import (
     dense_output,
     ensemble,
-    exit_curves,
+    exit_geometry,
     interior,
-    pixels,
     propagate,
     random_starts,
     slice_starts,
 )
-
-log = logging.getLogger(__name__)
-
 
 _void, _address, _number, _count, _flag = types.void, types.int64, types.float64, types.int64, types.boolean
 _f1, _f2, _f3 = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
@@ -54,16 +49,16 @@ KERNELS: dict[Any, Signature] = {
     ensemble.measure_spread: _number(_f2, _f2, _codes),
     interior.find_outside_polynomial: _void(_i2, _f1, _f2, _f2, *_points),
     interior.find_outside: _void(_address, _f1, _number, *_points),
-    exit_curves.interpolate_exit: _void(_f1, _f2, _number, _count, _f1, _count, _f3, _f2),
-    exit_curves.exit_points: _void(_f1, _f1, _f2),
+    exit_geometry.interpolate_exit: _void(_f1, _f2, _number, _count, _f1, _count, _f3, _f2),
+    exit_geometry.exit_points: _void(_f1, _f1, _f2),
     dense_output.compute_series: _void(_address, _f1, _f2, _f3),
     dense_output.sample_steps: _void(_address, _f1, _f2, _count, _number, _f2),
     slice_starts.find_starts: _void(*_potential, *_motion, _number, _f2, _f2, _f1),
     slice_starts.find_required_energies: _void(*_potential, *_motion, _f1, _f2),
     slice_starts.interpolate_window: _flag(_f1, _f2, _number, _f1),
-    pixels.place_pixels: _void(_f1, _count, _count, _i1, _count, _count, _f2, _i1),
-    pixels.select_starts: _count(_f2, _codes, _i1, _codes, _i1, _f2, _i1),
-    pixels.report_ends: _void(_orbits, _i1, _codes, _f1, _f1),
+    slice_starts.place_pixels: _void(_f1, _count, _count, _i1, _count, _count, _f2, _i1),
+    slice_starts.select_starts: _count(_f2, _codes, _i1, _codes, _i1, _f2, _i1),
+    slice_starts.report_ends: _void(_orbits, _i1, _codes, _f1, _f1),
     random_starts.scatter_points: _void(_i1, _f1, _flag, _f2),
     random_starts.draw_at_exits: _count(*_potential, _f2, _number, _flag, _i1, _f2),
 }
@@ -85,17 +80,12 @@ def kernel_module() -> bytes:
 
 @functools.cache
 def _load_or_build() -> bytes:
-    path = cache_folder() / f"{__name__}.{program_digest()}{SUFFIX}"
-    try:
-        stored = read_cached(path)
-    except (OSError, ValueError) as error:
-        log.warning("invalid compiled kernels %s: %s; compiling them again", path, error)
-        stored = None
-    if stored is None:
-        command = [sys.executable, "-m", __name__]
-        stored = subprocess.run(command, env=os.environ | SETTINGS, stdout=subprocess.PIPE, check=True).stdout
-        write_cached(path, stored)
-    return stored
+    return read_or_make(cache_folder() / f"{__name__}.{program_digest()}{SUFFIX}", "compiled kernels", _build)
+
+
+def _build() -> bytes:
+    command = [sys.executable, "-m", __name__]
+    return subprocess.run(command, env=os.environ | SETTINGS, stdout=subprocess.PIPE, check=True).stdout
 
 
 def _main() -> None:

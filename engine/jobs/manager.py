@@ -185,10 +185,9 @@ class Jobs:
         self._scheduler.spare_first_frames(spared)
 
     def pause_background(self, paused: bool) -> None:
-        """Pause or resume everything but first frames and long calls; see `FairScheduler.pause_background`."""
+        """Pause or resume all but first frames, long calls and calls of other processes; see `FairScheduler.pause_background`."""
         self._scheduler.pause_background(paused)
         self._compilations.pause_background(paused)
-        self._limited_calls.pause_background(paused)
 
     def stop(self) -> None:
         """Cancel all jobs and subscriptions; the computations end within about 0.2 s."""

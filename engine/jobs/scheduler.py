@@ -1,10 +1,10 @@
-"""Fair scheduling of many clients' calls on one thread pool, by priority and then round-robin."""
+"""Fair scheduling of many clients' calls on one thread pool, by priority, and then by the time since a client's last turn."""
 
 from __future__ import annotations
 
 import threading
 import time
-from collections import Counter, OrderedDict, deque
+from collections import Counter, deque
 from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextvars import copy_context
@@ -13,10 +13,15 @@ from functools import partial
 from typing import Any, NamedTuple, Protocol
 from weakref import WeakSet
 
+from cachetools import LRUCache
+
 from engine.foundations.execution import count_workers, default_executor
 
 # While background calls are paused, a long call of duration d is followed by a pause of 9 d: a duty cycle of 10 %.
 _PAUSE_PER_LONG_CALL = 9.0
+
+# Number of clients whose last turns are known.
+_KNOWN_CLIENTS = 1000
 
 
 class Clock(Protocol):
@@ -67,7 +72,9 @@ class _Call(NamedTuple):
 
 
 class FairScheduler:
-    """Chooses the next call when a thread is free: by priority, and within a priority by client, round-robin.
+    """Chooses the next call when a thread is free: by priority, and then of the client whose last turn is longest ago.
+
+    Clients with many calls are thus served in turn, and a client that has not asked for a while is served before them.
 
     Parameters
     ----------
@@ -92,8 +99,11 @@ class FairScheduler:
         self._one_each = one_each
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
-        # The queues by client, in round-robin order, then by executor, oldest first; clients without pending calls are removed.
-        self._pending: OrderedDict[Hashable, dict[QueueExecutor, deque[_Call]]] = OrderedDict()
+        # The queues by client, then by executor, oldest first; clients without pending calls are removed.
+        self._pending: dict[Hashable, dict[QueueExecutor, deque[_Call]]] = {}
+        self._turns = 0
+        # Number of the last turn of a client, from 1.
+        self._last_turns: LRUCache[Hashable, int] = LRUCache(_KNOWN_CLIENTS)
         self._cancelled: WeakSet[QueueExecutor] = WeakSet()
         # Number of threads of the pool that run calls.
         self._active_threads = 0
@@ -204,13 +214,15 @@ class FairScheduler:
             call = queues[executor].popleft()
             if not queues[executor]:
                 del queues[executor]
-            self._pending.move_to_end(executor.client)
+            self._turns += 1
+            self._last_turns[executor.client] = self._turns
             self._forget_if_empty(executor.client)
             return call, priority
 
     def _find_next(self) -> tuple[QueueExecutor, Priority] | None:
-        waiting = [queues for client, queues in self._pending.items() if not (self._one_each and self._served[client])]
-        candidates = [(executor, executor.priority()) for queues in waiting for executor in queues]
+        waiting = [client for client in self._pending if not (self._one_each and self._served[client])]
+        waiting.sort(key=lambda client: self._last_turns.get(client, 0))
+        candidates = [(executor, executor.priority()) for client in waiting for executor in self._pending[client]]
         priority = min((priority for _, priority in candidates if self._may_start(priority)), default=None)
         return next((candidate for candidate in candidates if candidate[1] is priority), None)
 

@@ -283,8 +283,11 @@ class _LineAnalyses[Analysis: PixelAnalysis]:
 
 
 def _as_finished[Key, Found](running: dict[Future[Found], Key], execution: Execution) -> Iterator[tuple[Key, Found]]:
-    """Yield results as they are finished, without those of calls that were dropped because the computation was cancelled."""
+    """Yield results as they are finished. When the computation is cancelled, calls that have not begun are dropped."""
     for future in as_completed(running):
+        if execution.is_cancelled:
+            for waiting in running:
+                waiting.cancel()
         found = execution.collect(future)
         if found is not None:
             yield running[future], found

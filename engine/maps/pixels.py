@@ -10,7 +10,7 @@ import numpy as np
 from engine.foundations.arrays import read_only
 from engine.foundations.result import MapResult
 from engine.foundations.stored_fields import write_field
-from engine.maps.result import EscapeMap, PixelArrays
+from engine.maps.result import EscapeMap, PixelArrays, pixel_dataset
 from engine.maps.spec import MapSpec
 
 if TYPE_CHECKING:
@@ -36,18 +36,11 @@ class PixelAnalysis(MapResult):
 
     def to_xarray(self) -> xr.Dataset:
         """Return the values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
-        # The import is slow and seldom needed.
-        import xarray as xr
-
-        x, ordinate = self.spec.pixel_centres()
-        abscissa_name, ordinate_name = self.spec.plane.axis_names
         images = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray) and value.ndim == 2}
-        dims = (ordinate_name, abscissa_name)
-        variables = {name: (dims, image, self._meaning(name, image)) for name, image in images.items()}
+        variables = {name: (image, self._meaning(name, image)) for name, image in images.items()}
         numbers = {name: write_field(value) for name, value in self.numbers().items()}
         attributes = {"result": type(self).__name__, **self.spec.provenance(), **numbers}
-        coordinates = {name: (name, centres, {"units": "1"}) for name, centres in ((ordinate_name, ordinate), (abscissa_name, x))}
-        return xr.Dataset(variables, coordinates, attributes)
+        return pixel_dataset(self.spec, self.spec.pixel_centres(), variables, attributes)
 
 
 def code_share(codes: np.ndarray, *counted: int) -> float:

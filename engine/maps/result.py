@@ -141,7 +141,7 @@ class EscapeMap(MapResult):
     def pixel_area(self) -> float:
         """Area of a pixel, in units of the axes."""
         window, (columns, rows) = self.spec.find_window(), self.spec.resolution
-        return (window.x_high - window.x_low) * (window.ordinate_high - window.ordinate_low) / (columns * rows)
+        return window.width * window.height / (columns * rows)
 
     @property
     def interior(self) -> np.ndarray:
@@ -218,32 +218,23 @@ class EscapeMap(MapResult):
         pixels = np.ix_(*(np.unique(representative_indices(size, self.stride)) for size in self.fate.shape))
         arrays = {name: getattr(self, name)[pixels] for name in names}
         (rows, columns), window = arrays["fate"].shape, self.spec.find_window()
-        x_high = window.x_low + (window.x_high - window.x_low) * columns * self.stride / self.fate.shape[1]
-        high = window.ordinate_low + (window.ordinate_high - window.ordinate_low) * rows * self.stride / self.fate.shape[0]
+        x_high = window.x_low + window.width * columns * self.stride / self.fate.shape[1]
+        high = window.ordinate_low + window.height * rows * self.stride / self.fate.shape[0]
         return arrays, Window(window.x_low, x_high, window.ordinate_low, high)
 
     def to_xarray(self) -> xr.Dataset:
         """Return the map as a dataset with named axes, units and provenance, which can be written as NetCDF."""
-        # The import is slow and seldom needed.
-        import xarray as xr
-
-        abscissa, ordinate = self.spec.plane.axis_names
-        dims = (ordinate, abscissa)
         fates = describe_codes(Fate, [outcome.label for outcome in self.outcomes])
         variables = {
-            "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **fates}),
-            "escape_time": (dims, self.escape_time, {"long_name": "escape time", "units": "1"}),
-            "crossings": (dims, self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
-            "energy_error": (dims, self.energy_error, {"long_name": "relative energy error", "units": "1"}),
-            "outside": (dims, self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
-            "evidence": (dims, self.evidence, {"long_name": "why the orbit is bounded", **describe_codes(Evidence)}),
-        }
-        coordinates = {
-            ordinate: (ordinate, self.ordinate, {"units": "1"}),
-            abscissa: (abscissa, self.x, {"units": "1"}),
+            "fate": (self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **fates}),
+            "escape_time": (self.escape_time, {"long_name": "escape time", "units": "1"}),
+            "crossings": (self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
+            "energy_error": (self.energy_error, {"long_name": "relative energy error", "units": "1"}),
+            "outside": (self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
+            "evidence": (self.evidence, {"long_name": "why the orbit is bounded", **describe_codes(Evidence)}),
         }
         attributes = {"result": "EscapeMap", **self.provenance(), "outcomes": write_outcomes(self.outcomes)}
-        return xr.Dataset(variables, coordinates, attributes)
+        return pixel_dataset(self.spec, (self.x, self.ordinate), variables, attributes)
 
     def provenance(self) -> dict[str, Any]:
         """Return the provenance of the map in plain values: request, integrator, version, worst energy error, pixels per fate."""
@@ -255,6 +246,22 @@ class EscapeMap(MapResult):
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
             **({} if self.rounded_share is None else {"rounded_share": self.rounded_share}),
         }
+
+
+def pixel_dataset(
+    spec: MapSpec,
+    centres: tuple[np.ndarray, np.ndarray],
+    variables: Mapping[str, tuple[np.ndarray, dict[str, str]]],
+    attributes: Mapping[str, Any],
+) -> xr.Dataset:
+    """Return arrays (rows, columns), each with its attributes, as a dataset with named axes."""
+    # The import is slow and seldom needed.
+    import xarray as xr
+
+    names = spec.plane.axis_names[::-1]
+    arrays = {name: (names, values, meaning) for name, (values, meaning) in variables.items()}
+    coordinates = {name: (name, places, {"units": "1"}) for name, places in zip(names, centres[::-1], strict=True)}
+    return xr.Dataset(arrays, coordinates, attributes)
 
 
 def collect_map(
@@ -286,17 +293,18 @@ def representative_indices(size: int, stride: int) -> np.ndarray:
     return np.minimum(np.arange(size) // stride * stride + stride // 2, size - 1)
 
 
-def as_map(name: str, value: Any) -> EscapeMap:
-    """Return a map, given as an `EscapeMap` or as its dataset: `to_xarray`, a file, or ``dataset.sel(h=0.3)`` of a sweep.
+def as_complete_map(name: str, value: Any) -> EscapeMap:
+    """Return a complete map, given as an `EscapeMap` or as its dataset: that of a file, or ``dataset.sel(h=0.3)`` of a sweep.
 
     Raises
     ------
     ValueError
-        If the value is neither, or is a dataset of several maps; the message contains `name` as the parameter.
+        If the value is neither, is a dataset of several maps, or is not complete; the message contains `name` as the parameter.
     """
-    if isinstance(value, EscapeMap):
-        return value
-    return read_map(checked_dataset(name, value, _STORED_ARRAYS, "an EscapeMap, or a dataset of one"))
+    legal = "an EscapeMap, or a dataset of one"
+    escape_map = value if isinstance(value, EscapeMap) else read_map(checked_dataset(name, value, _STORED_ARRAYS, legal))
+    escape_map.check_complete(name)
+    return escape_map
 
 
 def read_map(dataset: xr.Dataset) -> EscapeMap:

@@ -208,7 +208,7 @@ class MapSpec:
             axes=axes,
             fix=held,
             system=json.dumps(None if axis is None else asdict(axis.system)),
-            window=(window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
+            window=window.edges,
             default_window=int(self.window is None),
             resolution=self.resolution,
             t_max=self.t_max,
@@ -219,8 +219,8 @@ class MapSpec:
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
         """Return (row, column) of the pixel that contains a point of the plane; None outside the window."""
         window, (columns, rows) = self.find_window(), self.resolution
-        column = int(np.floor((x - window.x_low) / (window.x_high - window.x_low) * columns))
-        row = int(np.floor((ordinate - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows))
+        column = int(np.floor((x - window.x_low) / window.width * columns))
+        row = int(np.floor((ordinate - window.ordinate_low) / window.height * rows))
         return (row, column) if 0 <= row < rows and 0 <= column < columns else None
 
 

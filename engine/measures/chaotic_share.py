@@ -13,7 +13,7 @@ from engine.foundations.wording import format_share, format_share_range
 from engine.measures.starts import wilson_interval
 from engine.propagation.fates import Regularity
 
-_JUDGED = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
+_JUDGEMENTS = (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS)
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def compute_chaotic_share(character: Any) -> ChaoticShare:
     codes = np.asarray(getattr(character, "character", character))
     if codes.dtype.kind not in "iu":
         raise ValueError(f"character={short_repr(character)}: must be a RegularityMap, or an array of codes of Regularity")
-    chaotic, judged = int(np.count_nonzero(codes == Regularity.CHAOTIC)), int(np.count_nonzero(np.isin(codes, _JUDGED)))
+    chaotic, judged = int(np.count_nonzero(codes == Regularity.CHAOTIC)), int(np.count_nonzero(np.isin(codes, _JUDGEMENTS)))
     if not judged:
         return ChaoticShare(0, 0, np.nan, np.nan, np.nan)
     low, high = wilson_interval(chaotic, judged)

@@ -165,7 +165,7 @@ def compute_statistics(frame: Measurable | Starts, window: GivenWindow | None = 
     starts, made_by = read_starts("frame", frame), {}
     if window is not None:
         box = checked_window(window)
-        starts, made_by = starts.inside(box), {"counted_in": (box.x_low, box.x_high, box.ordinate_low, box.ordinate_high)}
+        starts, made_by = starts.inside(box), {"counted_in": box.edges}
     fate, escaped = starts.fate, starts.fate >= 1
     times = starts.escape_time[escaped]
     codes = len(starts.outcomes) + 1 - _LOWEST_CODE

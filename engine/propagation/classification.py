@@ -11,7 +11,7 @@ import numpy as np
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.foundations.validation import LARGEST_NUMBER, checked_array, checked_number, checks_types
+from engine.foundations.validation import checked_number, checked_states, checks_types
 from engine.propagation.batch import OrbitBatch, propagate_batch
 from engine.propagation.fates import Fate, OrbitResult
 from engine.systems.outcomes import Outcome
@@ -139,13 +139,7 @@ def _share_done(batch: OrbitBatch, t_max: float) -> float:
 
 def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
     energy = checked_number("energy", energy)
-    array: np.ndarray = np.ascontiguousarray(checked_array("states", states))
-    if array.ndim != 2 or array.shape[1] != 4:
-        raise ValueError(f"states of shape {array.shape}: must be (n, 4) with columns x, y, px, py")
-    legal = (np.abs(array) <= LARGEST_NUMBER).all(axis=1)
-    if not legal.all():
-        row = int(np.argmin(legal))
-        raise ValueError(f"states: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")
+    array = checked_states("states", states)
     difference = np.abs(potential.energy(array) - energy)
     tolerance = ENERGY_TOLERANCE * potential.units.energy
     if np.any(difference > tolerance):

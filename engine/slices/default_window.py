@@ -23,8 +23,8 @@ from engine.slices.axes import (
 )
 from engine.slices.slice import Slice
 from engine.slices.window import Window
+from engine.systems.forms.form import NO_POINTS, NotIsolatedError, UndecidedError
 from engine.systems.potential import Potential
-from engine.systems.review.potential_review import review_potential
 from engine.systems.well_units import WellUnits
 
 # Margin of the default window on each side, as a share of the size of the interior.
@@ -53,7 +53,7 @@ _VALUES = 9
 # Number of tested points of a line of pixels.
 _LINE_POINTS = 65
 # The middle of a window is at 0 if it is closer to 0 than this share of the window.
-_CENTRED = 1e-9
+_CENTRE_TOLERANCE = 1e-9
 _EMPTY = "must be at least about 1e-5 above the minimum of the well; fixed values must lie inside the well"
 
 Range = tuple[float, float]
@@ -118,7 +118,7 @@ def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: t
         (columns, rows) of the map.
     """
     window = default_window(potential, plane, energy)
-    edges = [(window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)]
+    edges = list(window.ranges)
     for place, (low, high) in enumerate(edges):
         if _is_centred(low, high, resolution[place]) and _on_symmetry_line(potential, plane, energy, place, edges[1 - place]):
             half = 0.5 * (high - low) / resolution[place]
@@ -128,7 +128,7 @@ def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: t
 
 def _is_centred(low: float, high: float, count: int) -> bool:
     """Return whether the middle one of several pixels is at 0, to rounding."""
-    return count > 1 and count % 2 == 1 and abs(low + high) < _CENTRED * (high - low)
+    return count > 1 and count % 2 == 1 and abs(low + high) < _CENTRE_TOLERANCE * (high - low)
 
 
 def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, place: int, others: Range) -> bool:
@@ -310,10 +310,17 @@ def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> t
 
 def _shown_radius(potential: Potential, escape_radius: float) -> float:
     """Return a radius that contains the bodies and critical points of a system with an escape radius, with some margin."""
-    places = [(point.x, point.y) for point in review_potential(potential).critical_points]
-    places += [(end.x, end.y) for end in potential.ends]
+    places = [*_known_critical_points(potential).tolist(), *((end.x, end.y) for end in potential.ends)]
     outermost = max((float(np.hypot(*place)) for place in places), default=0.0)
     return min(_SEARCH_BODY_DISTANCES * outermost or escape_radius, escape_radius)
+
+
+def _known_critical_points(potential: Potential) -> np.ndarray:
+    """Return the critical points, (n, 2); none if they form a curve or are not found within the limit on the work."""
+    try:
+        return potential.critical_points
+    except (NotIsolatedError, UndecidedError):
+        return NO_POINTS
 
 
 def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, np.ndarray]:

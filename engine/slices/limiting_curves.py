@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from engine.slices.axes import Energy, common_energy
+from engine.slices.axes import Energy, highest_energy
 from engine.slices.slice import Slice
 from engine.slices.window import Window
 from engine.systems.potential import Potential
@@ -20,18 +20,16 @@ def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy
     `energy` is ignored on a slice with an axis h. Returns the pieces of the curve in a window, each (n, 2).
     """
     # On a slice with an axis h, `required_energy` is relative to the h of each point, so the boundary is at 0.
-    level = None if plane.energy_axis is not None else common_energy(energy)
-    return trace_equipotentials(potential, plane, (level or 0.0,), window)[0]
+    level = highest_energy(energy) if plane.energy_axis is None else 0.0
+    (pieces,) = trace_equipotentials(potential, plane, [level], window)
+    return pieces
 
 
 def trace_equipotentials(potential: Potential, plane: Slice, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
     """Trace the curves on which `Slice.required_energy` has these values. Returns the pieces of each curve, each (n, 2)."""
     import contourpy
 
-    x, ordinate = (
-        np.linspace(low, high, _CONTOUR_SAMPLES)
-        for low, high in ((window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high))
-    )
+    x, ordinate = (np.linspace(low, high, _CONTOUR_SAMPLES) for low, high in window.ranges)
     required = plane.required_energy(potential, *np.meshgrid(x, ordinate))
     contours = contourpy.contour_generator(x, ordinate, required)
     return [[np.asarray(line) for line in contours.lines(energy)] for energy in energies]

@@ -30,7 +30,7 @@ _NEWTON_STEPS = 20
 # Number of potentials along the axis that `find_members` finds.
 _SCAN_VALUES = 112
 # Newton's method has converged when its last step is below this share of the distance from the origin.
-_CONVERGED = 1e-12
+_TOLERANCE = 1e-12
 # Newton's method may move a saddle by this share of the distance to the nearest other saddle.
 _LARGEST_SHARE = 0.5
 # Two saddles are the same if their distance is below this share of their distance from the origin.
@@ -148,7 +148,7 @@ class ParameterFamily:
         If the system has no potential at the node, return the value to reach.
         """
         distance = abs(end - self._own_value)
-        further = self._step * (math.floor(distance / self._step * (1.0 + _CONVERGED)) + 1)
+        further = self._step * (math.floor(distance / self._step * (1.0 + _TOLERANCE)) + 1)
         node = self._own_value + sign * (further if distance < self._reach else 2.0 * distance)
         try:
             self._axis.potential(node)
@@ -266,12 +266,12 @@ def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
     with np.errstate(all="ignore"):
         step = np.full_like(points, np.inf)
         for _ in range(_NEWTON_STEPS):
-            if not np.any(np.hypot(*step.T) > _CONVERGED * np.hypot(*points.T)):
+            if not np.any(np.hypot(*step.T) > _TOLERANCE * np.hypot(*points.T)):
                 break
             (gx, gy), (vxx, vxy, vyy) = potential.gradient(*points.T), potential.hessian(*points.T)
             step = np.column_stack([gx * vyy - gy * vxy, gy * vxx - gx * vxy]) / (vxx * vyy - vxy * vxy)[:, None]
             points = points - step
-        near = np.hypot(*step.T) <= _CONVERGED * np.hypot(*points.T)
+        near = np.hypot(*step.T) <= _TOLERANCE * np.hypot(*points.T)
         moved = np.hypot(*(points - start).T) <= _LARGEST_SHARE * _separation(start)
     result: np.ndarray = np.where((near & moved)[:, None], points, np.nan)
     return result

@@ -12,7 +12,7 @@ from engine.exits.exit_tables import ExitTable, tabulate_exits
 from engine.exits.interior import find_inner_radius, tabulate_polynomial
 from engine.integrator.jit.kernel_module import HEAP_CELL
 from engine.integrator.jit.webassembly import FUNCTIONS, PAIR, webassembly_module
-from engine.integrator.kernels import events, slice_starts
+from engine.integrator.kernels import events, exit_geometry, slice_starts
 from engine.integrator.kernels.random_starts import BEFORE_EXIT
 from engine.integrator.source.recurrence import ROWS, TOLERANCE, generate_code
 from engine.integrator.source.series import ORDER
@@ -24,12 +24,12 @@ from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
 
 _EXIT_COLUMNS = {
-    "count": events.CURVE_COLUMNS,
-    "shape": events.SHAPE,
+    "count": exit_geometry.CURVE_COLUMNS,
+    "shape": exit_geometry.SHAPE,
     "shapes": {
-        "closed": events.CLOSED,
-        "curve": events.CURVE,
-        "line": events.LINE,
+        "closed": exit_geometry.CLOSED,
+        "curve": exit_geometry.CURVE,
+        "line": exit_geometry.LINE,
     },
 }
 
@@ -128,7 +128,7 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     """
     well = potential.in_well_units
     definition, setting = well.form.definition, well.well.setting
-    code = generate_code(definition, **setting._asdict())
+    code = generate_code(definition, setting)
     table, backward = (code.tabulate(definition, rotation) for rotation in (well.rotation, -well.rotation))
     exits = tabulate_exits(well, highest / potential.units.energy)
     return PortableSystem(potential, webassembly_module(code), table, backward, exits)

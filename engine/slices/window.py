@@ -24,17 +24,34 @@ class Window:
     ordinate_high: float
 
     def __post_init__(self) -> None:
-        for name, low, high in (
-            ("x", self.x_low, self.x_high),
-            ("ordinate", self.ordinate_low, self.ordinate_high),
-        ):
+        for name, (low, high) in zip(("x", "ordinate"), self.ranges, strict=True):
             edges = [checked_number(f"window {name} edge", edge) for edge in (low, high)]
             if not edges[0] < edges[1]:
                 raise ValueError(f"window {name} range {low} … {high}: the lower edge must be below the upper edge")
 
+    @property
+    def edges(self) -> tuple[float, float, float, float]:
+        """The four edges: x_low, x_high, ordinate_low, ordinate_high."""
+        return self.x_low, self.x_high, self.ordinate_low, self.ordinate_high
+
+    @property
+    def ranges(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The edges along each axis: (x_low, x_high) and (ordinate_low, ordinate_high)."""
+        return (self.x_low, self.x_high), (self.ordinate_low, self.ordinate_high)
+
+    @property
+    def width(self) -> float:
+        """The length along the abscissa."""
+        return self.x_high - self.x_low
+
+    @property
+    def height(self) -> float:
+        """The length along the ordinate."""
+        return self.ordinate_high - self.ordinate_low
+
     def scaled(self, x_factor: float, ordinate_factor: float) -> Window:
         """Return the window with its edges multiplied by two factors."""
-        x, ordinate = (self.x_low, self.x_high), (self.ordinate_low, self.ordinate_high)
+        x, ordinate = self.ranges
         return Window(*(x_factor * edge for edge in x), *(ordinate_factor * edge for edge in ordinate))
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:

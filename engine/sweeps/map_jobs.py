@@ -62,8 +62,8 @@ def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | No
     return found if found is not None and found.batch is not None else None
 
 
-def _measure_point(point: SweepPoint, frame: EscapeMap, *, execution: Execution) -> xr.Dataset:
-    return compute_point(point, frame=frame, execution=execution)
+def _measure_point(point: SweepPoint, escape_map: EscapeMap, *, execution: Execution) -> xr.Dataset:
+    return compute_point(point, escape_map=escape_map, execution=execution)
 
 
 def _compute_sweep(

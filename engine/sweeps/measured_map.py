@@ -31,7 +31,7 @@ class MeasuredMap:
 
     Attributes
     ----------
-    frame
+    escape_map
         The map.
     box
         Only the starts in this box count; None for all starts.
@@ -41,7 +41,7 @@ class MeasuredMap:
         Share of the usual number of additional orbits; a tenth makes intervals up to three times as wide.
     """
 
-    frame: EscapeMap
+    escape_map: EscapeMap
     box: Window | None = None
     execution: Execution = DEFAULT_EXECUTION
     effort: float = 1.0
@@ -49,12 +49,12 @@ class MeasuredMap:
     @property
     def spec(self) -> MapSpec:
         """The request of the map."""
-        return self.frame.spec
+        return self.escape_map.spec
 
     @cached_property
     def starts(self) -> Starts:
         """The starts that count."""
-        starts = read_starts("frame", self.frame)
+        starts = read_starts("escape_map", self.escape_map)
         return starts if self.box is None else starts.inside(self.box)
 
     @cached_property
@@ -64,8 +64,8 @@ class MeasuredMap:
 
     def find_characters(self) -> np.ndarray:
         """Return the `Regularity` codes, (n,), of as many bounded starts that count as `effort` allows, from new orbits."""
-        place = np.s_[:, :] if self.box is None else read_starts("frame", self.frame).place(self.box)
-        counts = np.zeros(self.frame.fate.shape, bool)
+        place = np.s_[:, :] if self.box is None else read_starts("escape_map", self.escape_map).place(self.box)
+        counts = np.zeros(self.escape_map.fate.shape, bool)
         counts[place] = self.starts.fate == Fate.BOUNDED
         pixels = np.flatnonzero(counts)
         most = round(self.effort * MOST_JUDGED)
@@ -79,11 +79,11 @@ class MeasuredMap:
 
     def _keep(self, pixels: np.ndarray) -> EscapeMap:
         """Return the map with fates only for n pixels and their mirror images, whose orbits are not computed again."""
-        frame = self.frame
-        kept = np.zeros(frame.fate.size, bool)
+        spec, fate = self.spec, self.escape_map.fate
+        kept = np.zeros(fate.size, bool)
         kept[pixels] = True
-        kept[MirrorPixels(frame.spec, frame.x, frame.ordinate).partner[pixels]] = True
-        return replace(frame, fate=np.where(kept.reshape(frame.fate.shape), frame.fate, Fate.OUTSIDE))
+        kept[MirrorPixels(spec, self.escape_map.x, self.escape_map.ordinate).partner[pixels]] = True
+        return replace(self.escape_map, fate=np.where(kept.reshape(fate.shape), fate, Fate.OUTSIDE))
 
 
 @dataclass(frozen=True)

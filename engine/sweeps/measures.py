@@ -47,9 +47,9 @@ def _describe_shares(point: SweepPoint, statistics: EscapeStatistics) -> Variabl
     }
 
 
-def _describe_map(point: SweepPoint, frame: EscapeMap) -> Variables:
+def _describe_map(point: SweepPoint, escape_map: EscapeMap) -> Variables:
     """Return all arrays of the map, as in `EscapeMap.to_xarray`; fates have the numbers of the sweep."""
-    dataset, fate = frame.to_xarray(), frame.fate
+    dataset, fate = escape_map.to_xarray(), escape_map.fate
     renumbered = renumber(fate, np.array(point.numbers, fate.dtype))
     attributes = {**dataset["fate"].attrs, **_describe_fates(point)}
     kept = {str(name): variable for name, variable in dataset.variables.items()}
@@ -240,12 +240,12 @@ _ALL = (
     ),
     Measure(
         "accuracy", "Accuracy", "how well energy is conserved",
-        lambda measured: measured.frame,
+        lambda measured: measured.escape_map,
         (
             Quantity("worst_energy_error", "largest relative energy error of any orbit", attrgetter("worst_energy_error")),
         ),
     ),
-    Measure("maps", "Maps", "the arrays of the maps", lambda measured: measured.frame, other_variables=_describe_map),
+    Measure("maps", "Maps", "the arrays of the maps", lambda measured: measured.escape_map, other_variables=_describe_map),
 )  # fmt: skip
 
 MEASURES: Mapping[str, Measure] = MappingProxyType({measure.name: measure for measure in _ALL})

@@ -19,19 +19,21 @@ if TYPE_CHECKING:
 _EFFORT = 0.1
 
 
-def measure_map(frame: EscapeMap, name: str, box: Window | None = None, *, execution: Execution = DEFAULT_EXECUTION) -> Any:
+def measure_map(escape_map: EscapeMap, name: str, box: Window | None = None, *, execution: Execution = DEFAULT_EXECUTION) -> Any:
     """Return the result of the measure `name` of a complete map, or of a box in it; None if the measure is not defined."""
-    return MEASURES[name].compute(MeasuredMap(frame, box, execution))
+    return MEASURES[name].compute(MeasuredMap(escape_map, box, execution))
 
 
-def compute_point(point: SweepPoint, *, frame: EscapeMap | None = None, execution: Execution = DEFAULT_EXECUTION) -> xr.Dataset:
+def compute_point(
+    point: SweepPoint, *, escape_map: EscapeMap | None = None, execution: Execution = DEFAULT_EXECUTION
+) -> xr.Dataset:
     """Measure the map at one value of a sweep.
 
     Parameters
     ----------
     point
         The request.
-    frame
+    escape_map
         The map of `point.map_spec`; None to compute it.
     execution
         How the computation runs.
@@ -48,11 +50,11 @@ def compute_point(point: SweepPoint, *, frame: EscapeMap | None = None, executio
     # This import is slow.
     import xarray as xr
 
-    if frame is None:
-        frame = compute_map(point.map_spec, execution=execution.part(0, 2))
-    if not frame.complete:
+    if escape_map is None:
+        escape_map = compute_map(point.map_spec, execution=execution.part(0, 2))
+    if not escape_map.complete:
         raise CancelledError
-    measured = MeasuredMap(frame, execution=execution.part(1, 2), effort=_EFFORT)
+    measured = MeasuredMap(escape_map, execution=execution.part(1, 2), effort=_EFFORT)
     variables: dict[str, Any] = {}
     for name in point.measures:
         variables |= MEASURES[name].variables(point, MEASURES[name].compute(measured))

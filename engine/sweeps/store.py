@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 # Attribute of the group with the number of values on the disk.
-_FINISHED = "finished"
+_COUNT_ATTRIBUTE = "finished"
 # Name of the temporary files of Zarr.
-_UNFINISHED = "*.partial"
+_PARTIAL_FILES = "*.partial"
 # Attributes that follow from the potential, in words that may change from version to version.
 _WORDS = ("outcomes", "exit_names")
 _OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
@@ -77,11 +77,11 @@ class SweepStore:
 
         how: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
         with _naming(self._path):
-            point.assign_attrs(self._attributes | {_FINISHED: self._finished}).to_zarr(self._path, **how, **_OPTIONS)
+            point.assign_attrs(self._attributes | {_COUNT_ATTRIBUTE: self._finished}).to_zarr(self._path, **how, **_OPTIONS)
             for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*"):
                 for file in self._path.glob(pattern):
                     _sync_to_disk(file)
-            zarr.open_group(self._path, mode="r+", use_consolidated=False).attrs[_FINISHED] = self._finished + 1
+            zarr.open_group(self._path, mode="r+", use_consolidated=False).attrs[_COUNT_ATTRIBUTE] = self._finished + 1
             _consolidate(self._path)
         self._finished += 1
 
@@ -95,13 +95,13 @@ class SweepStore:
         if "result" not in group.attrs:
             raise ValueError(f"store={self._path}: is of an earlier version, which `open_result` reads; must be a new folder")
         check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
-        self._finished = int(group.attrs[_FINISHED])  # type: ignore[arg-type]
+        self._finished = int(group.attrs[_COUNT_ATTRIBUTE])  # type: ignore[arg-type]
         if self._finished == self._attributes["count"]:
             return
         # If the store is not writable, this fails before anything is computed.
         with tempfile.TemporaryFile(dir=self._path):
             pass
-        for unfinished in self._path.rglob(_UNFINISHED):
+        for unfinished in self._path.rglob(_PARTIAL_FILES):
             unfinished.unlink()
         for _, array in group.arrays():
             dimensions = getattr(array.metadata, "dimension_names", None) or ()

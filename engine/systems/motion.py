@@ -19,7 +19,7 @@ from engine.systems.parameters import WELL_PARAMETERS, symbol_of
 # x² and y².
 _SQUARES = tuple(multiply(axis, axis) for axis in (X, Y))
 # x y.
-_MIXED = multiply(X, Y)
+_PRODUCT = multiply(X, Y)
 
 MASS_RANGE = 1e-6, 1e6
 """Smallest and largest legal mass, dimensionless."""
@@ -117,7 +117,7 @@ class Motion(Result):
         divisor = (self.mass * self.rotation) ** 2
         is_centrifugal = all(math.isclose(terms.get(square, 0.0), -0.5 * self.mass * self.rotation**2) for square in _SQUARES)
         # The square of a very small rate underflows to 0.
-        if not is_centrifugal or _MIXED in terms or not divisor:
+        if not is_centrifugal or _PRODUCT in terms or not divisor:
             return 0.0
         return (terms.get(X, 0.0) ** 2 + terms.get(Y, 0.0) ** 2) / divisor
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from engine.foundations.validation import check_type, checked_number, replace_unchecked
 from engine.foundations.wording import format_number
-from engine.integrator.kernels import events
+from engine.integrator.kernels.exit_geometry import CIRCLE, CURVE_COLUMNS, DISC, HALF_WIDTH, ORIGIN_X, ORIGIN_Y, SHAPE
 
 SMALLEST_RADIUS = 1e-6
 """Smallest radius of a centre or of escape, dimensionless. Near the singularity of a smaller disc, steps would not change t."""
@@ -136,10 +136,10 @@ class End(Kind):
 
     @property
     def row(self) -> np.ndarray:
-        """The circle as a row of the table of exits in `engine.integrator.kernels.events`."""
-        row = np.zeros(events.CURVE_COLUMNS)
-        shape = events.DISC if self.side < 0 else events.CIRCLE
-        row[[events.ORIGIN_X, events.ORIGIN_Y, events.HALF_WIDTH, events.SHAPE]] = self.x, self.y, self.radius, shape
+        """The circle as a row of the table of exits in `engine.integrator.kernels.exit_geometry`."""
+        row = np.zeros(CURVE_COLUMNS)
+        shape = DISC if self.side < 0 else CIRCLE
+        row[[ORIGIN_X, ORIGIN_Y, HALF_WIDTH, SHAPE]] = self.x, self.y, self.radius, shape
         return row
 
     def scaled(self, factor: float) -> Self:

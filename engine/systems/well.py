@@ -81,11 +81,8 @@ class Well(ReadOnlyArrays):
         """
         if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
-        form = self.form
-        points, indices = self.critical_points, self.critical_indices
-        leads_out = stored_points(
-            "exit_saddles", form, lambda: leads_out_of_well(form.downhill, form.hessian, points, indices, form.singular_points)
-        )
+        form, points, indices = self.form, self.critical_points, self.critical_indices
+        leads_out = stored_points("exit_saddles", form, lambda: leads_out_of_well(form, points, indices, form.singular_points))
         return self._in_channel_order(points[leads_out])
 
     def _in_channel_order(self, points: np.ndarray) -> np.ndarray:
@@ -170,9 +167,7 @@ class Well(ReadOnlyArrays):
         # Indices of the exit saddles among the critical points.
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
         # Whether each critical point is a maximum beside each exit, of shape (channels, points).
-        is_beside = stored_points(
-            "maxima", form, lambda: find_maxima_beside(form.downhill, form.hessian, points, indices, saddles)
-        )
+        is_beside = stored_points("maxima", form, lambda: find_maxima_beside(form, points, indices, saddles))
         maxima = np.flatnonzero(is_beside.sum(axis=0) > 1)
         return self._mergers_at(points[maxima], [np.flatnonzero(is_beside[:, k]) + 1 for k in maxima])
 

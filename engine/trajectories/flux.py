@@ -157,7 +157,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
 def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
     """Return the area of the interior and its error, from the lengths of its parts on evenly spaced lines."""
     box = default_window(potential, SPACE, h)
-    height = (box.ordinate_high - box.ordinate_low) / _ROWS
+    height = box.height / _ROWS
     y = box.ordinate_low + height * (np.arange(_ROWS) + 0.5)
     x = np.linspace(box.x_low, box.x_high, _COLUMNS)
     inside = _is_inside(potential, h, *np.meshgrid(x, y))

@@ -10,7 +10,7 @@ import numpy as np
 from engine.exits.exit_rows import exit_curves
 from engine.foundations.arrays import read_only
 from engine.foundations.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
-from engine.foundations.validation import LARGEST_NUMBER, checked_array, checks_types, short_repr
+from engine.foundations.validation import checked_array, checked_states, checks_types, short_repr
 from engine.integrator.kernels.dense_output import sample_path
 from engine.propagation.classification import Outcomes
 from engine.propagation.fates import Fate, OrbitResult
@@ -117,7 +117,9 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
     >>> np.isfinite(orbits.x).sum(axis=0).tolist()
     [100, 41, 31, 28, 25]
     """
-    states, times = _checked_starts(states), checked_array("times", times)
+    states, times = checked_states("states", states), checked_array("times", times)
+    if not len(states):
+        raise ValueError("states: must be at least one state")
     times = _checked_times(times, len(states), potential)
     units, well = potential.units, potential.in_well_units
     # The kernels are compiled before the threads begin.
@@ -161,15 +163,6 @@ def _join(potential: Potential, states: np.ndarray, times: np.ndarray, rows: lis
     arrays = (times, *paths.transpose(1, 0, 2), *ends, np.atleast_1d(potential.energy(states)))
     filled: list[Any] = [read_only(np.ascontiguousarray(array)) for array in arrays]
     return SampledOrbits(*filled)
-
-
-def _checked_starts(states: Any) -> np.ndarray:
-    array = checked_array("states", states)
-    if array.ndim != 2 or array.shape[1] != _STATE or not len(array) or not np.all(np.abs(array) <= LARGEST_NUMBER):
-        raise ValueError(
-            f"states={short_repr(states)}: must be (n, 4) finite numbers x, y, px, py, at most {LARGEST_NUMBER:g} in magnitude"
-        )
-    return array
 
 
 def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.ndarray:

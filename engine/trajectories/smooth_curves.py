@@ -47,7 +47,7 @@ class PointSpacing:
     @classmethod
     def for_window(cls, whole: Window, window: Window | None) -> PointSpacing:
         """Return the spacing for the whole interior, or for a window in it, both on the plane of the stable manifold."""
-        coarse = SPACING * (whole.x_high - whole.x_low)
+        coarse = SPACING * whole.width
         if window is None:
             return cls(coarse, coarse)
         low, high = np.array([[window.x_low, -window.ordinate_high], [window.x_high, -window.ordinate_low]])

@@ -1,11 +1,16 @@
-"""Limits of the charts of statistics and curves. A sweep has a panel for the shares, and a panel for each other measure."""
+"""Limits, colours and curves of the charts of statistics and sweeps.
+
+A sweep has a panel for the shares, and one for each other measure.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from engine import MEASURES, Measure
+from engine.measures.decay_laws import LawFit
 from engine.results import Sweep
+from plots.pictures.palette import LAW_COLOURS, MEASURED
 
 BINS = 40
 """Number of bins of the histogram of escape times."""
@@ -19,6 +24,12 @@ SHARES = MEASURES["shares"]
 CURVE_PANELS = tuple(measure for measure in MEASURES.values() if measure.labels)
 """The measures of the other panels, in order."""
 
+NUMBER_COLOURS = MEASURED, LAW_COLOURS["exponential"]
+"""Colours of the numbers of a measure, in order."""
+
+# Number of points of the curve of a law.
+_LAW_POINTS = 200
+
 
 def is_measured(measure: Measure, curves: Sweep) -> bool:
     """Return whether a sweep contains a measure."""
@@ -29,3 +40,10 @@ def find_numbers(measure: Measure, curves: Sweep) -> np.ndarray:
     """Return all numbers of a panel without NaN, including the ends of error bars."""
     values = np.concatenate([np.concatenate([curves[name], *curves.interval(name)]) for name in measure.labels])
     return values[np.isfinite(values)]
+
+
+def law_curve(fit: LawFit) -> tuple[np.ndarray, np.ndarray]:
+    """Return times (n,) and shares (n,) of a fitted law, as far as a logarithmic axis can show them."""
+    t = np.geomspace(fit.t_low, fit.t_high, _LAW_POINTS)
+    share = fit.curve(t)
+    return t[share > 0.0], share[share > 0.0]

@@ -44,8 +44,8 @@ def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
         "ends": [end_words(frame.spec.outcomes)],
         "x": [window.x_low],
         "y": [window.ordinate_low],
-        "dw": [window.x_high - window.x_low],
-        "dh": [window.ordinate_high - window.ordinate_low],
+        "dw": [window.width],
+        "dh": [window.height],
         "energy": [np.nan if frame.spec.common_energy is None else frame.spec.common_energy],
         "complete": [frame.complete],
     }

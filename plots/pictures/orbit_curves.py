@@ -135,9 +135,7 @@ def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
     import pandas as pd
     from datashader import transfer_functions
 
-    canvas = datashader.Canvas(
-        _SHADED_PIXELS, _SHADED_PIXELS, (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
-    )
+    canvas = datashader.Canvas(_SHADED_PIXELS, _SHADED_PIXELS, *window.ranges)
     counts = canvas.line(pd.DataFrame({"x": x, "y": y}), "x", "y")
     shaded = transfer_functions.shade(counts, cmap="#000000", how="eq_hist", min_alpha=_FAINTEST)
     image = transfer_functions.dynspread(shaded, max_px=1).to_numpy()

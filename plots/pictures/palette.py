@@ -146,12 +146,13 @@ class Palette:
         """Return the label and colour of a fate. `outcomes` are the potential's; without them, all ends are channels."""
         if fate < 1:
             return self.outcomes[Fate(fate)]
-        outcome = outcome_of(fate, outcomes)
-        return Entry(outcome.label, self.ends[end_places([outcome])[0]])
+        [entry] = self.end_entries([outcome_of(fate, outcomes)])
+        return entry
 
     def end_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
         """Return the labels and colours of a potential's outcomes."""
-        return [self.entry(fate, outcomes) for fate in range(1, len(outcomes) + 1)]
+        ends = self.ends
+        return [Entry(outcome.label, ends[place]) for outcome, place in zip(outcomes, end_places(outcomes), strict=True)]
 
     def legend_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
         """Return the labels and colours of the outcomes that occur."""

@@ -14,15 +14,13 @@ from matplotlib.figure import Figure
 from engine import Fate, Measure, Outcome
 from engine.measures.decay_laws import LawFit
 from engine.results import DecayLaws, EscapeStatistics, Sweep
-from plots.pictures.charts import BINS, CURVE_PANELS, MOST_CROSSINGS, SHARES, is_measured
+from plots.pictures.charts import BINS, CURVE_PANELS, MOST_CROSSINGS, NUMBER_COLOURS, SHARES, is_measured, law_curve
 from plots.pictures.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
 from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_title, style_axes
 from plots.printed.figure_style import SCREEN, FigureStyle
 
 # Dashes of the second of two equal curves, such as the shares of mirror-image channels, so that both are visible.
 _DASHED = (0, (4.0, 3.0))
-# Number of points of the curve of a law.
-_SAMPLES = 300
 # Height of the figure of curves with two columns, in units of the width.
 _HEIGHT = 1.2
 # Height of the figure of curves with one column, in units of the width.
@@ -69,7 +67,7 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
 def draw_measure(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle = SCREEN) -> None:
     """Draw the numbers of a measure against the energy or a parameter, with their error bars."""
     curve = measure.curve
-    for (name, label), colour in zip(measure.labels.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
+    for (name, label), colour in zip(measure.labels.items(), NUMBER_COLOURS, strict=False):
         # Matplotlib typesets a subscript such as S_b between dollar signs.
         typeset_label = re.sub(r"_(\w+)", r"$_{\1}$", label)
         axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=typeset_label)
@@ -79,8 +77,7 @@ def draw_measure(axes: Axes, curves: Sweep, measure: Measure, style: FigureStyle
     if curve.logarithmic:
         axes.set_yscale("log")
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
-    style_axes(axes, style, grid=True)
-    label_axes(axes, curves.symbol, curve.axis, style)
+    style_axes(axes, style, grid=True, names=(curves.symbol, curve.axis))
     if len(axes.lines) > 1:
         add_panel_legend(axes, "best", style)
 
@@ -96,9 +93,7 @@ def draw_statistics_figure(statistics: EscapeStatistics, style: FigureStyle) -> 
     crossing_axes.bar(np.arange(len(probabilities)), probabilities, color=MEASURED)
     crossing_axes.set_xlim(-0.6, MOST_CROSSINGS + 0.6)
     crossing_axes.set_ylim(0.0, 1.0)
-    style_axes(crossing_axes, style, grid=True)
-    label_axes(crossing_axes, "upward crossings n", "p", style)
-    set_title(crossing_axes, "Escapes after n crossings", style)
+    style_axes(crossing_axes, style, grid=True, names=("upward crossings n", "p"), title="Escapes after n crossings")
     return figure
 
 
@@ -107,8 +102,7 @@ def draw_escape_times(axes: Axes, statistics: EscapeStatistics, style: FigureSty
     edges, counts = statistics.time_histogram(BINS)
     axes.stairs(counts, edges, fill=True, color=MEASURED)
     axes.set_xscale("log")
-    style_axes(axes, style, grid=True)
-    label_axes(axes, "escape time", "starts", style)
+    style_axes(axes, style, grid=True, names=("escape time", "starts"))
 
 
 def draw_shares(
@@ -153,11 +147,7 @@ def draw_decay_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
 def _draw_law(axes: Axes, fit: LawFit, *, preferred: bool) -> None:
     name = str(fit.law)
     label = f"{name}, ${_SYMBOLS[name]} = {_mathtext(fit.rate)}$" + (" (preferred)" if preferred else "")
-    t = np.geomspace(fit.t_low, fit.t_high, _SAMPLES)
-    curve = fit.curve(t)
-    axes.plot(
-        t, np.where(curve > 0.0, curve, np.nan), color=LAW_COLOURS[name], linewidth=1.8, linestyle=_DASHES[name], label=label
-    )
+    axes.plot(*law_curve(fit), color=LAW_COLOURS[name], linewidth=1.8, linestyle=_DASHES[name], label=label)
 
 
 def _mathtext(number: float) -> str:
@@ -173,5 +163,4 @@ def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, x_label: str, y_label: s
         axes.set_xscale("log")
     if "y" in logarithmic:
         axes.set_yscale("log")
-    style_axes(axes, grid=True)
-    label_axes(axes, x_label, y_label)
+    style_axes(axes, grid=True, names=(x_label, y_label))

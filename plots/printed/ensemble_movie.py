@@ -23,7 +23,7 @@ from engine.foundations.extras import require_package
 from engine.results import SampledOrbits
 from plots.pictures.orbit_curves import find_well_window
 from plots.pictures.palette import LIGHT, Palette
-from plots.printed.figure_axes import RENDER_LOCK, label_axes, new_figure, set_font, set_title, style_axes
+from plots.printed.figure_axes import RENDER_LOCK, new_figure, set_font, style_axes
 from plots.printed.figure_style import FigureStyle
 from plots.printed.map_figure import show_window
 from plots.printed.potential_figure import draw_well
@@ -139,9 +139,7 @@ def _draw_chart(axes: Axes, potential: Potential, orbits: SampledOrbits, style: 
     axes.set_xlim(0.0, last_time)
     axes.set_ylim(max(least_share, 0.5 * np.exp(-rate * last_time)), 1.2)
     axes.yaxis.set_major_locator(LogLocator())
-    style_axes(axes, style, grid=True)
-    label_axes(axes, "t", "share inside", style)
-    set_title(axes, "Share still inside", style)
+    style_axes(axes, style, grid=True, names=("t", "share inside"), title="Share still inside")
     axes.legend(loc="upper right", fontsize=style.small_size, frameon=False)
     line: Line2D = survival
     return line
@@ -151,8 +149,8 @@ def _show(stage: _Stage, orbits: SampledOrbits, index: int) -> None:
     """Show the orbits at the time with this index."""
     window = stage.window
     t = float(orbits.t[0, index])
-    x_shares = (orbits.x[:, index] - window.x_low) / (window.x_high - window.x_low)
-    y_shares = (orbits.y[:, index] - window.ordinate_low) / (window.ordinate_high - window.ordinate_low)
+    x_shares = (orbits.x[:, index] - window.x_low) / window.width
+    y_shares = (orbits.y[:, index] - window.ordinate_low) / window.height
     stage.particles.set_offsets(np.column_stack([x_shares, y_shares]))
     escape_times = np.sort(orbits.escape_time[orbits.fate > Fate.BOUNDED])
     past_times = escape_times[escape_times <= t]

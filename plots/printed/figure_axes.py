@@ -96,8 +96,13 @@ def label_axes(axes: Axes, x_label: str, y_label: str, style: FigureStyle = SCRE
     axes.set_ylabel(y_label, fontsize=style.font_size)
 
 
-def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -> None:
-    """Give axes a thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid."""
+def style_axes(
+    axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False, names: tuple[str, str] | None = None, title: str = ""
+) -> None:
+    """Give axes a thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid.
+
+    `names` are the labels of the x axis and the y axis. `title` is the title of the panel, see `set_title`.
+    """
     axes.tick_params(direction="out", labelsize=style.small_size, width=_FRAME, length=3.0, which="major")
     axes.tick_params(direction="out", width=0.6 * _FRAME, length=1.8, which="minor")
     for spine in axes.spines.values():
@@ -109,6 +114,10 @@ def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -
             axis.set_major_locator(MaxNLocator(_MOST_TICK_INTERVALS, steps=[1, 2, 5, 10]))
     if grid:
         axes.grid(alpha=0.25, linewidth=0.5)
+    if names is not None:
+        label_axes(axes, *names, style)
+    if title:
+        set_title(axes, title, style)
 
 
 def set_title(axes: Axes, title: str, style: FigureStyle = SCREEN) -> None:

@@ -302,7 +302,7 @@ def show_window(axes: Axes, shown: Window, x_name: str, y_name: str, style: Figu
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(0.0, 1.0)
     if equal:
-        axes.set_box_aspect((shown.ordinate_high - shown.ordinate_low) / (shown.x_high - shown.x_low))
+        axes.set_box_aspect(shown.height / shown.width)
     label_axes(axes, x.name, y.name, style)
 
 

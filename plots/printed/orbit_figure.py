@@ -19,7 +19,6 @@ from plots.pictures.palette import THRESHOLD, Palette
 from plots.printed.figure_axes import (
     add_figure_legend,
     add_panel_legend,
-    label_axes,
     new_figure,
     set_title,
     style_axes,
@@ -129,9 +128,7 @@ def draw_quantity(
         axes.set_ylim(*quantity.limits(drawn))
     if quantity.threshold is not None:
         axes.axhline(quantity.threshold, color=THRESHOLD, linestyle="--", linewidth=1.0)
-    style_axes(axes, style)
-    label_axes(axes, "t", quantity.label, style)
-    set_title(axes, quantity.title, style)
+    style_axes(axes, style, names=("t", quantity.label), title=quantity.title)
 
 
 def _draw_history(axes: Axes, history: History, colour: str, label: str) -> None:

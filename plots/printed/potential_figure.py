@@ -46,5 +46,5 @@ def enlarge(window: Window) -> Window:
     """Return a square window around a window, larger by a margin."""
     x = 0.5 * (window.x_low + window.x_high)
     ordinate = 0.5 * (window.ordinate_low + window.ordinate_high)
-    half = 0.5 * _ENLARGED * (window.x_high - window.x_low)
+    half = 0.5 * _ENLARGED * window.width
     return Window(x - half, x + half, ordinate - half, ordinate + half)

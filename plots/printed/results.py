@@ -22,7 +22,7 @@ from engine.slices.default_window import default_window
 from engine.slices.planes import SPACE
 from plots.layers.layer import Layer
 from plots.layers.picture import ShownMap
-from plots.layers.table import LAYERS, TITLES, map_legend
+from plots.layers.table import LAYERS, map_legend
 from plots.pictures.charts import CURVE_PANELS, SHARES, is_measured
 from plots.pictures.orbit_curves import compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
@@ -44,6 +44,10 @@ _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
 _LOG_FLOOR = 1e-16
 # Number of parameters of each `_draw…` function before its options: the result, the axes and the palette.
 _FIXED_PARAMETERS = 3
+
+
+class NoPictureError(TypeError):
+    """The result has no picture."""
 
 
 def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:
@@ -96,7 +100,7 @@ def _picture(result: Result) -> str:
     with RENDER_LOCK:
         try:
             _draw(result, figure.subplots(), PALETTES["paper"])
-        except TypeError:
+        except NoPictureError:
             return ""
         except ModuleNotFoundError as error:
             return f"<p>No picture: {html.escape(str(error))}</p>"
@@ -113,14 +117,13 @@ def _draw(result: Result, axes: Axes, palette: Palette) -> None:
             return
     chart = result.chart
     if chart is None:
-        raise TypeError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
+        raise NoPictureError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
     columns = result.columns()
     x = columns[chart.x]
     y = columns[chart.y]
     if chart.by_channel:
         axes.bar(list(map(str, x)), y, color=[palette.channels[channel - 1] for channel in x])
-        style_axes(axes)
-        label_axes(axes, chart.x_label, chart.y_label)
+        style_axes(axes, names=(chart.x_label, chart.y_label))
     else:
         drawn_y = np.maximum(y, _LOG_FLOOR) if "y" in chart.logarithmic else y
         draw_line(axes, x, drawn_y, chart.x_label, chart.y_label, logarithmic=chart.logarithmic)
@@ -159,8 +162,6 @@ def _panel(axes: Axes, window: Window) -> Axes:
 
 @_draw.register
 def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str = "basins") -> None:
-    if picture not in TITLES:
-        raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
     panel = _panel(axes, result.spec.find_window())
     draw_picture(panel, result, picture, palette)
     legend = map_legend(picture, ShownMap.of(result, palette, {}))
@@ -177,7 +178,7 @@ def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:
 @_draw.register
 def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
     if result.potential is None:
-        raise TypeError("this orbit has no potential, so its exits are unknown")
+        raise NoPictureError("this orbit has no potential, so its exits are unknown")
     curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
     if show == "path":
         # The axes are square until `draw_path` has given the panel the aspect of the window.
@@ -202,9 +203,7 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
         x, y = (np.pad(paths[has_fate], ((0, 0), (0, 1)), constant_values=np.nan) for paths in (result.x, result.y))
         axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
     axes.set_aspect("equal")
-    style_axes(axes)
-    label_axes(axes, "x", "y")
-    set_title(axes, "Paths")
+    style_axes(axes, names=("x", "y"), title="Paths")
     _add_legend_below(axes, entries)
 
 
@@ -212,15 +211,13 @@ def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) ->
 def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
     axes.plot(*result.half_path.T, color=palette.channels[result.channel - 1], linewidth=2.2)
     axes.set_aspect("equal", adjustable="datalim")
-    style_axes(axes)
-    label_axes(axes, "x", "y")
-    set_title(axes, f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
+    style_axes(axes, names=("x", "y"), title=f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
 
 
 @_draw.register
 def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     if not result.channels:
-        raise TypeError(f"the potential {result.name} has no exits and therefore no window to draw")
+        raise NoPictureError(f"the potential {result.name} has no exits and therefore no window to draw")
     window = enlarge(default_window(result, SPACE, result.escape_energy))
     draw_equipotentials(axes, result, window)
     for channel, (x, y) in enumerate(result.saddles.tolist(), 1):
@@ -228,15 +225,13 @@ def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     axes.set_xlim(window.x_low, window.x_high)
     axes.set_ylim(window.ordinate_low, window.ordinate_high)
     axes.set_aspect("equal")
-    style_axes(axes)
-    label_axes(axes, "x", "y")
-    set_title(axes, f"{result.name}: escape energy {result.escape_energy:.6g}")
+    style_axes(axes, names=("x", "y"), title=f"{result.name}: escape energy {result.escape_energy:.6g}")
 
 
 @_draw.register
 def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
     if result.refusal is not None:
-        raise TypeError("a potential that cannot be used has no picture")
+        raise NoPictureError("a potential that cannot be used has no picture")
     _draw_potential(result.potential, axes, palette)
 
 
@@ -246,7 +241,7 @@ def _draw_sweep(result: Sweep, axes: Axes, palette: Palette, *, measure: str | N
     if "share" in result.dataset:
         measures = {SHARES.name: SHARES} | measures
     if not measures:
-        raise TypeError("a sweep without numbers against the energy or a parameter has no picture")
+        raise NoPictureError("a sweep without numbers against the energy or a parameter has no picture")
     if measure is not None and measure not in measures:
         raise ValueError(f"measure={measure!r}: must be one of {', '.join(measures)}")
     # By default, the first measure.

@@ -110,8 +110,6 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         # Each orbit of such a map belongs to another potential.
         starts = ()
     names = [source, "MapSpec", *_slice_names(spec.plane), "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
-    window = spec.find_window()
-    edges = (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)
     energy = repr(spec.energy)
     lines = [
         "from matplotlib import pyplot",
@@ -124,7 +122,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         f"    {spec.plane},",
         f"    energy={energy},",
         f"    resolution={spec.resolution!r},",
-        f"    window=Window{_numbers(edges)},",
+        f"    window=Window{_numbers(spec.find_window().edges)},",
         f"    t_max={spec.t_max!r},",
         f"    use_evidence={spec.use_evidence!r},",
         ")",
@@ -184,7 +182,8 @@ def file_stem(spec: MapSpec, case: str) -> str:
     stem = f"escapes-{case}{rotation}-{spec.plane.key}-h{energy}-t{spec.t_max:g}"
     window = spec.given_window
     if window is not None:
-        stem += f"-{window.x_low!r}_{window.x_high!r}-{window.ordinate_low!r}_{window.ordinate_high!r}"
+        x, ordinate = window.ranges
+        stem += "".join(f"-{low!r}_{high!r}" for low, high in (x, ordinate))
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
 
 

@@ -76,21 +76,20 @@ class PaperFits:
         Fit of Ne/N0, the share of escapes.
     direct
         Fit of Nde/N0, the share of direct escapes.
-    lowest_energy, highest_energy
-        Energy range of the fits (dimensionless). It begins at the escape energy.
+    highest_energy
+        Upper end of the energy range of the fits (dimensionless). The range begins at the escape energy.
     """
 
     escaped: HyperbolicTangent
     direct: Polynomial
-    lowest_energy: float
     highest_energy: float
 
 
 PAPER_FITS: Mapping[str, PaperFits] = MappingProxyType(
     {
-        "I": PaperFits(HyperbolicTangent(30.0, 4.0), Polynomial((-1.7, 19.24, -49.15, 42.16)), 1.0 / 8.0, 0.5),
-        "II": PaperFits(HyperbolicTangent(49.0, 6.5), Polynomial((-2.2, 22.86, -59.24, 51.42)), 1.0 / 6.0, 0.5),
-        "III": PaperFits(HyperbolicTangent(15.85, 4.93), Polynomial((-1.496, 7.585, -5.938)), 0.25, 0.6),
+        "I": PaperFits(HyperbolicTangent(30.0, 4.0), Polynomial((-1.7, 19.24, -49.15, 42.16)), 0.5),
+        "II": PaperFits(HyperbolicTangent(49.0, 6.5), Polynomial((-2.2, 22.86, -59.24, 51.42)), 0.5),
+        "III": PaperFits(HyperbolicTangent(15.85, 4.93), Polynomial((-1.496, 7.585, -5.938)), 0.6),
     }
 )
 """Approximate formulas by case, from Zotos (2014), Nonlinear Dynamics, doi 10.1007/s11071-014-1524-9, section 5."""

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from scipy import optimize, special
 
-from reproduction.analyses.published_fits import HyperbolicTangent, Polynomial, ShareCurve
+from engine.results import Sweep
+from reproduction.analyses.published_fits import PAPER_FITS, HyperbolicTangent, Polynomial, ShareCurve
 
 # Confidence level of the intervals.
 _CONFIDENCE = 0.95
 # Smallest distance of shares from 0 and 1 in the initial guess, because the inverse of the curve diverges at 0 and 1.
-_SATURATED = 0.01
+_SATURATION = 0.01
 # Smallest number of shares strictly between 0 and 1 that determine the slope of the curve.
 _MIN_UNSATURATED = 3
 # Tolerance of the least-squares solver, at the level of rounding.
@@ -76,6 +77,39 @@ class ShareFit:
         return all(np.isfinite(value) for value in self.curve.parameters.values())
 
 
+@dataclass(frozen=True, eq=False)
+class CaseFit:
+    """Computed shares of a case on (x, px), with both fitted curves.
+
+    Attributes
+    ----------
+    name
+        Name of the share.
+    h, shares
+        (m,) energies, and the share at each energy.
+    published
+        The curve of the paper.
+    fitted
+        The new fit.
+    """
+
+    name: str
+    h: np.ndarray
+    shares: np.ndarray
+    published: ShareCurve
+    fitted: ShareFit
+
+
+def fit_case(case: str, curves: Sweep) -> tuple[CaseFit, CaseFit]:
+    """Return the fits of Ne/N0 and of Nde/N0 to the shares of a case."""
+    h, paper = curves.values, PAPER_FITS[case]
+    escaped, direct = curves["share"][:, 1:].sum(axis=1), curves["direct_share"]
+    return (
+        CaseFit("Ne/N0", h, escaped, paper.escaped, fit_escape_shares(h, escaped)),
+        CaseFit("Nde/N0", h, direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree)),
+    )
+
+
 def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
     """Fit Ne/N0 = ½[1 + tanh(a h − b)], the form of Zotos (2014), by least squares with equal weights.
 
@@ -102,7 +136,7 @@ def fit_escape_shares(h: np.ndarray, shares: np.ndarray) -> ShareFit:
     """
     if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _MIN_UNSATURATED:
         return _build_fit(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), h, shares)
-    guess = np.arctanh(2.0 * np.clip(shares, _SATURATED, 1.0 - _SATURATED) - 1.0)
+    guess = np.arctanh(2.0 * np.clip(shares, _SATURATION, 1.0 - _SATURATION) - 1.0)
     (constant, slope), half_widths = _fit(lambda line: 0.5 * (1.0 + np.tanh(line)), guess, 1, h, shares)
     return _build_fit(HyperbolicTangent(slope, -constant), half_widths[::-1], h, shares)
 

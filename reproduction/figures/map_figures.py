@@ -111,9 +111,7 @@ def draw_map_panel(
 
 def _common_window(frames: Sequence[EscapeMap]) -> Window:
     """Return the smallest window that contains the windows of several maps."""
-    edges = np.array(
-        [[w.x_low, w.x_high, w.ordinate_low, w.ordinate_high] for w in (frame.spec.find_window() for frame in frames)]
-    )
+    edges = np.array([frame.spec.find_window().edges for frame in frames])
     return Window(edges[:, 0].min(), edges[:, 1].max(), edges[:, 2].min(), edges[:, 3].max())
 
 

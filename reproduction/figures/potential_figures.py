@@ -77,7 +77,7 @@ def _draw_escapes(axes: Axes, cache: MapCache, case: str, window: Window) -> Non
 
 def _draw_arrow(axes: Axes, x: float, y: float, px: float, py: float, colour: str, window: Window) -> None:
     """Draw an arrow at the end of an orbit, in the direction of its motion."""
-    length = 0.05 * (window.x_high - window.x_low) / np.hypot(px, py)
+    length = 0.05 * window.width / np.hypot(px, py)
     arrow = {"arrowstyle": "-|>,head_width=0.25,head_length=0.5", "color": colour, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (x + length * px, y + length * py), (x, y), arrowprops=arrow)
 

@@ -16,8 +16,7 @@ from plots.pictures.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from plots.printed.curve_figures import draw_decay_laws, draw_shares
 from plots.printed.figure_axes import add_panel_legend, label_axes, new_figure, set_titles, style_axes
 from plots.printed.figure_style import SCREEN
-from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
-from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares
+from reproduction.analyses.share_fits import CaseFit, fit_case
 from reproduction.map_cache import MapCache
 from reproduction.notation import plane_label
 from reproduction.paper_ranges import nine_energies, three_energies
@@ -40,13 +39,8 @@ def draw_statistics(case: str, cache: MapCache) -> Figure:
     """Draw Ne/N0 and Nde/N0 against h, with the paper's fits and new fits, and dN_n/N0 and p_n against n."""
     figure = new_figure(SCREEN, 21.8, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
-    table = cache.curves(case, Plane.X_PX)
-    h = table.values
-    paper = PAPER_FITS[case]
-    escaped = table["share"][:, 1:].sum(axis=1)
-    direct = table["direct_share"]
-    _draw_fits(panels[0], h, escaped, paper.escaped, fit_escape_shares(h, escaped))
-    _draw_fits(panels[1], h, direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree))
+    for axes, fit in zip(panels, fit_case(case, cache.curves(case, Plane.X_PX)), strict=False):
+        _draw_fits(axes, fit)
     label_axes(panels[0], "$h$", "$N_e/N_0$")
     label_axes(panels[1], "$h$", "$N_{de}/N_0$")
     crossings = {energy: compute_statistics(cache.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
@@ -56,12 +50,13 @@ def draw_statistics(case: str, cache: MapCache) -> Figure:
     return figure
 
 
-def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: ShareCurve, new_fit: ShareFit) -> None:
+def _draw_fits(axes: Axes, fit: CaseFit) -> None:
+    h = fit.h
     energies = np.linspace(h[0], h[-1], _SAMPLES)
-    axes.plot(h, shares, "o", color=MEASURED, markersize=3.6, label="computed")
-    axes.plot(energies, paper(energies), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
-    if new_fit.determined:
-        axes.plot(energies, new_fit.curve(energies), color=LIGHT.text, linewidth=1.2, label="this fit")
+    axes.plot(h, fit.shares, "o", color=MEASURED, markersize=3.6, label="computed")
+    axes.plot(energies, fit.published(energies), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
+    if fit.fitted.determined:
+        axes.plot(energies, fit.fitted.curve(energies), color=LIGHT.text, linewidth=1.2, label="this fit")
     axes.set_xlim(h[0], h[-1])
     style_axes(axes, grid=True)
     add_panel_legend(axes, "lower right")

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import Plane, find_lyapunov_orbits, sample_orbits
+from engine import Plane, sample_orbits
 from plots.layers.map_analyses import MapAnalyses
 from plots.layers.regularity import REGULARITY, entries
 from plots.pictures.palette import MEASURED, PAPER, THRESHOLD
@@ -28,6 +28,7 @@ from reproduction.figures.map_figures import draw_map_panel
 from reproduction.map_cache import MapCache
 from reproduction.notation import plane_label
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
+from reproduction.sample_orbits import find_lyapunov_r2
 
 LONGEST_DRAWN = 4e6
 """Latest escape time of a drawn orbit. Integration takes a second per 1e5 time units."""
@@ -122,9 +123,7 @@ def _draw_band(axes: Axes, r2: np.ndarray, begin: float, end: float) -> None:
 def _draw_exits(axes: Axes, search: SuperStickySearch) -> None:
     """Draw the range of R² on the Lyapunov orbits."""
     assert search.spec.common_energy is not None
-    orbits = find_lyapunov_orbits(search.spec.potential, search.spec.common_energy)
-    r2 = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in orbits])
-    low, high = float(r2.min()), float(r2.max())
+    low, high = find_lyapunov_r2(search.spec.potential, search.spec.common_energy)
     label = f"Lyapunov orbits, $R^2 = {low:.3f}$ to ${high:.3f}$"
     axes.axhspan(low, high, color=THRESHOLD, alpha=0.35, linewidth=0.0)
     axes.axhline(0.5 * (low + high), color=THRESHOLD, linestyle="--", linewidth=1.2, label=label)

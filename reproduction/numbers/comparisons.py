@@ -25,7 +25,7 @@ PERCENT = 2.0
 """Largest difference of other numbers that agree, in percent."""
 
 # Quantities whose stated values determine the window.
-_FITTED = (Quantity.ESCAPED_BY, Quantity.BOUNDED)
+_WINDOW_QUANTITIES = (Quantity.ESCAPED_BY, Quantity.BOUNDED)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +118,7 @@ class _Windows:
 
     def __init__(self, cache: MapCache, numbers: tuple[StatedNumber, ...]) -> None:
         self.cache = cache
-        self.fitting = [number for number in numbers if number.needs_window and number.quantity in _FITTED]
+        self.fitting = [number for number in numbers if number.needs_window and number.quantity in _WINDOW_QUANTITIES]
         self.windows: dict[tuple[str, Plane, float], FittedWindow] = {}
 
     def fit(self, number: StatedNumber, energy: float) -> FittedWindow:

@@ -13,6 +13,14 @@ BOUNDARY_PIXELS = 2
 _NEIGHBOURHOOD = (3, 3)
 
 
+def neighbouring_fates(fate: np.ndarray, counts: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and the highest fate, up to `most`, among each start and its eight neighbours that count."""
+    from scipy import ndimage
+
+    lowest = ndimage.minimum_filter(np.where(counts, fate, most), _NEIGHBOURHOOD, mode="nearest")
+    return lowest, ndimage.maximum_filter(np.where(counts, fate, 0), _NEIGHBOURHOOD, mode="nearest")
+
+
 def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
     """Return the percentage of the starts that escape through the same exit as their eight neighbours.
 
@@ -24,13 +32,9 @@ def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
         Whether starts outside count as escaped through the exit beyond which they are. Otherwise, they are neither starts nor
         neighbours.
     """
-    from scipy import ndimage
-
     fate = np.where(frame.fate == Fate.OUTSIDE, frame.outside, frame.fate) if count_outside else frame.fate
     is_counted = fate >= Fate.BOUNDED
-    # Other starts must not change the minimum and the maximum.
-    lowest = ndimage.minimum_filter(np.where(is_counted, fate, frame.spec.potential.channels), _NEIGHBOURHOOD, mode="nearest")
-    highest = ndimage.maximum_filter(np.where(is_counted, fate, 0), _NEIGHBOURHOOD, mode="nearest")
+    lowest, highest = neighbouring_fates(fate, is_counted, frame.spec.potential.channels)
     return 100.0 * float(np.mean((lowest == highest)[is_counted] & (fate[is_counted] >= 1)))
 
 

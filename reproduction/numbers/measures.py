@@ -7,12 +7,13 @@ from types import MappingProxyType
 
 import numpy as np
 
-from engine import CASES, EscapeMap, Fate, Plane, compute_statistics, find_lyapunov_orbits
+from engine import CASES, EscapeMap, Fate, Plane, compute_statistics
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.numbers.map_structure import orders_of_escape_times, share_in_basins, share_next_to_all_basins
 from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 from reproduction.paper_ranges import STICKY_CASE, plane_energies
+from reproduction.sample_orbits import find_lyapunov_r2
 
 ACCURATE = 1e-11
 """Largest relative energy error of most orbits of the paper."""
@@ -92,12 +93,6 @@ def _accurate_share(frame: EscapeMap) -> float:
     return 100.0 * float(np.mean(frame.energy_error[frame.interior] < ACCURATE))
 
 
-def _lyapunov_r2(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
-    orbits = find_lyapunov_orbits(CASES[number.case], number.energies[0])
-    r2 = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in orbits])
-    return float(r2.min()), float(r2.max())
-
-
 def _last_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
     escapers = measures.search.escapers
     return (float(measures.search.escape_time[escapers[-1]]) if escapers.size else float("nan"),)
@@ -129,7 +124,7 @@ _MEASURES: Mapping[Quantity, Measure] = MappingProxyType(
         Quantity.ENERGY_ERROR: _energy_error,
         Quantity.ACCURATE: _of_each_map(_accurate_share),
         Quantity.ESCAPE_ENERGY: lambda measures, number: (CASES[number.case].escape_energy,),
-        Quantity.LYAPUNOV_R2: _lyapunov_r2,
+        Quantity.LYAPUNOV_R2: lambda measures, number: find_lyapunov_r2(CASES[number.case], number.energies[0]),
         Quantity.LAST_ESCAPE: _last_escape,
         Quantity.NEAREST_ESCAPE: _nearest_escape,
         Quantity.LARGEST_SHARE_ENERGY: _energy_of_largest_share,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine import EscapeMap, Fate, compute_uncertainty_exponent
+from reproduction.numbers.map_structure import neighbouring_fates
 
 ISLAND_PIXELS = 2
 """Largest distance, in pixels, from a bounded start to a start that counts as next to an island."""
@@ -16,8 +17,6 @@ LATE = 0.01
 
 # Limit of the total integration time of the pairs, in time units of the well.
 _WORK = 1e7
-# A start and its eight neighbours.
-_NEIGHBOURHOOD = (3, 3)
 
 
 @dataclass(frozen=True)
@@ -50,14 +49,8 @@ def bounded_share_beside(frame: EscapeMap, sign: int) -> float:
 
 def end_times(frame: EscapeMap) -> EndTimes:
     """Return the median times to the end inside basins and at their boundaries."""
-    from scipy import ndimage
-
     fate = frame.fate
-    is_interior = frame.interior
-    largest_fate = len(frame.spec.outcomes)
-    # Starts that are not in the interior must not change the minimum and the maximum.
-    lowest = ndimage.minimum_filter(np.where(is_interior, fate, largest_fate), _NEIGHBOURHOOD, mode="nearest")
-    highest = ndimage.maximum_filter(np.where(is_interior, fate, 0), _NEIGHBOURHOOD, mode="nearest")
+    lowest, highest = neighbouring_fates(fate, frame.interior, len(frame.spec.outcomes))
     has_ended = (fate > Fate.BOUNDED) & (lowest > Fate.BOUNDED)
     regions = (lowest == highest, lowest < highest)
     times = [frame.escape_time[has_ended & region] for region in regions]

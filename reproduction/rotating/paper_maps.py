@@ -100,6 +100,3 @@ PAPER_MAPS: Mapping[str, tuple[PaperMap, ...]] = MappingProxyType(
     }
 )
 """The maps by system."""
-
-LONG_MAP = replace(PAPER_MAPS["Copenhagen problem"][0].spec, resolution=(220, 220), t_max=1e4)
-"""A map for the decay of survivors: the Copenhagen problem with the smallest bodies, more starts and a longer time."""

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from engine import CASES, Plane, compute_statistics, fit_decay_laws
 from engine.foundations.wording import format_number
-from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
-from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from reproduction.analyses.published_fits import ShareCurve
+from reproduction.analyses.share_fits import ShareFit, fit_case, measure_deviation
 from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
 from reproduction.paper_ranges import three_energies
@@ -27,20 +25,11 @@ def write_fits(cache: MapCache) -> str:
     """Return a table of the fitted parameters with intervals, and the deviations of the published and new curves."""
     rows, sentences = [], []
     for case in CASES:
-        table = cache.curves(case, Plane.X_PX)
-        paper = PAPER_FITS[case]
-        h = table.values
-        escaped = table["share"][:, 1:].sum(axis=1)
-        direct = table["direct_share"]
-        curves: tuple[tuple[str, np.ndarray, ShareCurve, ShareFit], ...] = (
-            ("Ne/N0", escaped, paper.escaped, fit_escape_shares(h, escaped)),
-            ("Nde/N0", direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree)),
-        )
-        for name, shares, published, fitted in curves:
-            rows += list(_fit_rows(f"{case}, {name}", published, fitted))
-            paper_deviation = measure_deviation(published, h, shares).describe()
-            new_deviation = fitted.deviation.describe()
-            sentences.append(f"- Case {case}, {name}: the paper's curve lies {paper_deviation}; the new fit {new_deviation}.")
+        for fit in fit_case(case, cache.curves(case, Plane.X_PX)):
+            rows += list(_fit_rows(f"{case}, {fit.name}", fit.published, fit.fitted))
+            paper_deviation = measure_deviation(fit.published, fit.h, fit.shares).describe()
+            new_deviation = fit.fitted.deviation.describe()
+            sentences.append(f"- Case {case}, {fit.name}: the paper's curve lies {paper_deviation}; the new fit {new_deviation}.")
     introduction = _FITS_INTRODUCTION.format(count=cache.quality.curve_points)
     headings = ("fit", "parameter", "paper", "new fit", "95 % interval", "paper's inside")
     return "\n\n".join([introduction, write_rows(headings, rows), "\n".join(sentences)])

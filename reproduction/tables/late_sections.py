@@ -9,7 +9,7 @@ from reproduction.notation import write_rows
 from reproduction.paper_ranges import STICKY_CASE, nine_energies
 
 # Number of late escapes in the table.
-_LISTED = 20
+_LIST_LENGTH = 20
 
 _CHAOTIC_INTRODUCTION = """\
 Cases I and II on (x, px), {side} × {side} starts; energies without bounded starts are left out. Orbits are bounded if they are
@@ -47,7 +47,7 @@ def _describe_late(search: SuperStickySearch) -> tuple[str, ...]:
 
 def write_super_sticky(search: SuperStickySearch) -> str:
     """Return a summary of the search for super-sticky orbits, and a table of the last escapes."""
-    last_escapers = search.escapers[-_LISTED:]
+    last_escapers = search.escapers[-_LIST_LENGTH:]
     rows = [
         (
             f"{search.escape_time[k]:.0f}",

@@ -13,7 +13,7 @@ from engine import CASES
 from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_cache import MapCache
 from reproduction.notation import write_rows
-from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison, compare_all
+from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison
 from reproduction.numbers.map_structure import BOUNDARY_PIXELS
 from reproduction.numbers.stated_numbers import Counting, StatedNumber
 from reproduction.numbers.unknown_windows import STEP
@@ -28,10 +28,10 @@ _COLUMNS = (
     "half_side", "right_edge", "outside_share", "counted", "counted_difference", "agrees_when_counted", "derivation", "reason",
 )  # fmt: skip
 # Smallest number of computed values that are listed with their energies instead of their range.
-_LISTED = 4
+_SHORTEST_LIST = 4
 
 
-def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Comparison, ...] | None = None) -> str:
+def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Comparison, ...]) -> str:
     """Write the report as Markdown.
 
     Parameters
@@ -41,14 +41,13 @@ def write_report(cache: MapCache, search: SuperStickySearch, rows: tuple[Compari
     search
         Search for super-sticky orbits of case III at h = 0.26.
     rows
-        Result of `compare_all`; None to compute it.
+        Result of `compare_all`.
 
     Raises
     ------
     concurrent.futures.CancelledError
         If the cache is cancelled.
     """
-    rows = compare_all(cache, search) if rows is None else rows
     parts = ["# Comparison with the numbers of the paper", _introduce(cache, search), "## Summary", describe_verdict(rows)]
     for case, potential in CASES.items():
         case_rows = [row for row in rows if row.stated.case == case]
@@ -195,7 +194,7 @@ def _computed(row: Comparison) -> str:
     form, unit = ("{:.1f}", " %") if row.stated.is_share else ("{:.4g}", "")
     value_range = _range(row.computed, form)
     is_single = " to " not in value_range
-    if is_single or len(row.computed) < _LISTED:
+    if is_single or len(row.computed) < _SHORTEST_LIST:
         return value_range + unit
     values = ("none" if np.isnan(value) else form.format(value) for value in row.computed)
     listed = ", ".join(f"{value} at {energy:g}" for value, energy in zip(values, row.stated.energies, strict=True))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from app.state.view_state import ViewState
 from app.views.maps.map_plots import MapActions, MapsView
 
 _NOTHING = MapActions(
@@ -13,10 +14,9 @@ _NOTHING = MapActions(
     zoom=lambda window: None,
     rest=lambda: None,
     box=lambda box: None,
-    choose=lambda name: None,
 )
 
 
-def make_maps(**actions: Any) -> MapsView:
-    """Return the view of maps that calls these actions."""
-    return MapsView(replace(_NOTHING, **actions))
+def make_maps(state: ViewState | None = None, **actions: Any) -> MapsView:
+    """Return the view of maps that follows a view state and calls these actions."""
+    return MapsView(state or ViewState(), replace(_NOTHING, **actions))

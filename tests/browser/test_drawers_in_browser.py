@@ -99,13 +99,22 @@ def test_escape_closes_a_drawer_from_a_box_in_it(explorer: ExplorerPage) -> None
     expect(box).to_have_count(0)
 
 
-@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1024, 768), (768, 1024), (420, 850)])
-def test_the_energy_and_the_maps_stay_in_view_beside_a_drawer(
-    open_explorer: Callable[..., ExplorerPage], width: int, height: int
-) -> None:
-    explorer = open_explorer(width, height, QUICK, touch=width == 420)
+@pytest.mark.parametrize("touch", [False, True])
+def test_the_energy_and_the_maps_stay_in_view_beside_a_drawer(open_explorer: Callable[..., ExplorerPage], touch: bool) -> None:
+    first, *others = [(420, 850)] if touch else [(1280, 720), (1024, 768), (768, 1024)]
+    explorer = open_explorer(*first, QUICK, touch=touch)
     explorer.press("Other …")
     expect(explorer.page.locator(".formula-box textarea")).to_be_visible()
+    assert_beside_a_drawer(explorer)
+    for width, height in others:
+        explorer.page.set_viewport_size({"width": width, "height": height})
+        explorer.page.wait_for_function(
+            "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))"
+        )
+        assert_beside_a_drawer(explorer)
+
+
+def assert_beside_a_drawer(explorer: ExplorerPage) -> None:
     drawer = explorer.page.locator(".drawer").bounding_box()
     slider = explorer.page.get_by_role("slider", name="Energy h", exact=True).bounding_box()
     assert drawer is not None

@@ -162,7 +162,7 @@ _SHIFTS = """() => new Promise(done => {
 })"""
 
 
-@pytest.mark.parametrize(("width", "touch"), [(420, True), (768, True), (1280, False)])
+@pytest.mark.parametrize(("width", "touch"), [(420, True), pytest.param(768, True, marks=pytest.mark.slow), (1280, False)])
 def test_the_parts_of_the_page_stay_in_their_places_while_it_opens(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
     # Below this, browsers call the layout of a page stable.
     assert open_explorer(width, 900, QUICK, touch=touch).page.evaluate(_SHIFTS) < 0.1
@@ -203,12 +203,12 @@ def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, wid
     assert x_high - x_low == pytest.approx(high - low)
 
 
-def test_nothing_is_wider_than_a_phone_at_twice_the_size_of_letters(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(420, 850, QUICK, touch=True)
-    explorer.page.evaluate("document.documentElement.style.fontSize = '200%'")
-    expect(explorer.button("▶ Play")).to_be_in_viewport(ratio=1)
-    assert explorer.page.evaluate("document.documentElement.scrollWidth") == 420
-    assert explorer.page.evaluate(_COVERED) == [[]]
+def test_nothing_is_wider_than_a_phone_at_twice_the_size_of_letters(phone: ExplorerPage) -> None:
+    phone.page.evaluate("document.documentElement.style.fontSize = '200%'")
+    expect(phone.button("▶ Play")).to_be_in_viewport(ratio=1)
+    assert phone.page.evaluate("document.documentElement.scrollWidth") == 420
+    assert phone.page.evaluate(_COVERED) == [[]]
+    phone.page.evaluate("document.documentElement.style.fontSize = ''")
 
 
 def test_the_text_of_a_pixel_stands_beside_the_maps(wide: ExplorerPage) -> None:

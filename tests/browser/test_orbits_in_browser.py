@@ -111,7 +111,7 @@ def test_messages_disappear_with_their_subject(explorer: ExplorerPage) -> None:
 
 def test_an_interval_drawn_over_a_history_is_shown_by_path_curves_and_player(explorer: ExplorerPage) -> None:
     explorer.click("basins", 0.05, 0.02)
-    expect(explorer.text("Escaped through")).to_be_visible()
+    explorer.wait_for_data("r2_histories", "data.xs.length == 1")
     explorer.page.locator(".r2").first.scroll_into_view_if_needed()
     whole = explorer.ranges("r2")
     explorer.drag("r2", (0.2 * whole[1], 0.1), (0.4 * whole[1], 0.1))

@@ -49,15 +49,20 @@ def test_the_player_is_loaded_on_request_and_the_well_drains(open_explorer: Open
     expect(play).to_be_visible()
 
 
-def test_as_many_orbits_have_left_as_from_other_random_starts(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,5000,1,-2")
+@pytest.fixture(scope="module")
+def watched(open_for_all: OpenExplorer) -> ExplorerPage:
+    explorer = open_for_all(link=f"{QUICK}&analysis=watch&watch=well,5000,1,-2")
     expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
-    move_time_to(explorer, 0.2)
-    expect(explorer.text("t = 20.0")).to_be_visible()
+    return explorer
+
+
+def test_as_many_orbits_have_left_as_from_other_random_starts(watched: ExplorerPage) -> None:
+    move_time_to(watched, 0.2)
+    expect(watched.text("t = 20.0")).to_be_visible()
     fate = classify_orbits(CASES["I"], 0.19, sample_starts(CASES["I"], 0.19, 20000, seed=5), t_max=20.0).fate
     expected = float((fate <= 0).mean())
     # Four standard errors of 5 000 orbits.
-    assert abs(inside(explorer) / 5000 - expected) < 4.0 * (expected * (1.0 - expected) / 5000) ** 0.5
+    assert abs(inside(watched) / 5000 - expected) < 4.0 * (expected * (1.0 - expected) / 5000) ** 0.5
 
 
 @pytest.mark.slow
@@ -108,9 +113,7 @@ _OVER_THE_WELL = """() => {
 }"""
 
 
-def test_the_orbits_stay_over_the_well_when_the_page_changes_its_size(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,1000,1,-2")
-    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
-    explorer.page.wait_for_function(_OVER_THE_WELL)
-    explorer.page.set_viewport_size({"width": 1100, "height": 650})
-    explorer.page.wait_for_function(_OVER_THE_WELL)
+def test_the_orbits_stay_over_the_well_when_the_page_changes_its_size(watched: ExplorerPage) -> None:
+    watched.page.wait_for_function(_OVER_THE_WELL)
+    watched.page.set_viewport_size({"width": 1100, "height": 650})
+    watched.page.wait_for_function(_OVER_THE_WELL)

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import engine
-from cli.main import INTERRUPTED, INVALID_REQUEST
+from cli.main import INTERRUPTED
 from engine import CASES, Execution, Plane, SweepSpec
 from engine.results import Sweep
 from tests.cli.conftest import Run
@@ -63,13 +63,6 @@ def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pyt
     assert load(store)["h"].values.tolist() == [0.13]
     assert run(*SWEEP, "--store", store)[0] == 0
     assert load(store)["h"].values.tolist() == list(SPEC.values)
-
-
-def test_store_of_another_sweep_is_rejected(run: Run, tmp_path: Path) -> None:
-    run(*SWEEP, "--store", tmp_path / "store.zarr")
-    code, _, err = run(*SWEEP[:-1], 60, "--store", tmp_path / "store.zarr")
-    assert (code, err.count("\n")) == (INVALID_REQUEST, 1)
-    assert "t_max" in err
 
 
 def test_option_plan_computes_nothing(run: Run, tmp_path: Path) -> None:

@@ -8,9 +8,8 @@ from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.formulas.formula_parser import parse_formula
 from engine.systems.known_potentials import POTENTIALS
 
-# Compiling kernels takes long, so normal runs do it for one potential of the catalogue, and exhaustive runs for all. The three
-# cases of the paper are covered by other tests.
-MARKS = {"C5": (), "C8": (pytest.mark.slow,)}
+# Compiling kernels takes long, so normal runs do it for the cases of the paper, and exhaustive runs for all.
+MARKS = {"I": (), "II": (), "III": (), "C5": (pytest.mark.slow,), "C8": (pytest.mark.slow,)}
 
 
 # Wells with random terms of degree 3 and 4.

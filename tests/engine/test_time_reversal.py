@@ -24,7 +24,11 @@ ENERGIES = {
     "Two Yukawa centres": -0.4,
 }
 # Systems whose kernels take long to compile.
-LARGE = ("Barred galaxy", "Two Yukawa centres")
+MARKS = {
+    "Logarithmic bar": pytest.mark.slow,
+    "Barred galaxy": pytest.mark.exhaustive,
+    "Two Yukawa centres": pytest.mark.exhaustive,
+}
 DURATION, STARTS = 10.0, 200
 REFLECTED, TURNED = np.array([1.0, -1.0, -1.0, 1.0]), -np.ones(4)
 # Images of the fates 1, 2, 3 under a rotation by π.
@@ -32,7 +36,7 @@ TURNED_FATES = np.array([0, 2, 1, 3])
 
 
 def marked(name: str) -> Any:
-    return pytest.param(name, marks=pytest.mark.exhaustive if name in LARGE else ())
+    return pytest.param(name, marks=MARKS.get(name, ()))
 
 
 @pytest.mark.parametrize("name", [marked(entry.name) for entry in ROTATING_ENTRIES])

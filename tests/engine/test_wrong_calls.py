@@ -276,7 +276,7 @@ WRONG_CALLS = (
     ("plan_sweep(spec)", "spec=…: must be a SweepSpec"),
     ("plan_sweep(sw, cores=0)", "cores=0: must be an integer from 1 to 1000000"),
     ("sample_orbits(III, [S], (0.0, 1.0), execution=4)", "execution=4: must be an Execution"),
-    ("sample_orbits(III, S, (0.0, 1.0))", "states=(0.1, 0.0, 0.05, 0.6): must be (n, 4) finite numbers x, y, px, py, at most"),
+    ("sample_orbits(III, S, (0.0, 1.0))", "states of shape (4,): must be (n, 4) with columns x, y, px, py"),
     ("sample_orbits(III, [S], 10.0)", "times of shape (): must be (m,) or (1, m)"),
     ("sample_orbits(III, [S], (0.0, 1e9))", "times: the last one=1000000000.0: must be above 0 and at most 1e+07"),
     ("sample_orbits(III, [S], (1.0, 0.5))", "times"),

@@ -115,7 +115,7 @@ class RandomMessages:
                 yield model, self.random.choice(["start", "end"]), self.random.uniform(-2.0, 2.0)
             elif kind == "Figure":
                 yield model, "inner_width", self.random.randint(0, 3000)
-            elif kind.startswith("BrowserListener"):
+            elif kind.startswith("BrowserEvents"):
                 number = self.random.randint(0, 9)
                 command = self.random.choice(["back", "forward", "copy", "h", "ArrowLeft", "+", "nothing"])
                 yield model, "command", {"type": "map", "entries": [["name", command], ["number", number]]}

@@ -13,7 +13,7 @@ import heyoka as hy
 import numpy as np
 
 from engine import Potential, classify_orbits, find_lyapunov_orbits
-from engine.integrator.kernels import events
+from engine.integrator.kernels import exit_geometry as geometry
 from tests.peers.taylor_heyoka import START_TIME, coordinates, equations
 
 TOLERANCES = (1e-18, 1e-16)
@@ -53,12 +53,15 @@ def exits_of(potential: Potential, energy: float) -> list[Exit]:
 
 
 def _line(channel: int, curve: np.ndarray, x: Any, y: Any) -> Exit:
-    assert curve[events.SHAPE] == events.LINE
-    place, (ox, oy) = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
+    assert curve[geometry.SHAPE] == geometry.LINE
+    place, (ox, oy) = (
+        curve[[geometry.ORIGIN_X, geometry.ORIGIN_Y]],
+        curve[[geometry.OUTWARD_X, geometry.OUTWARD_Y]],
+    )
     # Beyond the walls the parabola leads through other allowed regions.
-    middle, reach = curve[events.MIDDLE], (1.0 + 1e-9) * curve[events.HALF_WIDTH]
-    constant, linear, square = curve[events.COEFFICIENTS : events.COEFFICIENTS + 3]
-    s = (ox * (y - place[1]) - oy * (x - place[0]) - middle) * (1.0 / curve[events.HALF_WIDTH])
+    middle, reach = curve[geometry.MIDDLE], (1.0 + 1e-9) * curve[geometry.HALF_WIDTH]
+    constant, linear, square = curve[geometry.COEFFICIENTS : geometry.COEFFICIENTS + 3]
+    s = (ox * (y - place[1]) - oy * (x - place[0]) - middle) * (1.0 / curve[geometry.HALF_WIDTH])
     height = ox * (x - place[0]) + oy * (y - place[1]) - (constant - square) - linear * s - 2.0 * square * s * s
     return Exit(channel, height, lambda x, y: bool(abs(ox * (y - place[1]) - oy * (x - place[0]) - middle) <= reach))
 

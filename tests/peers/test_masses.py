@@ -28,7 +28,8 @@ from engine import (
 )
 from tests.peers.random_systems import random_well
 
-SEEDS = range(6)
+# Seeds of a well at rest and of one in a rotating frame, and others, which take long to compile.
+SEEDS = [0, 2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (3, 4, 5))]
 
 
 def random_mass(seed: int) -> float:
@@ -57,7 +58,7 @@ def path_of(potential: Potential, state: np.ndarray, times: np.ndarray, mass: fl
     return np.asarray(found.y)
 
 
-@pytest.mark.parametrize("seed", [seed for seed in SEEDS if heavy_system(seed)[0].channels])
+@pytest.mark.parametrize("seed", SEEDS)
 def test_orbits_with_a_mass_obey_their_equations_of_motion(seed: int) -> None:
     (potential, energy), mass = heavy_system(seed), random_mass(seed)
     starts = sample_starts(potential, energy, 5, seed=seed)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy import ndimage
 from scipy.spatial import KDTree
 
-from engine import CASES, MapSpec, Plane, compute_lagrangian_descriptor, compute_map, find_stable_manifolds
+from engine import CASES, EscapeMap, MapSpec, Plane, compute_lagrangian_descriptor, compute_map, find_stable_manifolds
+from engine.results import StableManifolds
 
 # The (y, py) slice of the Hénon–Heiles system is (x, px) of case II.
 SPEC = MapSpec(CASES["II"], Plane.X_PX, 1 / 6 + 0.02, (160, 160), t_max=100.0)
@@ -28,11 +31,21 @@ def find_ridges(values: np.ndarray) -> np.ndarray:
     return np.argwhere(on_ridge)[:, ::-1]
 
 
+@cache
+def stable_manifolds(images: int) -> StableManifolds:
+    return find_stable_manifolds(SPEC.potential, SPEC.energy, images=images)
+
+
+@pytest.fixture(scope="module")
+def escapes() -> EscapeMap:
+    return compute_map(SPEC)
+
+
 def manifold_points(images: int, sign: float) -> np.ndarray:
     """Return columns and rows, (n, 2), of points of the stable manifolds, or, with the opposite px, of the unstable ones."""
     window, (columns, rows) = SPEC.find_window(), SPEC.resolution
     points = []
-    for arc in find_stable_manifolds(SPEC.potential, SPEC.energy, images=images).arcs:
+    for arc in stable_manifolds(images).arcs:
         column = (arc.x - window.x_low) / (window.x_high - window.x_low) * columns - 0.5
         row = (sign * arc.px - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows - 0.5
         lengths = np.hypot(np.diff(column), np.diff(row))
@@ -47,8 +60,8 @@ def share_within_a_pixel(points: np.ndarray, others: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize(("direction", "sign"), [("forward", 1.0), ("backward", -1.0)])
-def test_ridges_lie_on_the_manifolds_of_their_direction_of_time(direction: str, sign: float) -> None:
-    descriptor = compute_lagrangian_descriptor(compute_map(SPEC), duration=DURATION, direction=direction).descriptor
+def test_ridges_lie_on_the_manifolds_of_their_direction_of_time(direction: str, sign: float, escapes: EscapeMap) -> None:
+    descriptor = compute_lagrangian_descriptor(escapes, duration=DURATION, direction=direction).descriptor
     ridges = find_ridges(descriptor)
     assert len(ridges) > 500
     assert share_within_a_pixel(ridges, manifold_points(3, sign)) > 0.98

@@ -8,7 +8,7 @@ from numpy.polynomial import chebyshev
 
 from engine import Potential, System, classify_orbits, find_lyapunov_orbits, sample_starts
 from engine.exits.interior import find_outside_channels
-from engine.integrator.kernels import events
+from engine.integrator.kernels import exit_geometry as geometry
 from engine.systems.catalogue.rotating_systems import ROTATING_ENTRIES
 from engine.systems.review.potential_review import review_system
 from tests.peers import taylor_heyoka
@@ -77,12 +77,15 @@ def at_circle(
 
 def at_line(potential: Potential, curve: np.ndarray, energy: float, depth: float) -> np.ndarray:
     """Return states on a line beside that of an exit, parallel to it, that turn back inward."""
-    place, outward = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
+    place, outward = (
+        curve[[geometry.ORIGIN_X, geometry.ORIGIN_Y]],
+        curve[[geometry.OUTWARD_X, geometry.OUTWARD_Y]],
+    )
     across = np.array([-outward[1], outward[0]])
-    series, half = chebyshev.Chebyshev(curve[events.COEFFICIENTS :]), curve[events.HALF_WIDTH]
+    series, half = chebyshev.Chebyshev(curve[geometry.COEFFICIENTS :]), curve[geometry.HALF_WIDTH]
     s = np.repeat(np.linspace(-0.95, 0.95, 40), 2)
     u, slope, bend = series(s) + depth * np.hypot(*place), series.deriv(1)(s) / half, series.deriv(2)(s) / half**2
-    points = place + u[:, None] * outward + (curve[events.MIDDLE] + half * s)[:, None] * across
+    points = place + u[:, None] * outward + (curve[geometry.MIDDLE] + half * s)[:, None] * across
     along = (across + slope[:, None] * outward) / np.hypot(1.0, slope)[:, None] * np.tile([1.0, -1.0], 40)[:, None]
     states = with_speeds(potential, energy, points, along)
     kept = np.isin(np.arange(len(points)), np.flatnonzero(potential.value(*points.T) < energy))
@@ -106,7 +109,7 @@ def grazing_states(potential: Potential, energy: float, depth: float) -> list[tu
 
 GRAZED = [
     ("Earth-Moon", -1.095),
-    ("Logarithmic bar", -0.485),
+    pytest.param("Logarithmic bar", -0.485, marks=pytest.mark.slow),
     ("Copenhagen", -1.3),
 ]
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,24 @@ import param
 from panel.custom import JSComponent
 
 from app.browser.module_files import WATCH_ADDRESS
-from app.state.watched_starts import COUNTS, EXPLANATIONS, LARGEST_RADIUS, SMALLEST_RADIUS
+from app.job_clients.latest_request import LatestRequest, Locked
+from app.job_clients.shown_results import ShownResults
+from app.state.view import Analysis
+from app.state.view_state import ViewState
+from app.state.watched_starts import (
+    COUNTS,
+    EXPLANATIONS,
+    LARGEST_RADIUS,
+    SMALLEST_RADIUS,
+    StartsFrom,
+    WatchedStarts,
+    places_for,
+)
+from engine import compute_flux
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job
+from engine.results import EscapeFlux
+from engine.sweeps.warmup import is_ready_for_maps
 
 _STYLE = """
 :host { display: block; color: var(--ui-ink) }
@@ -37,8 +55,12 @@ class EnsemblePlayer(JSComponent):
 
     Parameters
     ----------
-    on_choice
-        Takes the choice in this form.
+    state
+        View state, which the player follows, and which gets each choice.
+    results
+        The results of the session, whose first map follows the compilation of the kernels.
+    jobs, locked
+        See `LatestRequest`; the decay rate is requested while the analysis is open.
     """
 
     address = param.String(default=WATCH_ADDRESS, doc="address of the module")
@@ -56,6 +78,43 @@ class EnsemblePlayer(JSComponent):
 
     _esm = Path(__file__).with_suffix(".js")
 
-    def __init__(self, on_choice: Callable[[Any], None], **options: Any) -> None:
-        super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE], **options)
-        self.on_msg(lambda event: on_choice(event.data))
+    def __init__(self, state: ViewState, results: ShownResults, jobs: JobSubmitter, locked: Locked) -> None:
+        super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE])
+        self._state = state
+        self._choose = locked(lambda starts: state.param.update(watched=starts))
+        self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
+        self.on_msg(lambda event: self._receive(event.data))
+        state.follow(lambda *values: self._show_choice(), "system", "watched", "starts", "chosen", "box")
+        results.param.watch(lambda event: self._request_rate() if results.whole_map else None, "frame")
+        state.follow(lambda *values: self._request_rate(), "system", "plane", "energy", "analysis")
+
+    def _show_choice(self) -> None:
+        watched, start, box = self._state.watched, self._state.chosen_start, self._state.box
+        places = places_for(self._state.potential)
+        if watched.where not in places:
+            watched = replace(watched, where=StartsFrom.WELL)
+        edges = [] if box is None else list(vars(box).values())
+        shown = {"places": {str(where): words for where, words in places.items()}, **asdict(watched)}
+        self.param.update(**shown, point=[] if start is None else list(start), box=edges)
+
+    def _receive(self, message: Any) -> None:
+        # A browser can send anything: unexpected messages are ignored.
+        match message:
+            case {"where": str(where), "count": int(count), "seed": int(seed), "radius": int() | float() as radius}:
+                with suppress(ValueError):
+                    self._choose(WatchedStarts(where, count, seed, float(radius)))  # type: ignore[arg-type]
+
+    def _request_rate(self) -> None:
+        """Request the decay rate of mixed motion while the analysis is open, once the kernels are compiled."""
+        state = self._state
+        if state.analysis is not Analysis.WATCH:
+            return
+        self.rate = 0.0
+        spec = state.map_spec()
+        has_one_rate = spec.common_energy is not None and spec.plane.parameter is None
+        if has_one_rate and is_ready_for_maps(state.potential):
+            self._flux.submit(Job(compute_flux, (spec.potential, spec.common_energy)))
+
+    def _show_flux(self, flux: EscapeFlux) -> None:
+        self._flux.cancel()
+        self.rate = flux.decay_rate

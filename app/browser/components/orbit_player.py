@@ -1,4 +1,4 @@
-"""The player of the time along the orbits. The browser counts and reports its steps."""
+"""The player of the time along the orbits. The browser drags or plays the time in steps, and reports it."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ class OrbitPlayer(JSComponent):
 
     Parameters
     ----------
-    on_step
-        Takes each step that the player shows, 0 to `steps`, without the session's lock.
+    on_time
+        Takes each time that the player shows, without the session's lock; None at the start, and without an interval.
     **options
         Parameters of the component.
     """
@@ -31,13 +31,21 @@ class OrbitPlayer(JSComponent):
 
     _esm = component_code(Path(__file__).with_suffix(".js"))
 
-    def __init__(self, on_step: Callable[[int], None], **options: Any) -> None:
+    def __init__(self, on_time: Callable[[float | None], None], **options: Any) -> None:
         super().__init__(**options)
-        self._on_step = on_step
+        self._on_time = on_time
         self.on_msg(lambda event: self._receive(event.data))
+
+    def follow(self, interval: tuple[float, float] | None) -> None:
+        """Set the interval of time to play; None without an orbit."""
+        begin, end = interval or (0.0, 0.0)
+        if (begin, end) != (self.begin, self.end):
+            self.param.update(begin=begin, end=end)
+            # At the beginning, a cross marks the start. The moving point appears later.
+            self._on_time(None)
 
     def _receive(self, message: Any) -> None:
         # A browser can send anything: unexpected messages, and steps of an earlier interval, are ignored.
         match message:
             case {"step": int(step), "begin": self.begin, "end": self.end} if 0 <= step <= self.steps and self.begin < self.end:
-                self._on_step(step)
+                self._on_time(self.begin + (self.end - self.begin) * step / self.steps if step else None)

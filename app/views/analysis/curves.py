@@ -24,8 +24,8 @@ from engine import Measure, Outcome, System
 from engine.foundations.wording import format_number, format_whole
 from engine.results import Sweep
 from engine.systems.parameters import symbol_of
-from plots.pictures.charts import CURVE_PANELS, SHARES, find_numbers
-from plots.pictures.palette import LAW_COLOURS, MARK_EDGE, MEASURED, THRESHOLD, Entry
+from plots.pictures.charts import CURVE_PANELS, NUMBER_COLOURS, SHARES, find_numbers
+from plots.pictures.palette import MARK_EDGE, THRESHOLD, Entry
 
 START = "Compute the curves"
 """Label of the button while nothing is computed."""
@@ -43,8 +43,6 @@ _VALUES = SWEPT_VALUES + REFINED_VALUES
 HINT = f"The shares and each measure at {_VALUES} values, closer together where the shares change: a minute or more."
 """Text while there are no curves."""
 
-# Colours of the numbers of a measure, in order.
-_COLOURS = MEASURED, LAW_COLOURS["exponential"]
 _NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": [], "fate": []}
 _DASH = "8 8"
 # Range of a logarithmic axis before there are numbers.
@@ -221,7 +219,7 @@ class CurvesView:
         plot = square_figure(
             panel.name, panel.title, x_axis_label=" ", x_range=self._x_range, y_range=self._y_ranges[panel.name], **scale
         )
-        for (name, label), colour in zip(panel.labels.items(), _COLOURS, strict=False):
+        for (name, label), colour in zip(panel.labels.items(), NUMBER_COLOURS, strict=False):
             low, high = f"{name}_low", f"{name}_high"
             plot.add_glyph(self.points, Line(x="value", y=name, line_color=colour, line_width=2))
             plot.add_glyph(self.points, Segment(x0="value", x1="value", y0=low, y1=high, line_color=colour, line_alpha=0.6))
@@ -242,7 +240,7 @@ def _is_dashed(code: int) -> bool:
 
 def _make_key(panel: Measure) -> pn.viewable.Viewable:
     bars = f" with its {panel.bars}" if panel.bars else ""
-    entries = [Entry(label + bars, colour) for label, colour in zip(panel.labels.values(), _COLOURS, strict=False)]
+    entries = [Entry(label + bars, colour) for label, colour in zip(panel.labels.values(), NUMBER_COLOURS, strict=False)]
     if panel.curve.level is not None:
         entries.append(Entry(panel.curve.level[1], THRESHOLD))
     return TextPane(legend(entries), margin=(0, 10))

@@ -12,12 +12,10 @@ from bokeh.plotting import figure
 from app.views.components.legends import legend
 from app.views.components.plots import chart_hover, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
-from engine.measures.decay_laws import LawFit
 from engine.results import DecayLaws, UncertaintyExponent
+from plots.pictures.charts import law_curve
 from plots.pictures.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
-# Number of points of the curve of a law.
-_LAW_POINTS = 200
 _PAIRS_TEXT = (
     "<b>@share{percent}</b> of the pairs have different fates<br>at a separation of @separation{number}@note<br>"
     "95 % interval @low{percent} to @high{percent}"
@@ -93,7 +91,8 @@ class SurvivalChart:
         self.steps.data = {"t": laws.times, "share": laws.survival}
         self.view.visible = laws.times.size > 0
         for law, fit in {"exponential": laws.exponential, "power law": laws.power_law}.items():
-            self._laws[law].data = _law_line(fit)
+            t, share = law_curve(fit) if fit is not None else ([], [])
+            self._laws[law].data = {"t": t, "share": share}
         is_positive = laws.survival > 0.0
         if np.count_nonzero(is_positive) > 1 and laws.times[is_positive][-1] > 0.0:
             latest = float(laws.times[is_positive][-1])
@@ -119,13 +118,3 @@ class SurvivalChart:
         for law, source in self._laws.items():
             plot.add_glyph(source, Line(x="t", y="share", line_color=LAW_COLOURS[law], line_width=2, line_dash="dashed"))
         return plot
-
-
-def _law_line(fit: LawFit | None) -> dict[str, np.ndarray]:
-    """Return the columns of the curve of a law, where it is positive on the logarithmic axis."""
-    if fit is None:
-        return {"t": np.zeros(0), "share": np.zeros(0)}
-    t = np.geomspace(fit.t_low, fit.t_high, _LAW_POINTS)
-    share = fit.curve(t)
-    is_positive = share > 0.0
-    return {"t": t[is_positive], "share": share[is_positive]}

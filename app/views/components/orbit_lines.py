@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from bokeh.models import ColumnDataSource, LinearColorMapper
 
+from app.state.view_state import ViewState
 from plots.pictures.histories import ENVELOPE_ALPHA
 from plots.pictures.orbit_curves import OrbitCurves
-from plots.pictures.palette import MOST_ORBITS
+from plots.pictures.palette import MOST_ORBITS, PALETTES
 
 Curve = tuple[np.ndarray, np.ndarray]
 """Horizontal and vertical coordinates of the points of a curve."""
@@ -30,6 +31,13 @@ def in_front(orbits: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[in
 def opacities(orbits: Sequence[tuple[int, OrbitCurves]], chosen: int) -> list[float]:
     """Return the opacity of each orbit, which is highest for the chosen orbit."""
     return [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in orbits]
+
+
+def orbit_colours(state: ViewState) -> LinearColorMapper:
+    """Return the colours of the orbits by their places in the list, which follow the palette of the view state."""
+    mapper = LinearColorMapper(low=-0.5, high=MOST_ORBITS - 0.5)
+    state.follow(lambda name: mapper.update(palette=list(PALETTES[name].orbits)), "palette")
+    return mapper
 
 
 def line_style(mapper: LinearColorMapper) -> dict[str, Any]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -111,8 +111,7 @@ def annotate_picture(
 
 def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) -> list[str]:
     """Label the axes of the pictures of a window; return sentences that explain labels that are not plain numbers."""
-    edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
-    offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in edges]
+    offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in window.ranges]
     for plot in plots:
         for axis, offset in zip((plot.below[0], plot.left[0]), offsets, strict=True):
             if offset is not None:
@@ -170,12 +169,31 @@ class FigurePane(pn.pane.Bokeh):
         return super()._get_model(*arguments, **options)
 
 
-@contextmanager
-def batched_additions(plots: Sequence[figure]) -> Iterator[None]:
-    """Return a context for adding models to figures: Bokeh searches the models of the page once for all additions."""
-    document = plots[0].document if plots else None
-    with document.models.freeze() if document is not None else nullcontext():
-        yield
+class LaterGlyphs:
+    """Glyphs that are added to figures when they are first shown.
+
+    Parameters
+    ----------
+    add
+        Adds the glyphs to a figure.
+    """
+
+    def __init__(self, add: Callable[[figure], object]) -> None:
+        self._add = add
+        self._plots: list[figure] = []
+
+    def expect(self, plot: figure) -> None:
+        """Name a figure that will get the glyphs."""
+        self._plots.append(plot)
+
+    def draw(self) -> None:
+        """Add the glyphs to the figures that lack them."""
+        plots, self._plots = self._plots, []
+        document = plots[0].document if plots else None
+        # With the models frozen, Bokeh searches the page once for all new models.
+        with document.models.freeze() if document is not None else nullcontext():
+            for plot in plots:
+                self._add(plot)
 
 
 def set_range(edges: Range1d, low: float, high: float) -> None:

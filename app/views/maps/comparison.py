@@ -7,13 +7,13 @@ from typing import Any
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper
 from bokeh.plotting import figure
 
+from app.state.view_state import ViewState
 from app.views.maps.curve_layers import CurveLayers
 from app.views.maps.hover import fate_hover
 from app.views.maps.map_ranges import MapRanges
 from engine import EscapeMap, Slice
 from plots.layers.picture import OtherView
 from plots.pictures.image_columns import NO_LAYER, difference_column, map_columns
-from plots.pictures.palette import Palette
 
 Columns = dict[str, list[Any]]
 """Columns of a data source of maps."""
@@ -29,15 +29,17 @@ class ComparedMap:
     ----------
     ranges
         Ranges of the pictures.
+    state
+        View state with the colours.
     """
 
-    def __init__(self, ranges: MapRanges) -> None:
+    def __init__(self, ranges: MapRanges, state: ViewState) -> None:
         # Make the hover tool before the picture, because Bokeh warns if tools and pictures change together.
         self.source = ColumnDataSource(_no_map(), name="compared_map")
         self.hover = fate_hover(self.source, ranges.x, ranges.ordinate)
         self.other: OtherView | None = None
         """The view of the other map; None without a map."""
-        self._outlines = CurveLayers()
+        self._outlines = CurveLayers(state)
 
     def draw(self, plot: figure, mapper: LinearColorMapper) -> None:
         """Add the map and its curve to a figure."""
@@ -56,14 +58,6 @@ class ComparedMap:
         """Remove the other map."""
         self.other = None
         self.source.data = _no_map()
-
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the outcomes."""
-        self._outlines.set_palette(palette)
-
-    def set_dark(self, dark: bool) -> None:
-        """Use the line colours of the dark or the light theme."""
-        self._outlines.set_dark(dark)
 
     def difference(self, columns: Columns, plane: Slice) -> Columns:
         """Return the column ``difference`` for the columns of a map of a slice; blank without another map with its axes."""

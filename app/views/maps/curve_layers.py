@@ -11,15 +11,16 @@ from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
 from app.browser.browser_system import EXIT_NUMBER_DISTANCE
-from app.views.components.plots import batched_additions
+from app.state.view_state import ViewState
+from app.views.components.plots import LaterGlyphs
 from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits
 from engine.slices.limiting_curves import trace_equipotentials, trace_zero_velocity_curve
 from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
-from plots.pictures.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, LineColours, Palette
+from plots.pictures.palette import MOST_CHANNELS, Entry
 
 # Number of maps whose curves are cached.
-_CACHED_MAPS = 128
+_CACHED_MAPS = 64
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
 
@@ -51,20 +52,19 @@ def _flatten(groups: Iterable[Sequence[np.ndarray]]) -> list[np.ndarray]:
 
 
 class CurveLayers:
-    """Draws the curves of a map over any number of pictures."""
+    """Draws the curves of a map over any number of pictures, in the colours of the view state."""
 
-    def __init__(self) -> None:
+    def __init__(self, state: ViewState) -> None:
+        self._state = state
         self._limit_source = ColumnDataSource({"xs": [], "ys": []}, name="zero_velocity_curve")
         self._level_source = ColumnDataSource({"xs": [], "ys": []}, name="equipotentials")
         self._critical_source = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
         self._exit_source = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
         self._label_source = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
-        # Figures that have no exit glyphs yet, each with whether it shows exit numbers. Glyphs are added at the first exit.
-        self._pending_figures: list[tuple[figure, bool]] = []
-        self._palette: Palette = PAPER
-        self._line_colours: LineColours = LIGHT
+        self._exit_lines, self._exit_numbers = LaterGlyphs(self._add_exit_lines), LaterGlyphs(self._add_exit_numbers)
         # Glyphs whose colour depends on the theme, by the name of the colour in `LineColours`.
         self._themed_glyphs: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
+        state.param.watch(lambda event: self._follow_theme(), "dark")
 
     def draw(self, plot: figure, *, full: bool) -> None:
         """Add the curves to a figure. Only a `full` figure gets equipotentials and exit numbers."""
@@ -72,35 +72,28 @@ class CurveLayers:
             self._draw_themed(plot, self._level_source, "equipotential", 1.0)
             self._draw_themed(plot, self._critical_source, "critical_equipotential", 1.5)
         self._draw_themed(plot, self._limit_source, "limiting_curve", 2.0 if full else 1.0)
-        self._pending_figures.append((plot, full))
+        self._exit_lines.expect(plot)
+        if full:
+            self._exit_numbers.expect(plot)
 
-    def _add_exit_glyphs(self) -> None:
-        """Add the glyphs of exits to the figures that have none."""
-        pending, self._pending_figures = self._pending_figures, []
-        with batched_additions([plot for plot, _ in pending]):
-            for plot, has_numbers in pending:
-                plot.add_glyph(self._exit_source, MultiLine(line_color=self._line_colours.halo, line_width=5))
-                plot.add_glyph(self._exit_source, MultiLine(line_color="colour", line_width=3))
-                if has_numbers:
-                    label = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
-                    label.text_font_style = "bold"
-                    plot.add_glyph(self._label_source, label)
+    def _add_exit_lines(self, plot: figure) -> None:
+        plot.add_glyph(self._exit_source, MultiLine(line_color=self._state.line_colours.halo, line_width=5))
+        plot.add_glyph(self._exit_source, MultiLine(line_color="colour", line_width=3))
+
+    def _add_exit_numbers(self, plot: figure) -> None:
+        label = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
+        label.text_font_style = "bold"
+        plot.add_glyph(self._label_source, label)
 
     def _draw_themed(self, plot: figure, source: ColumnDataSource, name: str, width: float) -> None:
-        line = MultiLine(line_color=getattr(self._line_colours, name), line_width=width)
+        line = MultiLine(line_color=getattr(self._state.line_colours, name), line_width=width)
         plot.add_glyph(source, line)
         self._themed_glyphs[name].append(line)
 
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the exits for the next `show`."""
-        self._palette = palette
-
-    def set_dark(self, dark: bool) -> None:
-        """Use the line colours of the dark or the light theme."""
-        self._line_colours = DARK if dark else LIGHT
+    def _follow_theme(self) -> None:
         for name, glyphs in self._themed_glyphs.items():
             for glyph in glyphs:
-                glyph.line_color = getattr(self._line_colours, name)
+                glyph.line_color = getattr(self._state.line_colours, name)
 
     def show(self, spec: MapSpec) -> None:
         """Draw the curves of a map."""
@@ -116,8 +109,10 @@ class CurveLayers:
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         if orbits:
-            self._add_exit_glyphs()
-        colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
+            self._exit_lines.draw()
+            self._exit_numbers.draw()
+        palette = self._state.colours
+        colours = [palette.channels[orbit.channel - 1] for orbit in orbits]
         self._exit_source.data = {**_line_columns([orbit.half_path for orbit in orbits]), "colour": colours}
         # An orbit goes along the exit and back, so its middle is after a quarter of the period.
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
@@ -127,17 +122,18 @@ class CurveLayers:
             "x": [*(EXIT_NUMBER_DISTANCE * x for x, _ in middles), *[np.nan] * missing],
             "y": [*(EXIT_NUMBER_DISTANCE * y for _, y in middles), *[np.nan] * missing],
             "text": [*(orbit.name for orbit in orbits), *[""] * missing],
-            "colour": [*colours, *[self._palette.bounded] * missing],
+            "colour": [*colours, *[palette.bounded] * missing],
         }
 
     def entries(self, spec: MapSpec) -> list[Entry]:
         """Return the legend entries of the curves of a map."""
-        entries = [Entry(spec.plane.limiting_curve(spec.potential.mass), self._line_colours.limiting_curve)]
+        lines = self._state.line_colours
+        entries = [Entry(spec.plane.limiting_curve(spec.potential.mass), lines.limiting_curve)]
         if spec.common_energy is not None:
             has_exits = spec.potential.escape_radius is None
-            entries.append(Entry("escape energy" if has_exits else "through saddles", self._line_colours.critical_equipotential))
+            entries.append(Entry("escape energy" if has_exits else "through saddles", lines.critical_equipotential))
             if has_exits:
-                entries.append(Entry("others", self._line_colours.equipotential))
+                entries.append(Entry("others", lines.equipotential))
         return entries
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -26,6 +26,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.state.view import PICTURES
+from app.state.view_state import ViewState
 from app.views.components.legends import picture_legend
 from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
 from app.views.maps.comparison import ComparedMap
@@ -45,7 +46,7 @@ from plots.layers.picture import ShownMap
 from plots.layers.table import LAYERS, map_legend
 from plots.layers.table import PICTURES as ENTRIES
 from plots.pictures.image_columns import NO_LAYER
-from plots.pictures.palette import PAPER, Palette
+from plots.pictures.palette import PALETTES
 from plots.pictures.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
 
 MAPS = tuple(name for name in PICTURES if name != "well")
@@ -77,8 +78,6 @@ class MapActions:
         Handles the end of a gesture, `GESTURE_PAUSE_MS` after the last drag or step of the wheel.
     box
         Counts the pixels in a box.
-    choose
-        Shows the picture of this name large.
     """
 
     tap: Callable[[float, float], None]
@@ -86,7 +85,6 @@ class MapActions:
     zoom: Callable[[Window | None], None]
     rest: Callable[[], None]
     box: Callable[[Window], None]
-    choose: Callable[[str], None]
 
 
 def prepare_curves(spec: MapSpec) -> None:
@@ -98,16 +96,14 @@ def prepare_curves(spec: MapSpec) -> None:
 class MapsView:
     """Draws the frames of maps, with marks and curves. With `alone`, only the picture shown large is visible."""
 
-    def __init__(self, actions: MapActions, *, alone: bool = False) -> None:
-        self._actions = actions
+    def __init__(self, state: ViewState, actions: MapActions, *, alone: bool = False) -> None:
+        self._state, self._actions = state, actions
         self.source = ColumnDataSource(_blank(), name="maps")
-        self.well, self.outlines, self.overlays, self.marks = WellView(), CurveLayers(), Overlays(self.source), Markers()
-        self._palette = PAPER
+        self.well, self._outlines = WellView(state), CurveLayers(state)
+        self.overlays, self.marks = Overlays(self.source, state), Markers(state)
         self._time_mapper = LogColorMapper(nan_color="rgba(0,0,0,0)")
-        # Scale of the escape times that fits the map.
+        # Scale of the escape times of the map in view.
         self._fitted_times = WITHOUT_ESCAPES
-        # Scale of the escape times while the scale is locked.
-        self._locked_times: TimeScale | None = None
         self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
         # Results of the layers that are on, by layer. A result may be incomplete.
@@ -117,7 +113,7 @@ class MapsView:
         self._fates: frozenset[int] = frozenset()
         self.ranges = MapRanges(actions.zoom, actions.rest)
         ranges = self.ranges.x, self.ranges.ordinate
-        self.compared = ComparedMap(self.ranges)
+        self.compared = ComparedMap(self.ranges, state)
         self._hover = pixel_hover(self.source, self.compared.source, *ranges)
         self._fingers = TwoFingers(*ranges)
         self._drags: dict[Drag, Any] = {Drag.PAN: PanTool()}
@@ -125,18 +121,26 @@ class MapsView:
         self._last_tap: tuple[float, float] | None = None
         self.figures: dict[str, figure] = {}
         self._panes: dict[str, FigurePane] = {"well": self.well.pane}
-        self.grid = PictureGrid(actions.choose, alone=alone)
-        self.set_palette(PAPER)
+        self.grid = PictureGrid(state, alone=alone)
+        state.follow(self._set_colours, "palette")
+        state.follow(lambda times: self._scale_times(), "lock_times")
+        state.follow(lambda *values: self._show_pictures(), "layers", "compared")
+        state.param.watch(lambda event: self.describe(), "dark")
+        state.param.watch(lambda event: self._begin_touch(), "touch")
 
-    def show_pictures(self, names: Sequence[str]) -> None:
-        """Show some of `PICTURES`, in this order."""
+    def _show_pictures(self) -> None:
+        """Show the pictures of the view and of its layers."""
+        state = self._state
+        layers = [layer for name, layer in LAYERS.items() if name in state.layers]
+        always = PICTURES_ALONE if state.compared is None else PICTURES_COMPARED
+        names = [*always, *(layer.picture.name for layer in layers if layer.picture is not None)]
         for name in names:
             if name not in self._panes:
                 self._build(name)
         self.grid.show({name: self._panes[name] for name in names})
         self.describe()
 
-    def begin_touch(self) -> None:
+    def _begin_touch(self) -> None:
         """Adapt to touch input: two fingers zoom."""
         # The wheel tool would also respond to two fingers.
         tools = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
@@ -154,7 +158,7 @@ class MapsView:
         if frame.spec != self._spec:
             self.ranges.follow(frame.spec.find_window())
             self._spec, self._results = frame.spec, {}
-            self.describe()
+            self._show_curves(frame.spec)
         if frame.stride == 1:
             self._fitted_times = fitted_scale(frame)
         self._fates = frozenset(np.unique(frame.fate).tolist())
@@ -174,12 +178,7 @@ class MapsView:
     @property
     def times(self) -> TimeScale:
         """Scale of the escape times."""
-        return self._locked_times or self._fitted_times
-
-    def lock_times(self, times: TimeScale | None) -> None:
-        """Lock the scale of the escape times; None fits the scale to each map again."""
-        self._locked_times = times
-        self._scale_times()
+        return self._state.lock_times or self._fitted_times
 
     def _scale_times(self) -> None:
         self._time_mapper.update(low=self.times.low, high=self.times.high)
@@ -211,25 +210,12 @@ class MapsView:
             self.source.data = {**self.source.data, **dict.fromkeys(pixels.column_names, NO_LAYER)}
         self._show_legends()
 
-    def set_palette(self, palette: Palette) -> None:
-        """Set all colours."""
-        self._palette = palette
+    def _set_colours(self, name: str) -> None:
+        palette = PALETTES[name]
         self._time_mapper.palette = list(palette.escape_time)
-        for name in MAPS:
-            colours = list(ENTRIES[name].colours(palette))
-            self._mappers[name].update(palette=colours, low=-0.5, high=len(colours) - 0.5)
-        self.marks.set_palette(palette)
-        self.outlines.set_palette(palette)
-        self.compared.set_palette(palette)
-        self.well.set_palette(palette)
-        self.overlays.set_palette(palette)
-        self.describe()
-
-    def set_dark(self, dark: bool) -> None:
-        """Use the line colours of the dark or the light theme."""
-        self.outlines.set_dark(dark)
-        self.compared.set_dark(dark)
-        self.well.outlines.set_dark(dark)
+        for picture, mapper in self._mappers.items():
+            colours = list(ENTRIES[picture].colours(palette))
+            mapper.update(palette=colours, low=-0.5, high=len(colours) - 0.5)
         self.describe()
 
     def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
@@ -259,12 +245,13 @@ class MapsView:
 
     def describe(self) -> None:
         """Update curves, axes and legends."""
-        spec = self._spec
-        if spec is None:
-            return
-        self.outlines.show(spec)
+        if self._spec is not None:
+            self._show_curves(self._spec)
+            self._show_legends()
+
+    def _show_curves(self, spec: MapSpec) -> None:
+        self._outlines.show(spec)
         self.well.show_map(spec)
-        self._show_legends()
 
     def _show_legends(self) -> None:
         """Write title, legend, notes and names of the axes around each frame."""
@@ -275,8 +262,8 @@ class MapsView:
         if self.ranges.magnification > _LEAST_MAGNIFICATION:
             notes.append(f"{format_number(float(f'{self.ranges.magnification:.2g}'))} times enlarged")
         other = self.compared.other
-        is_locked = self._locked_times is not None
-        shown_map = ShownMap(spec, self._palette, self.times, self._fates, is_locked, self._results, other)
+        is_locked = self._state.lock_times is not None
+        shown_map = ShownMap(spec, self._state.colours, self.times, self._fates, is_locked, self._results, other)
         for name in self.grid.shown:
             if name == "well":
                 self.well.describe()
@@ -323,7 +310,7 @@ class MapsView:
         if picture.has_times:
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
         self._hover.renderers = [*self._hover.renderers, image]
-        self.outlines.draw(plot, full=False)
+        self._outlines.draw(plot, full=False)
         self.overlays.draw(plot, name)
         self.marks.draw(plot, sections=name == "basins")
 

@@ -92,7 +92,7 @@ class MapRanges:
         """Width of the whole interior over the width of the window; 1 without a map."""
         if self._home_window is None or self._window is None:
             return 1.0
-        return (self._home_window.x_high - self._home_window.x_low) / (self._window.x_high - self._window.x_low)
+        return self._home_window.width / self._window.width
 
     def end_gesture(self) -> None:
         """Report the window after a drag or a step of the wheel, and wait for the end of the gesture."""
@@ -160,7 +160,7 @@ class _Pause:
 
 def is_near(edges: Edges, window: Window) -> bool:
     """Whether the ends of the ranges are the edges of a window, up to rounding in the browser."""
-    width, height = window.x_high - window.x_low, window.ordinate_high - window.ordinate_low
+    width, height = window.width, window.height
     distances = np.abs(np.subtract(edges, astuple(window)))
     return bool(np.all(distances <= 1e-6 * np.array([width, width, height, height])))
 

@@ -42,6 +42,7 @@ class MapToolbar:
             css_classes=["segmented", "narrow"],
         )
         self.drag.param.watch(lambda event: set_drag(event.new), "value")
+        state.param.watch(lambda event: self._begin_touch(), "touch")
         # Without a window, the button would have no effect.
         state.follow(lambda window: self.home.param.update(styles=keep_place(shown=window is not None)), "window")
 
@@ -51,6 +52,6 @@ class MapToolbar:
         row.css_classes = ["status-line"]
         return row
 
-    def begin_touch(self) -> None:
+    def _begin_touch(self) -> None:
         """Adapt to touch input: a drag scrolls the page until another effect is chosen."""
         self.drag.param.update(options=[Drag.SCROLL, Drag.PAN, Drag.ZOOM, Drag.COUNT], value=Drag.SCROLL)

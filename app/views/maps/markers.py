@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from bokeh.models import ColumnDataSource, LinearColorMapper, Quad, Scatter, Text
+from bokeh.models import ColumnDataSource, Quad, Scatter, Text
 from bokeh.plotting import figure
 
-from app.views.components.plots import batched_additions
+from app.state.view_state import ViewState
+from app.views.components.orbit_lines import orbit_colours
+from app.views.components.plots import LaterGlyphs
 from engine import Window
-from plots.pictures.palette import LIGHT, MARK_EDGE, PAPER, Palette
+from plots.pictures.palette import LIGHT, MARK_EDGE
 
 MOST_SECTION_POINTS = 2000
 """Largest number of section points that are drawn for an orbit."""
@@ -21,48 +22,53 @@ NO_POINTS = np.zeros((0, 2))
 
 
 class Markers:
-    """Marks on figures. A kind of mark is added to the figures when it is first shown."""
+    """Marks on figures. A kind of mark is added to the figures when it is first shown.
 
-    def __init__(self) -> None:
-        # Figures to which marks must still be added, by kind of mark.
-        self._pending: dict[str, list[figure]] = {"starts": [], "sections": [], "box": []}
+    Parameters
+    ----------
+    state
+        View state, whose box is marked.
+    """
+
+    def __init__(self, state: ViewState) -> None:
+        self._glyphs_of = {
+            "starts": LaterGlyphs(self._add_starts),
+            "sections": LaterGlyphs(self._add_sections),
+            "box": LaterGlyphs(self._add_box),
+        }
         self._starts = ColumnDataSource({"x": [], "y": [], "slot": [], "text": []}, name="starts")
         self._sections = ColumnDataSource({"x": [], "y": [], "slot": []}, name="sections")
         self._box = ColumnDataSource({"left": [], "right": [], "bottom": [], "top": []}, name="box")
-        self._mapper = LinearColorMapper(palette=list(PAPER.orbits), low=-0.5, high=len(PAPER.orbits) - 0.5)
+        self._colour = {"field": "slot", "transform": orbit_colours(state)}
+        state.follow(self._show_box, "box")
 
     def draw(self, plot: figure, *, sections: bool) -> None:
         """Add a figure to mark. Only with `sections`, section points are drawn, because painting them takes time."""
         for kind in ("starts", "box", *(["sections"] if sections else [])):
-            self._pending[kind].append(plot)
+            self._glyphs_of[kind].expect(plot)
 
-    def _draw(self, kind: str) -> None:
-        """Add a kind of mark to the figures that lack it."""
-        plots, self._pending[kind] = self._pending[kind], []
-        with batched_additions(plots):
-            for plot in plots:
-                for source, glyph in self._glyphs(kind):
-                    plot.add_glyph(source, glyph, level="annotation")
+    def _add_sections(self, plot: figure) -> None:
+        plot.add_glyph(self._sections, Scatter(size=3, fill_color=self._colour, line_color=None), level="annotation")
 
-    def _glyphs(self, kind: str) -> list[tuple[ColumnDataSource, Any]]:
-        colour = {"field": "slot", "transform": self._mapper}
-        if kind == "sections":
-            return [(self._sections, Scatter(size=3, fill_color=colour, line_color=None))]
-        if kind == "box":
-            return [(self._box, Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed"))]
+    def _add_box(self, plot: figure) -> None:
+        box = Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed")
+        plot.add_glyph(self._box, box, level="annotation")
+
+    def _add_starts(self, plot: figure) -> None:
         crosses = [
             Scatter(marker="cross", size=size, line_width=width, line_color=ink)
-            for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, colour))
+            for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, self._colour))
         ]
         style = {"x_offset": 6, "y_offset": -4, "text_font_size": "14px", "text_font_style": "bold", "text_color": MARK_EDGE}
         # The outline of a text covers the text, so the number is drawn again without outline.
         numbers = [Text(text_outline_color=outline, **style) for outline in (LIGHT.halo, None)]
-        return [(self._starts, glyph) for glyph in (*crosses, *numbers)]
+        for glyph in (*crosses, *numbers):
+            plot.add_glyph(self._starts, glyph, level="annotation")
 
     def show_starts(self, starts: Sequence[tuple[float, float]]) -> None:
         """Mark each start with a numbered cross."""
         if starts:
-            self._draw("starts")
+            self._glyphs_of["starts"].draw()
         x, y = ([float(start[axis]) for start in starts] for axis in (0, 1))
         numbers = list(range(len(starts)))
         marks = {"x": x, "y": y, "slot": numbers, "text": [str(number + 1) for number in numbers]}
@@ -73,25 +79,21 @@ class Markers:
         """Draw the section points of each orbit, given as arrays of shape (n, 2)."""
         drawn_sections = [points[:MOST_SECTION_POINTS] for points in sections]
         if any(len(points) for points in drawn_sections):
-            self._draw("sections")
+            self._glyphs_of["sections"].draw()
         elif not len(self._sections.data["x"]):
             return
         points = np.concatenate([NO_POINTS, *drawn_sections]).astype(np.float32)
         slot = np.repeat(np.arange(len(drawn_sections), dtype=np.uint8), [len(points) for points in drawn_sections])
         self._sections.data = {"x": points[:, 0], "y": points[:, 1], "slot": slot}
 
-    def show_box(self, box: Window | None) -> None:
+    def _show_box(self, box: Window | None) -> None:
         """Draw the box whose pixels are counted; None removes it."""
         boxes = [] if box is None else [box]
         if boxes:
-            self._draw("box")
+            self._glyphs_of["box"].draw()
         self._box.data = {
             "left": [each.x_low for each in boxes],
             "right": [each.x_high for each in boxes],
             "bottom": [each.ordinate_low for each in boxes],
             "top": [each.ordinate_high for each in boxes],
         }
-
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the orbits."""
-        self._mapper.palette = list(palette.orbits)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper, MultiLine
 from bokeh.plotting import figure
 
-from app.views.components.plots import batched_additions
+from app.state.view_state import ViewState
+from app.views.components.plots import LaterGlyphs
 from engine import MapSpec
 from plots.layers.layer import Layer, Stroke
 from plots.layers.table import LAYERS
-from plots.pictures.palette import LIGHT, PAPER, Palette
+from plots.pictures.palette import LIGHT, Palette
 
 _LAYERS = {name: layer for name, layer in LAYERS.items() if layer.over is not None}
 _CURVE_COLUMNS = ("xs", "ys", "colour", "width", "alpha", "halo_width", "halo_alpha")
@@ -25,22 +27,23 @@ class Overlays:
     ----------
     source
         Data source of all pictures, which contains the pixel columns of the layers.
+    state
+        View state, whose palette has the colours of the exits.
     """
 
-    def __init__(self, source: ColumnDataSource) -> None:
-        self._source = source
+    def __init__(self, source: ColumnDataSource, state: ViewState) -> None:
+        self._source, self._state = source, state
         self.curves = {name: ColumnDataSource(_no_curves(), name=name) for name in _LAYERS}
-        # Figures to which a layer must still be added, by layer.
-        self._figures_without: dict[str, list[figure]] = {name: [] for name in _LAYERS}
-        self._palette = PAPER
+        self._glyphs_of = {name: LaterGlyphs(partial(self._add, layer)) for name, layer in _LAYERS.items()}
         self._strokes: dict[str, Sequence[Stroke]] = {}
         self._spec: MapSpec | None = None
+        state.param.watch(lambda event: self._show_all_curves(), "palette")
 
     def draw(self, plot: figure, picture: str) -> None:
         """Add a figure of a picture, over which layers will be drawn."""
         for layer in _LAYERS.values():
             if layer.over_picture(picture) is not None:
-                self._figures_without[layer.name].append(plot)
+                self._glyphs_of[layer.name].expect(plot)
 
     def begin(self, spec: MapSpec) -> None:
         """Remove the curves of another map."""
@@ -54,7 +57,7 @@ class Overlays:
         over = LAYERS[name].over
         if over is None:
             return
-        self._add_to_figures(LAYERS[name])
+        self._glyphs_of[name].draw()
         if over.strokes is not None:
             self._strokes[name] = over.strokes(result)
             self._show_curves(name)
@@ -64,21 +67,16 @@ class Overlays:
         if self._strokes.pop(name, None) is not None:
             self.curves[name].data = _no_curves()
 
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the exits."""
-        self._palette = palette
+    def _show_all_curves(self) -> None:
         for name in self._strokes:
             self._show_curves(name)
 
     def _show_curves(self, name: str) -> None:
-        self.curves[name].data = _curve_columns(self._strokes[name], self._palette)
+        self.curves[name].data = _curve_columns(self._strokes[name], self._state.colours)
 
-    def _add_to_figures(self, layer: Layer) -> None:
-        plots, self._figures_without[layer.name] = self._figures_without[layer.name], []
-        with batched_additions(plots):
-            for plot in plots:
-                self._add_marks(plot, layer)
-                self._add_curves(plot, layer)
+    def _add(self, layer: Layer, plot: figure) -> None:
+        self._add_marks(plot, layer)
+        self._add_curves(plot, layer)
 
     def _add_marks(self, plot: figure, layer: Layer) -> None:
         if layer.pixels is None or layer.over is None or layer.over.pixel_colours is None:

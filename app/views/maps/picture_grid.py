@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import panel as pn
 from bokeh.plotting import figure
 
+from app.state.view_state import ViewState
 from app.views.components.plots import FigurePane, set_borders
 from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
 from plots.layers.table import LAYER_OF, PICTURES
@@ -26,23 +27,23 @@ class PictureGrid:
 
     Parameters
     ----------
-    on_choose
-        Shows the picture of this name large.
+    state
+        View state, whose `focus` names the picture that is shown large.
     alone
         Whether only the picture shown large is visible.
     """
 
-    def __init__(self, on_choose: Callable[[str], None], *, alone: bool = False) -> None:
+    def __init__(self, state: ViewState, *, alone: bool = False) -> None:
+        self._state = state
         self._panes: dict[str, FigurePane] = {}
-        self._enlarged_picture = ""
         # Pictures that show nothing.
         self._empty_pictures: frozenset[str] = frozenset()
         # Before the first map, the pictures do not belong to the system.
         classes = ["maps", "stale", *(["alone"] if alone else [])]
         self._column = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=classes)
-        self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"], visible=False)
+        self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"])
         self.picker.param.watch(lambda event: self._choose(event.new), "value")
-        self._on_choose = on_choose
+        state.param.watch(lambda *events: self._place(), ["focus", "narrow"])
 
     def layout(self) -> pn.viewable.Viewable:
         """Return the grid."""
@@ -58,11 +59,6 @@ class PictureGrid:
         self._panes = panes
         self._place()
 
-    def enlarge(self, name: str) -> None:
-        """Show a picture large. If the name is empty or the picture is not on the page, all pictures are side by side."""
-        self._enlarged_picture = name
-        self._place()
-
     def mark_empty(self, name: str, empty: bool) -> None:
         """Set whether a picture shows nothing. The picture of a layer is not the largest if it shows nothing."""
         empty_pictures = self._empty_pictures | {name} if empty else self._empty_pictures - {name}
@@ -74,26 +70,27 @@ class PictureGrid:
         """Grey out pictures that do not belong to the controls, or show them normally."""
         self._set_class("stale", stale)
 
-    def offer_choice(self) -> None:
-        """Offer a choice of the picture, because a narrow page shows only one picture."""
-        self.picker.visible = True
-        self._place()
-
     def _choose(self, name: str | None) -> None:
         # The largest picture comes from `_place`: the picker follows the page.
         if name is not None and name != self._largest_picture:
-            self._on_choose(name)
+            with pn.io.hold():
+                self._state.focus = name
 
     @property
     def _largest_picture(self) -> str:
         """The largest picture: the enlarged picture, or else the picture of the last layer that shows something."""
         layers = [name for name in self._panes if name in LAYER_OF and name not in self._empty_pictures]
-        return self._enlarged_picture if self._enlarged_picture in self._panes else [FIRST, *layers][-1]
+        return self._state.focus if self._is_enlarged else [FIRST, *layers][-1]
+
+    @property
+    def _is_enlarged(self) -> bool:
+        """Whether the chosen picture is on the page."""
+        return self._state.focus in self._panes
 
     def _place(self) -> None:
         # A Bokeh pane on the page cannot change its CSS classes, but its figure can.
         largest = self._largest_picture
-        is_enlarged = self._enlarged_picture in self._panes
+        is_enlarged = self._is_enlarged
         are_many = len(self._panes) > _MOST_EQUAL
         other_kind = "small" if is_enlarged else "compact" if are_many else "equal"
         with pn.io.hold():
@@ -106,7 +103,8 @@ class PictureGrid:
                     plot.css_classes = classes
                     set_borders(plot, classes[1])
             self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=largest)
-            parts = [*([self.picker] if self.picker.visible else []), *self._panes.values()]
+            # A narrow page shows only one picture, and offers a choice.
+            parts = [*([self.picker] if self._state.narrow else []), *self._panes.values()]
             if parts != self._column.objects:
                 self._column.objects = parts
 

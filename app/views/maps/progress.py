@@ -11,6 +11,7 @@ from html import escape
 import numpy as np
 import panel as pn
 
+from app.state.view_state import ViewState
 from app.views.components.legends import patch
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
@@ -18,7 +19,7 @@ from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number, format_share, format_whole
 from engine.propagation.fates import UNRESOLVED
 from plots.layers.table import LAYERS
-from plots.pictures.palette import PAPER, Entry, Palette
+from plots.pictures.palette import Entry, Palette
 
 STOP = "Stop"
 """Label of the button while the map is computed."""
@@ -35,23 +36,24 @@ class ProgressView:
 
     Parameters
     ----------
+    state
+        View state, whose layers the button offers.
     on_cancel, on_resume
         Stop the map, and continue a stopped map.
-    on_layer
-        Switches on the layer of this name, which the button offers.
     """
 
-    def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None], on_layer: Callable[[str], None]) -> None:
-        offers = {layer.title: partial(on_layer, name) for name, layer in LAYERS.items()}
+    def __init__(self, state: ViewState, on_cancel: Callable[[], None], on_resume: Callable[[], None]) -> None:
+        self._state = state
+        offers = {layer.title: partial(state.switch_layer, name, on=True) for name, layer in LAYERS.items()}
         self._actions: dict[str, Callable[[], None]] = {STOP: on_cancel, CONTINUE: on_resume, **offers}
         # Time and undecided share at the beginning of the last stage of the integration.
         self._last_stage: tuple[float, float] | None = None
-        self._palette = PAPER
         self._frame: EscapeMap | None = None
         self._sentence = ""
         self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=3, margin=0, css_classes=["progress"])
         self.text = TextPane("", name="progress", margin=0, css_classes=["status"])
         self.button = button(STOP, self._press, margin=0, styles=keep_place(shown=False), css_classes=["solid", "stop"])
+        state.param.watch(lambda event: self._write(self._sentence), "palette")
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """Return the text and the button, which share a line."""
@@ -92,11 +94,6 @@ class ProgressView:
         self._frame = None
         self._set(running=False, label=STOP, sentence="")
 
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the shares."""
-        self._palette = palette
-        self._write(self._sentence)
-
     def _press(self) -> None:
         self._actions[self.button.label]()
 
@@ -122,7 +119,7 @@ class ProgressView:
 
     def _write(self, sentence: str) -> None:
         self._sentence = sentence
-        shares = _shares(self._frame, self._palette) if self._frame is not None else ""
+        shares = _shares(self._frame, self._state.colours) if self._frame is not None else ""
         is_complete = self._frame is not None and self._frame.complete
         self.text.object = f"{shares}<div class='{'' if is_complete else 'under-way'}'>{sentence}</div>"
 

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from bokeh.models import ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter
+from bokeh.models import ColumnDataSource, ImageRGBA, MultiLine, Range1d, Scatter
+from bokeh.plotting import figure
 
+from app.state.view_state import ViewState
 from app.views.components.legends import legend_items
-from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities
-from app.views.components.plots import FigurePane, annotate_picture, batched_additions, map_figure, set_range
+from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities, orbit_colours
+from app.views.components.plots import FigurePane, LaterGlyphs, annotate_picture, map_figure, set_range
 from app.views.maps.curve_layers import CurveLayers
 from engine import MapSpec, Potential, Window
 from engine.slices.axes import highest_energy
 from engine.slices.planes import SPACE
 from plots.pictures.orbit_curves import OrbitCurves, find_well_window, moment
-from plots.pictures.palette import LIGHT, MARK_EDGE, PAPER, Palette
+from plots.pictures.palette import LIGHT, MARK_EDGE, Palette
 
 TITLE = "The well in (x, y)"
 
@@ -31,41 +33,35 @@ def well_spec(potential: Potential, energy: float) -> MapSpec:
 class WellView:
     """Draws the whole interior at the energy of the map. With an axis h, the energy is the chosen orbit's, or the highest."""
 
-    def __init__(self) -> None:
+    def __init__(self, state: ViewState) -> None:
+        self._state = state
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
-        self._mapper = LinearColorMapper(palette=list(PAPER.orbits), low=-0.5, high=len(PAPER.orbits) - 0.5)
+        self._line_style = line_style(orbit_colours(state))
         self._paths, self._trails = lines("paths"), lines("trails")
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh", "alpha")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
-        self.outlines = CurveLayers()
-        self._palette = PAPER
+        self._outlines = CurveLayers(state)
         self._spec: MapSpec | None = None
         self._orbits: list[tuple[int, OrbitCurves]] = []
         self._time: float | None = None
-        self._has_orbits = False
         # Map and palette of the drawn curves. Maps of other windows, and most orbits, need no new curves.
         self._outline_key: tuple[MapSpec, Palette] | None = None
         self.plot = map_figure("well", TITLE, *self._ranges)
-        self.outlines.draw(self.plot, full=True)
+        self._outlines.draw(self.plot, full=True)
+        self._orbit_glyphs = LaterGlyphs(self._add_orbits)
+        self._orbit_glyphs.expect(self.plot)
         self.pane = FigurePane(self.plot)
+        state.param.watch(lambda event: self._outline(), "palette")
 
-    def _draw_orbits(self) -> None:
+    def _add_orbits(self, plot: figure) -> None:
         """Add the glyphs of paths, trails and points to the figure."""
-        style = line_style(self._mapper)
-        with batched_additions([self.plot]):
-            self.plot.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh", global_alpha="alpha"))
-            self.plot.add_glyph(self._paths, MultiLine(**style))
-            self.plot.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
-            self.plot.add_glyph(self._trails, MultiLine(**style | {"line_width": 2.5}))
-            point = Scatter(size=11, fill_color=style["line_color"], line_color=MARK_EDGE, line_width=1.5)
-            self.plot.add_glyph(self._points, point)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of exits and orbits."""
-        self._palette = palette
-        self._mapper.palette = list(palette.orbits)
-        self.outlines.set_palette(palette)
-        self._outline()
+        style = self._line_style
+        plot.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh", global_alpha="alpha"))
+        plot.add_glyph(self._paths, MultiLine(**style))
+        plot.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
+        plot.add_glyph(self._trails, MultiLine(**style | {"line_width": 2.5}))
+        point = Scatter(size=11, fill_color=style["line_color"], line_color=MARK_EDGE, line_width=1.5)
+        plot.add_glyph(self._points, point)
 
     def show_map(self, spec: MapSpec) -> None:
         """Show the well of a map."""
@@ -79,20 +75,18 @@ class WellView:
             orbits = [each if each is not None and each.orbit.potential == well else None for each in orbits]
         if not any(orbits) and not self._orbits:
             return
-        if not self._has_orbits:
-            self._has_orbits = True
-            self._draw_orbits()
+        self._orbit_glyphs.draw()
         self._orbits = in_front(orbits, chosen)
         alphas = opacities(self._orbits, chosen)
         path_lines = [_NO_LINE if one.visits is not None else one.path for _, one in self._orbits]
         self._paths.data = line_columns(self._orbits, path_lines, alphas)
         long_paths = [(slot, one) for slot, one in self._orbits if one.visits is not None]
         self._shades.data = {
-            "image": [one.shaded(self._palette.orbits[slot]) for slot, one in long_paths],
+            "image": [one.shaded(self._state.colours.orbits[slot]) for slot, one in long_paths],
             "x": [one.window.x_low for _, one in long_paths],
             "y": [one.window.ordinate_low for _, one in long_paths],
-            "dw": [one.window.x_high - one.window.x_low for _, one in long_paths],
-            "dh": [one.window.ordinate_high - one.window.ordinate_low for _, one in long_paths],
+            "dw": [one.window.width for _, one in long_paths],
+            "dh": [one.window.height for _, one in long_paths],
             "alpha": opacities(long_paths, chosen),
         }
         self._outline()
@@ -111,7 +105,7 @@ class WellView:
         """Write title, legend and names of the axes around the frame."""
         if self._outline_key is not None:
             spec = self._outline_key[0]
-            annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend_items(self.outlines.entries(spec)))
+            annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend_items(self._outlines.entries(spec)))
 
     def _outline(self) -> None:
         """Draw the curves of the well, unless they are already drawn."""
@@ -124,11 +118,11 @@ class WellView:
         if chosen is not None and (spec.common_energy is None or spec.plane.parameter is not None):
             # On a slice of several energies or potentials, the chosen orbit determines the well.
             potential, energy = chosen.orbit.potential or potential, chosen.orbit.energy
-        key = well_spec(potential, energy), self._palette
+        key = well_spec(potential, energy), self._state.colours
         if key == self._outline_key:
             return
         self._outline_key = key
-        self.outlines.show(key[0])
+        self._outlines.show(key[0])
         self._go_to(key[0].find_window())
         self.describe()
 

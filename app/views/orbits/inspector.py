@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import panel as pn
 
+from app.browser.components.orbit_player import OrbitPlayer
 from app.views.components.in_turns import InTurns, Later
 from app.views.components.widgets import FULL_HEIGHT
 from app.views.orbits.orbit_controls import OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
-from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
 
 
@@ -18,15 +18,15 @@ class Inspector:
     """Arranges the verdict on the chosen orbit, the player, histories, indicators and values, and the boxes to type a start."""
 
     def __init__(
-        self, controls: OrbitControls, playback: Playback, plots: OrbitPlots, separation: SeparationPlot, later: Later
+        self, controls: OrbitControls, player: OrbitPlayer, plots: OrbitPlots, separation: SeparationPlot, later: Later
     ) -> None:
-        self._controls, self._playback = controls, playback
+        self._controls, self._player = controls, player
         self._start_count = 0
         self._orbit_count = 0
         self._head: list[pn.viewable.Viewable] = []
         self._details: list[pn.viewable.Viewable] = []
         self._figure_panes: list[pn.viewable.Viewable] = []
-        self._figures_in_turns = InTurns([plots.build, separation.build], self._add_figures, later)
+        self._figures_in_turns = InTurns([*plots.parts(), separation.build], self._add_figures, later)
         self._entry = controls.entry()
         self._grid = pn.Column(
             controls.note, *self._entry, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
@@ -40,7 +40,7 @@ class Inspector:
         """Show the panes that are needed for a number of starts, and for the orbits among them."""
         self._start_count, self._orbit_count = starts, orbits
         if starts >= 1 and not self._head:
-            self._head, self._details = [self._controls.head(self._playback.layout())], self._controls.details()
+            self._head, self._details = [self._controls.head(self._player)], self._controls.details()
         if orbits >= 1:
             self._figures_in_turns.begin()
         self._arrange()

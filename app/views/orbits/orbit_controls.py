@@ -78,12 +78,12 @@ class OrbitControls:
         """Return the boxes for a typed start, which open on demand."""
         return Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")]).parts()
 
-    def head(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
+    def head(self, player: pn.viewable.Viewable) -> pn.viewable.Viewable:
         """Return the list of the orbits, the verdict on the chosen orbit, buttons, and the player."""
         buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
         buttons.margin = (5, 10)
         return pn.Column(
-            self.list, self.text, buttons, playback,
+            self.list, self.text, buttons, player,
             sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT,
         )  # fmt: skip
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,6 @@ from bokeh.events import DoubleTap, SelectionGeometry
 from bokeh.models import (
     BoxSelectTool,
     FixedTicker,
-    LinearColorMapper,
     MultiLine,
     Patches,
     Range1d,
@@ -18,47 +18,58 @@ from bokeh.models import (
 )
 from bokeh.plotting import figure
 
-from app.views.components.orbit_lines import band_columns, band_style, in_front, line_columns, line_style, lines, opacities
+from app.state.view_state import ViewState
+from app.views.components.in_turns import Make
+from app.views.components.orbit_lines import (
+    band_columns,
+    band_style,
+    in_front,
+    line_columns,
+    line_style,
+    lines,
+    opacities,
+    orbit_colours,
+)
 from app.views.components.plots import FigurePane, history_figure, set_range
 from engine import CASES, integrate_orbit, start_states
 from engine.slices.planes import SECTION
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves
 from plots.pictures.orbit_quantities import ORBIT_QUANTITIES, OrbitQuantity
-from plots.pictures.palette import MARK_EDGE, PAPER, THRESHOLD, Palette
+from plots.pictures.palette import MARK_EDGE, THRESHOLD
 
 # The history from which times are read: all histories have the same times.
 _FIRST = ORBIT_QUANTITIES[0].name
 
 
 class OrbitPlots:
-    """Draws the histories. `build` makes the figures once there is an orbit.
+    """Draws the histories. `parts` make the figures once there is an orbit.
 
     Parameters
     ----------
+    state
+        View state, whose palette has the colours of the orbits.
     on_brush
         Shows the interval of time that the user has drawn over a history; None, after a double click, is the whole duration.
     """
 
-    def __init__(self, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
+    def __init__(self, state: ViewState, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
         self._on_brush = on_brush
-        self._by_touch = False
+        self._state = state
         self._x_range = Range1d(0.1, 1e4)
         self._y_ranges = {quantity.name: Range1d(quantity.least or 0.0, 1.0) for quantity in ORBIT_QUANTITIES}
-        self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
+        self._mapper = orbit_colours(state)
         self._histories = {name: lines(f"{name}_histories") for name in self._y_ranges}
         self._bands = {name: lines(f"{name}_bands") for name in self._y_ranges}
         self._time_mark = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._orbits: list[tuple[int, OrbitCurves]] = []
-        self.set_palette(PAPER)
 
-    def build(self) -> list[FigurePane]:
-        """Make a figure of each of `ORBIT_QUANTITIES`."""
+    def parts(self) -> list[Make]:
+        """Return functions that make the figures, one of each of `ORBIT_QUANTITIES`."""
+        return [partial(self._build, quantity) for quantity in ORBIT_QUANTITIES]
+
+    def _build(self, quantity: OrbitQuantity) -> list[FigurePane]:
         events = {SelectionGeometry: self._select_interval, DoubleTap: lambda event: self._on_brush(None)}
-        return [FigurePane(self._draw(quantity), events) for quantity in ORBIT_QUANTITIES]
-
-    def begin_touch(self) -> None:
-        """Adapt to touch input: a drag over a history scrolls the page."""
-        self._by_touch = True
+        return [FigurePane(self._draw(quantity), events)]
 
     def show(self, orbits: Sequence[OrbitCurves | None], chosen: int, interval: tuple[float, float] | None = None) -> None:
         """Draw the known orbits and highlight the chosen orbit; None stands for an orbit that is not known yet.
@@ -77,16 +88,13 @@ class OrbitPlots:
         """Mark a time on all histories; None removes the mark."""
         self._time_mark.update(visible=t is not None and bool(self._orbits), location=t or 0.0)
 
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the orbits."""
-        self._mapper.palette = list(palette.orbits)
-
     def _draw(self, quantity: OrbitQuantity) -> figure:
         name, scale = quantity.name, "log" if quantity.logarithmic else "linear"
         time_axis: dict[str, Any] = {"x_axis_type": "log", "x_range": self._x_range}
         value_axis: dict[str, Any] = {"y_axis_type": scale, "y_range": self._y_ranges[name]}
         plot = history_figure(name, quantity.title, tools=[_brush()], **time_axis, **value_axis)
-        plot.toolbar.active_drag = None if self._by_touch else plot.toolbar.tools[0]
+        # With touch input, a drag over a history scrolls the page.
+        plot.toolbar.active_drag = None if self._state.touch else plot.toolbar.tools[0]
         plot.add_glyph(self._bands[name], Patches(**band_style(self._mapper)))
         plot.add_glyph(self._histories[name], MultiLine(**line_style(self._mapper)))
         plot.add_layout(self._time_mark)

@@ -19,7 +19,7 @@ def path_picture(curves: OrbitCurves, colour: str) -> str:
     x, y = (values[:_MOST_SAMPLES] for values in curves.path)
     step = max(1, math.ceil(x.size / _MOST_POINTS))
     window = curves.window
-    scale = _SIDE / (window.x_high - window.x_low)
+    scale = _SIDE / window.width
     pixels = zip((x[::step] - window.x_low) * scale, (window.ordinate_high - y[::step]) * scale, strict=True)
     points = [f"{left:.1f},{top:.1f}" for left, top in pixels]
     if not points:

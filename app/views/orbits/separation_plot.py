@@ -6,10 +6,11 @@ import numpy as np
 import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d
 
+from app.state.view_state import ViewState
 from app.views.components.plots import history_figure, set_decades, set_range
 from app.views.components.texts import TextPane
 from engine.results import Separation
-from plots.pictures.palette import PAPER, Palette
+from plots.pictures.palette import PALETTES
 
 TITLE = "Distance of two orbits"
 LEAST = 1e-17
@@ -19,13 +20,14 @@ LEAST = 1e-17
 class SeparationPlot:
     """Draws the distance in phase space against time, on a logarithmic axis, while there are two orbits."""
 
-    def __init__(self) -> None:
+    def __init__(self, state: ViewState) -> None:
         self._x_range = Range1d(0.0, 10.0)
         self._y_range = Range1d(LEAST, 10.0)
         self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
         self._pair = TextPane("", name="pair", margin=(0, 10), css_classes=["quiet"])
         self._view = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
-        self._line = Line(x="t", y="distance", line_width=1.5, line_color=PAPER.orbits[1])
+        self._line = Line(x="t", y="distance", line_width=1.5)
+        state.follow(lambda name: self._line.update(line_color=PALETTES[name].orbits[1]), "palette")
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Return the view with the figure and the line of text that names the orbits."""
@@ -44,7 +46,3 @@ class SeparationPlot:
         set_range(self._x_range, 0.0, float(separation.t[-1]))
         set_decades(self._y_range, float(distance.min()), 10.0)
         self._pair.object = f"Orbits {pair[0] + 1} and {pair[1] + 1}"
-
-    def set_palette(self, palette: Palette) -> None:
-        """Set the colour of the line."""
-        self._line.line_color = palette.orbits[1]

@@ -81,38 +81,35 @@ class ComparisonSwitch:
     ----------
     state
         The view state.
-    compare
-        Begins (True) or ends (False) the comparison with the present view.
     swap
         Exchanges the two views.
     """
 
-    def __init__(self, state: ViewState, compare: Callable[[bool], None], swap: Callable[[], None]) -> None:
+    def __init__(self, state: ViewState, swap: Callable[[], None]) -> None:
         self._state = state
         self._options = ["Compare with this view"]
         self.switch = Switches(label="Comparison", options=self._options, margin=(0, 10, 4, 10))
         self.view = TextPane("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
         self.swap = button("Swap the views", swap, kind="light", margin=0)
         state.follow(self._show, "compared")
-        self.switch.param.watch(lambda event: self._take(bool(event.new), compare), "value")
+        self.switch.param.watch(lambda event: self._take(bool(event.new)), "value")
 
     def parts(self) -> list[pn.viewable.Viewable]:
         """Return the switch. While it is on, also return the title of the other view and the button."""
         return [self.switch, *([self.view, self.swap] if self._state.compared is not None else [])]
 
-    def _take(self, on: bool, compare: Callable[[bool], None]) -> None:
+    def _take(self, on: bool) -> None:
         if on != (self._state.compared is not None):
-            compare(on)
+            with pn.io.hold():
+                self._state.compare(on=on)
 
     def _show(self, compared: View | None) -> None:
         self.switch.value = [] if compared is None else self._options
         self.view.object = escape(compared.title) if compared is not None else ""
 
 
-class AnalysisTabs:
-    """The tabs of the analyses. They write to the view state and follow it."""
-
-    def __init__(self, state: ViewState) -> None:
-        options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
-        tabs = SegmentedControl(label="Analysis", options=options, margin=(0, 10), css_classes=["segmented", "narrow", "tight"])
-        self.tabs = bind(tabs, state, "analysis")
+def analysis_tabs(state: ViewState) -> SegmentedControl:
+    """Return the tabs of the analyses. They write to the view state and follow it."""
+    options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
+    tabs = SegmentedControl(label="Analysis", options=options, margin=(0, 10), css_classes=["segmented", "narrow", "tight"])
+    return bind(tabs, state, "analysis")

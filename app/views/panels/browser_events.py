@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-import panel as pn
 import param
 from panel.custom import JSComponent
 
+from app.job_clients.latest_request import Locked
 from app.state.view import PICTURES
+from app.state.view_state import ViewState
 from plots.layers import table
 
 _TITLES = {"well": "the well"} | {name: picture.title for name, picture in table.PICTURES.items()}
@@ -52,9 +52,27 @@ KEYS: Mapping[str, str] = MappingProxyType(
 _KEY_LABELS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
 
 
-# Bokeh does not register classes whose name starts with an underscore in the browser.
-class BrowserListener(JSComponent):
-    """Listens in the browser, and sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
+class BrowserEvents(JSComponent):
+    """An invisible component that passes events of the browser to the view state or to callbacks, and commands to the browser.
+
+    The browser sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}.
+
+    Parameters
+    ----------
+    state
+        View state, which gets theme, touch, width and the enlarged picture.
+    keys
+        Some of `KEYS`, which the page uses unless a field, slider or menu uses them.
+    locked
+        Wraps a function to run under the session's lock. Events can arrive before the page is ready, when `pn.io.hold` fails.
+    on_key
+        Handles one of the keys.
+    on_navigate
+        Shows the entry to which the browser's Back or Forward leads, given by query string and number, and notes the number of
+        such steps so far.
+    on_copied
+        Handles whether a text could be copied.
+    """
 
     keys = param.List(default=list(KEYS))
     address = param.Dict(default={}, doc="link of the view, its entry in the history, steps followed; number: see `command`")
@@ -62,53 +80,21 @@ class BrowserListener(JSComponent):
 
     _esm = Path(__file__).with_suffix(".js")
 
-
-@dataclass(frozen=True)
-class BrowserActions:
-    """Callbacks for the events, which run without the session's lock.
-
-    Attributes
-    ----------
-    key
-        Handles a key of `KEYS`, unless a field, slider or menu uses the key.
-    navigate
-        Shows the entry to which the browser's Back or Forward leads. The arguments are the query string and the number of the
-        entry, and the number of such steps so far.
-    dark
-        Sets whether the theme is dark: after each change of the theme, and at the beginning of a dark page.
-    touch
-        Adapts the page to touch input.
-    narrow
-        Adapts the page to the layout of a phone, at the beginning or after a change of width.
-    copied
-        Takes whether the browser has copied the text.
-    enlarge
-        Handles a click on the button of the picture of this name.
-    """
-
-    key: Callable[[str], None]
-    navigate: Callable[[str, int, int], None]
-    dark: Callable[[bool], None]
-    touch: Callable[[], None]
-    narrow: Callable[[], None]
-    copied: Callable[[bool], None]
-    enlarge: Callable[[str], None]
-
-
-class BrowserEvents:
-    """Passes events of the browser to callbacks, and commands to the browser. Only the `keys` among `KEYS` are passed."""
-
-    def __init__(self, actions: BrowserActions, keys: Collection[str] = KEYS) -> None:
-        self._actions = actions
-        self._keys = keys
+    def __init__(
+        self,
+        state: ViewState,
+        keys: Collection[str],
+        locked: Locked,
+        on_key: Callable[[str], None],
+        on_navigate: Callable[[str, int, int], None],
+        on_copied: Callable[[bool], None],
+    ) -> None:
+        super().__init__(keys=list(keys), width=0, height=0, margin=0, styles={"position": "absolute"})
+        self._on_key, self._on_navigate, self._on_copied = locked(on_key), locked(on_navigate), locked(on_copied)
+        self._update, self._enlarge = locked(state.param.update), locked(state.enlarge)
         self._numbers = count()
         self._steps = 0
-        self._listener = BrowserListener(keys=list(keys), width=0, height=0, margin=0, styles={"position": "absolute"})
-        self._listener.on_msg(lambda event: self._receive(event.data))
-
-    def layout(self) -> pn.viewable.Viewable:
-        """Return an invisible component that must be on the page."""
-        return self._listener
+        self.on_msg(lambda event: self._receive(event.data))
 
     def copy(self, text: str | None) -> None:
         """Copy a text; None copies the address of the page. Browsers allow copying only soon after a click or a key."""
@@ -116,7 +102,7 @@ class BrowserEvents:
 
     def write_link(self, link: str, entry: int) -> None:
         """Show a link as the address of the page, in this entry of the browser's history."""
-        self._listener.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
+        self.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
 
     def follow_steps(self, steps: int) -> None:
         """Note the number of steps in the history that the view has followed. Addresses with fewer steps are ignored."""
@@ -135,25 +121,25 @@ class BrowserEvents:
         self._command("focus" if is_open else "return")
 
     def _command(self, name: str, **details: Any) -> None:
-        self._listener.command = {"name": name, **details, "number": next(self._numbers)}
+        self.command = {"name": name, **details, "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
         # A browser can send anything: unexpected messages are ignored.
         match message:
-            case {"key": str(key)} if key in self._keys:
-                self._actions.key(key)
+            case {"key": str(key)} if key in self.keys:
+                self._on_key(key)
             case {"link": str(link), "entry": int(entry), "steps": int(steps)}:
-                self._actions.navigate(link, entry, steps)
+                self._on_navigate(link, entry, steps)
             case {"dark": bool(dark)}:
-                self._actions.dark(dark)
+                self._update(dark=dark)
             case {"touch": True}:
-                self._actions.touch()
+                self._update(touch=True)
             case {"narrow": True}:
-                self._actions.narrow()
+                self._update(narrow=True)
             case {"copied": bool(success)}:
-                self._actions.copied(success)
+                self._on_copied(success)
             case {"enlarge": str(name)} if name in PICTURES:
-                self._actions.enlarge(name)
+                self._enlarge(name)
 
 
 def key_legend() -> str:

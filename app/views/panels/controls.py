@@ -63,8 +63,6 @@ class ControlActions:
         Opens the choice of other potentials.
     choose_slice
         Opens the choice of other slices.
-    compare
-        Begins (True) or ends (False) the comparison with the present view.
     swap
         Exchanges the two views.
     lock_times
@@ -74,7 +72,6 @@ class ControlActions:
     play: Callable[[], None]
     choose_potential: Callable[[], None]
     choose_slice: Callable[[], None]
-    compare: Callable[[bool], None]
     swap: Callable[[], None]
     lock_times: Callable[[bool], None]
 
@@ -118,7 +115,7 @@ class Controls:
         )
         self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
         self.layers = LayerSwitches(state)
-        self.comparison = ComparisonSwitch(state, actions.compare, actions.swap)
+        self.comparison = ComparisonSwitch(state, actions.swap)
         layers = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)
         state.param.watch(lambda *events: layers.rebuild(), ["layers", "compared"])
         self._folds = [Fold("Quality and colours", self._build_quality), layers]
@@ -131,7 +128,7 @@ class Controls:
         energy = [self.energy, self.ticks, self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
-    def begin_touch(self) -> None:
+    def _begin_touch(self) -> None:
         """Adapt to touch input: close the sections, to leave more room for the maps."""
         for fold in self._folds:
             fold.open(False)
@@ -169,6 +166,7 @@ class Controls:
         state.param.watch(lambda *events: self._follow_system(), "system")
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
         state.param.watch(lambda event: self._follow_plane(), "plane")
+        state.param.watch(lambda event: self._begin_touch(), "touch")
 
     def show_playing(self, playing: bool) -> None:
         """Label the button with its next action."""

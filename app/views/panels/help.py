@@ -1,26 +1,31 @@
-"""The drawer "Help": keys, the equations of the system in view, and terms."""
+"""The drawer "Help": keys, the equations of the system in view, terms, and the content of the page as a table."""
 
 from __future__ import annotations
 
 from html import escape
+from math import isfinite
 
 import panel as pn
 
+from app.job_clients.shown_results import ShownResults
 from app.state.glossary import glossary_list
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.panels.browser_events import key_legend
-from engine import System
+from engine import Fate, System, compute_statistics
+from engine.foundations.wording import format_number, format_share, format_time, format_whole
+from engine.propagation.fates import UNRESOLVED
 from plots.texts.mathml import equations
 
 
-def help_panes(state: ViewState) -> list[pn.viewable.Viewable]:
+def help_panes(state: ViewState, results: ShownResults) -> list[pn.viewable.Viewable]:
     """Return the content of the drawer."""
     return [
         TextPane(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
         _equations_pane(state),
         *Fold("Terms", lambda: [TextPane(glossary_list(), sizing_mode="stretch_width", margin=(0, 10))]).parts(),
+        *AccessibleTable(state, results).fold.parts(),
     ]
 
 
@@ -33,3 +38,56 @@ def _equations_pane(state: ViewState) -> pn.viewable.Viewable:
 
     state.follow(show, "system")
     return pane
+
+
+class AccessibleTable:
+    """Writes what the page shows into a table, for screen readers and for copying numbers, while the table is open."""
+
+    def __init__(self, state: ViewState, results: ShownResults) -> None:
+        self._state, self._results = state, results
+        self.text = TextPane("", name="accessible-table", sizing_mode="stretch_width", margin=(0, 10))
+        self.fold = Fold("This page as a table", lambda: [self.text])
+        self.fold.button.on_click(lambda event: self._write())
+        results.param.watch(lambda *events: self._write(), ["frame", "orbits"])
+
+    def _write(self) -> None:
+        if self.fold.is_open:
+            self._fill()
+
+    def _fill(self) -> None:
+        cells = (*self._view(), *self._map(), *self._chosen())
+        rows = "".join(f"<tr><th scope=row>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in cells)
+        head = "<tr><th scope=col>quantity</th><th scope=col>value</th></tr>"
+        self.text.object = f"<table><caption>What is shown</caption>{head}{rows}</table>"
+
+    def _view(self) -> list[tuple[str, str]]:
+        state, reviewed = self._state, self._state.reviewed
+        rows = [("system", reviewed.system.title), ("potential V(x, y)", reviewed.formula)]
+        rows += [("plane", state.plane.title), ("t_max", format_whole(state.t_max))]
+        rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
+        if state.window is not None:
+            w = state.window
+            rows += [("window", f"x from {w.x_low!r} to {w.x_high!r}, ordinate from {w.ordinate_low!r} to {w.ordinate_high!r}")]
+        return [*rows, ("energy h", f"{state.energy!r}")]
+
+    def _map(self) -> list[tuple[str, str]]:
+        frame = self._results.whole_map
+        if frame is None:
+            return []
+        statistics = compute_statistics(frame)
+        shares = statistics.shares
+        rows = [(end.action, format_share(shares[fate], 2)) for fate, end in enumerate(statistics.outcomes, 1)]
+        rows += [(UNRESOLVED, format_share(shares[Fate.FAILED], 2))] if statistics.failed else []
+        rows += [("bounded", format_share(shares[Fate.BOUNDED], 2)), ("direct escapes", format_share(statistics.direct_share, 2))]
+        rows += [("mean escape time", _time(statistics.mean_escape_time))]
+        return [*rows, ("median escape time", _time(statistics.median_escape_time))]
+
+    def _chosen(self) -> list[tuple[str, str]]:
+        return [
+            (f"orbit {place + 1}, from {format_number(one.start[0], 6)}, {format_number(one.start[1], 6)}", one.describe())
+            for place, one in enumerate(self._results.orbits)
+        ]
+
+
+def _time(value: float) -> str:
+    return format_time(value, digits=5) if isfinite(value) else "nothing escaped"

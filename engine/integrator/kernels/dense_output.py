@@ -10,7 +10,8 @@ import numpy as np
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
 from engine.integrator.jit.decorator import kernel
 from engine.integrator.jit.function_pointers import call_jets
-from engine.integrator.kernels.events import BOUNDED, CURVE_COLUMNS, NOT_COMPUTED, append_crossings, series_value
+from engine.integrator.kernels.events import BOUNDED, NOT_COMPUTED, append_crossings, series_value
+from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS
 from engine.integrator.kernels.propagate import VECTOR, Exits, Orbits
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.integrator.source.series import ORDER
@@ -25,7 +26,6 @@ def trace_orbit(
     orbits: Orbits,
     t_max: float,
     execution: Execution = DEFAULT_EXECUTION,
-    tolerance: float = TOLERANCE,
 ) -> Iterator[tuple[np.ndarray, float]]:
     """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of limited length.
 
@@ -36,7 +36,7 @@ def trace_orbit(
     while orbits.pending[0]:
         execution.raise_if_cancelled()
         steps = np.empty((_CHUNK, 5))
-        count = kernels.propagate(np.zeros(1, np.int64), t_max, True, tolerance, VECTOR * _CHUNK, 0, exits, orbits, steps)
+        count = kernels.propagate(np.zeros(1, np.int64), t_max, True, TOLERANCE, VECTOR * _CHUNK, 0, exits, orbits, steps)
         goes_on = orbits.fate[0] == BOUNDED and orbits.t[0] == steps[count - 1, 4]
         yield steps[:count], t_max if goes_on else float(orbits.t[0])
 
@@ -47,7 +47,6 @@ def trace_pieces(
     t_end: float,
     channels: int,
     execution: Execution = DEFAULT_EXECUTION,
-    tolerance: float = TOLERANCE,
 ) -> Iterator[tuple[np.ndarray, float]]:
     """Apply `trace_orbit` from t = 0 to `t_end`, without exits."""
     # No step passes these gates.
@@ -57,7 +56,7 @@ def trace_pieces(
     fate = np.full(1, NOT_COMPUTED, np.int8)
     crossings, last_crossings = np.zeros((2, 1), np.int64)
     orbits = Orbits(state[None].copy(), np.zeros(1), crossings, last_crossings, fate, np.ones(1, np.uint8), np.zeros((1, 2)))
-    return trace_orbit(kernels, exits, orbits, t_end, execution, tolerance)
+    return trace_orbit(kernels, exits, orbits, t_end, execution)
 
 
 def trace_steps(
@@ -66,10 +65,9 @@ def trace_steps(
     t_end: float,
     channels: int,
     execution: Execution = DEFAULT_EXECUTION,
-    tolerance: float = TOLERANCE,
 ) -> np.ndarray:
     """Return x, y, px, py, t at the start of every step up to `t_end`, of shape (m, 5), without exits."""
-    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, execution, tolerance)])
+    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, execution)])
 
 
 def sample_path(

@@ -12,15 +12,8 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
-from engine.integrator.kernels.events import (
-    crossed_exit,
-    ends_inside,
-    find_exit_time,
-    find_zero,
-    passed_exit,
-    series_slope,
-    series_value,
-)
+from engine.integrator.kernels.events import crossed_exit, find_exit_time, find_zero, passed_exit, series_slope, series_value
+from engine.integrator.kernels.exit_geometry import ends_inside
 from engine.integrator.kernels.propagate import VECTOR
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER

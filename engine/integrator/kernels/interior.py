@@ -15,7 +15,7 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_potential_slopes
-from engine.integrator.kernels.events import (
+from engine.integrator.kernels.exit_geometry import (
     BEARING_X,
     BEARING_Y,
     REACH,

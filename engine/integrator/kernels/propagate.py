@@ -17,10 +17,8 @@ from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import (
     BOUNDED,
-    CLOSED,
     FAILED,
     NOT_COMPUTED,
-    SHAPE,
     count_upward_crossings,
     crossed_exit,
     find_exit_time,
@@ -28,6 +26,7 @@ from engine.integrator.kernels.events import (
     series_slope,
     series_value,
 )
+from engine.integrator.kernels.exit_geometry import CLOSED, SHAPE
 from engine.integrator.source.recurrence import LANES, REMAINDER_ROW, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
@@ -52,7 +51,7 @@ class Exits(NamedTuple):
         (exits, 3) g_x, g_y, g, the same for all energies. For a channel, an orbit can be outside only beyond the line g_x x + g_y
         y = g. For a disc or the escape circle, they are its centre and its radius.
     curves
-        (energies, exits, columns) exits, see `engine.integrator.kernels.events`.
+        (energies, exits, columns) exits, see `engine.integrator.kernels.exit_geometry`.
     curve_row
         (n,) the row of `curves` for each orbit.
     """

@@ -10,8 +10,7 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_potential_value
-from engine.integrator.kernels.events import CURVE, HALF_WIDTH, OUTWARD_X, OUTWARD_Y, SHAPE, is_open_channel
-from engine.integrator.kernels.exit_curves import exit_point
+from engine.integrator.kernels.exit_geometry import CURVE, HALF_WIDTH, OUTWARD_X, OUTWARD_Y, SHAPE, exit_point, is_open_channel
 
 BEFORE_EXIT = 9.0
 """Orbits near the edge of a tube start this long before they reach the exit, in units of the well."""

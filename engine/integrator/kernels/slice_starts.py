@@ -1,4 +1,4 @@
-"""Starts at the points of a slice, in units of the well.
+"""Starts at the points of a slice, in units of the well, and the pixels of a picture with the outcomes of their orbits.
 
 Kernels call the subroutines with numbers, and Python with arrays, so that `engine.slices.slice_starts` uses the same formulas.
 """
@@ -9,6 +9,7 @@ import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_potential_value
+from engine.integrator.kernels.events import BOUNDED, FORBIDDEN, NOT_COMPUTED, OUTSIDE
 
 # Columns of the coordinates that vary along the axes of a slice: the state, an angle of the velocity, and the energy.
 X, Y, PX, PY, ANGLE, H = range(6)
@@ -16,6 +17,9 @@ COORDINATES = 6
 
 # What the energy determines: a momentum, given by its column, or the speed, at an angle from the x axis or from the radius.
 LAUNCHED, LAUNCHED_FROM_RADIUS = 6, 7
+
+# Largest reported number of crossings, that of 16 bits.
+_MOST_CROSSINGS = 65535.0
 
 
 @subroutine
@@ -136,3 +140,54 @@ def interpolate_window(energies, windows, energy, window):
     for edge in range(4):
         window[edge] = windows[below, edge] + share * (windows[above, edge] - windows[below, edge])
     return True
+
+
+@kernel
+def place_pixels(window, columns, rows, part_rows, part_columns, energy_axis, points, energy_rows):
+    """Set `points` (2, n) to the centres of the pixels in some rows (m,) of a picture and in its first columns, row by row.
+
+    window (4,): lowest and highest abscissa and ordinate; columns, rows: size of the whole picture; energy_axis: 0, 1, or −1 for
+    none. energy_rows (n,) is set to the position of each pixel along the axis of the energy; 0 without such an axis.
+    """
+    for place in range(part_rows.shape[0]):
+        ordinate = interval_centre(window[2], window[3], part_rows[place], rows)
+        for column in range(part_columns):
+            pixel = place * part_columns + column
+            points[0, pixel] = interval_centre(window[0], window[1], column, columns)
+            points[1, pixel] = ordinate
+            energy_rows[pixel] = column if energy_axis == 0 else place if energy_axis == 1 else 0
+
+
+@kernel
+def select_starts(states, outside, rows, fate, kept, kept_states, kept_rows):
+    """Select the starts that exist and lie inside all exits, return their number, and set the `fate` (n,) of the other starts.
+
+    states (4, n): NaN where forbidden; outside (n,): number of an exit, 0 for none; rows (n,): rows of the exits at the energies.
+    The kernel sets kept (n,), the numbers of the selected starts, kept_states (n, 4) and kept_rows (n,).
+    """
+    count = 0
+    for i in range(outside.shape[0]):
+        if not (np.isfinite(states[2, i]) and np.isfinite(states[3, i])):
+            fate[i] = FORBIDDEN
+        elif outside[i] > 0:
+            fate[i] = OUTSIDE
+        else:
+            kept[count] = i
+            kept_rows[count] = rows[i]
+            for row in range(4):
+                kept_states[count, row] = states[row, i]
+            count += 1
+    return count
+
+
+@kernel
+def report_ends(orbits, kept, fate, time, crossings):
+    """Set `fate`, `time` of the escape, NaN if there is none, and `crossings` (n,) for the orbits numbered `kept`.
+
+    Orbits that are inside at the horizon are undecided. For `orbits` see `engine.integrator.kernels.propagate.Orbits`.
+    """
+    for k in range(orbits.t.shape[0]):
+        pixel, code = kept[k], orbits.fate[k]
+        fate[pixel] = NOT_COMPUTED if code == BOUNDED else code
+        time[pixel] = orbits.t[k] if code > 0 else np.nan
+        crossings[pixel] = min(float(orbits.crossings[k] + orbits.last_crossings[k]), _MOST_CROSSINGS)

@@ -15,7 +15,7 @@ from itertools import chain, islice
 from operator import add
 from typing import NamedTuple
 
-from engine.expressions.calculus import derivative
+from engine.expressions.calculus import curvatures, slopes
 from engine.expressions.graph import Graph, Node, make_graph
 from engine.expressions.nodes import Expression
 from engine.integrator.source.elementary import FUNCTIONS, power_of
@@ -113,20 +113,16 @@ class ExpressionStructure(NamedTuple):
 
 def structure_of_expression(expression: Expression, setting: Setting) -> ExpressionStructure:
     """Return the structure of a potential that is an expression."""
-    zero = tuple(not _second(expression, axes).key[1] for axes in _HESSIAN)
+    zero = tuple(not curvature.key[1] for curvature in curvatures(expression))
     return ExpressionStructure(setting, zero=zero, **{name: graph for name, (graph, _) in _graphs(expression).items()})
 
 
-def _second(expression: Expression, axes: tuple[int, int]) -> Expression:
-    return derivative(derivative(expression, axes[0]), axes[1])
-
-
 def _graphs(expression: Expression) -> dict[str, tuple[Graph, tuple[float, ...]]]:
-    gradient = tuple(derivative(expression, axis) for axis in (0, 1))
+    gradient = slopes(expression)
     return {
         "value": make_graph((expression,)),
         "motion": make_graph(gradient),
-        "variations": make_graph((*gradient, *(_second(expression, axes) for axes in _HESSIAN))),
+        "variations": make_graph((*gradient, *curvatures(expression))),
         "slopes": make_graph((expression, *gradient)),
     }
 

@@ -27,7 +27,6 @@ from engine.integrator.source.series import (
     LONGEST_STEP,
     NO_REMAINDERS,
     ORDER,
-    REACH,
     Hessian,
     PointFunctions,
     Series,
@@ -41,6 +40,9 @@ from engine.integrator.source.straight_line import StraightLine, Value
 
 # Number of cached plans, two for each structure.
 _PLANS = 64
+
+# Radius of a circle that contains all steps of orbits inside the exits of a well of size 1.
+_REACH = 3.0
 
 # If the norm of the last coefficients is above this, the step would be too short to change t.
 _LARGEST_NORM = 1e90
@@ -202,15 +204,15 @@ def _recurrence(
     return series
 
 
-def structure_of_polynomial(terms: Terms, setting: Setting, reach: float = REACH) -> PolynomialStructure:
+def structure_of_polynomial(terms: Terms, setting: Setting) -> PolynomialStructure:
     """Return the structure of a potential that is a polynomial."""
     polynomial = _sort_terms(terms)
     differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
-    can_hide = setting.rotates or crossings_can_hide(polynomial, reach)
+    can_hide = setting.rotates or _crossings_can_hide(polynomial)
     return PolynomialStructure(tuple(polynomial), setting, can_hide, *differences)
 
 
-def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
+def _crossings_can_hide(terms: Polynomial) -> bool:
     """Return whether, without rotation, the signs of y at the ends of a step can miss two crossings of y = 0 in the step.
 
     If V is even in y, ÿ = −g(x, y) y. With g below (π/h)², two zeros of y are further than h apart, by Sturm's comparison with
@@ -219,7 +221,7 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
     force = derivative(terms, 1)
     if any(j % 2 == 0 for _, j in force):
         return True
-    bound = sum(abs(c) * reach ** (i + j - 1) for (i, j), c in force.items() if c > 0 or i % 2 == 1)
+    bound = sum(abs(c) * _REACH ** (i + j - 1) for (i, j), c in force.items() if c > 0 or i % 2 == 1)
     return bound >= (math.pi / LONGEST_STEP) ** 2
 
 

@@ -16,8 +16,8 @@ For each potential there are four functions with a loop over lanes `i`, and one 
 ``potential_value``  V at one point; for expressions, ``potential_slopes`` also gives V and its gradient.
 
 The code depends only on the structure of V: the graph of an expression, or the exponents of a polynomial and a few facts about
-its coefficients that save work (`find_difference`, `crossings_can_hide`). The numbers are passed at run time in a table, the
-first argument of every function, so that potentials of the same structure share compiled code.
+its coefficients that save work (`find_difference`, `PolynomialStructure.can_hide`). The numbers are passed at run time in a
+table, the first argument of every function, so that potentials of the same structure share compiled code.
 """
 
 from __future__ import annotations
@@ -38,7 +38,6 @@ from engine.integrator.source.polynomial_recurrence import Terms, structure_of_p
 from engine.integrator.source.series import (
     LONGEST_STEP,
     ORDER,
-    REACH,
     ROTATION,
     Series,
     Setting,
@@ -267,51 +266,24 @@ def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     return lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
 
 
-def generate_code(
-    definition: Definition,
-    channels: int,
-    reach: float = REACH,
-    *,
-    sides: tuple[int, ...] = (),
-    rotates: bool = False,
-) -> GeneratedCode:
-    """Return the generated functions for a potential, the same object for all potentials of the same structure.
-
-    Parameters
-    ----------
-    definition
-        ((i, j, c), …) of V = Σ c x^i y^j, in any order, or an expression.
-    channels
-        Number of lines that ``step`` tests, 0 or more.
-    reach
-        Radius about the origin, above 0, that contains all orbits.
-    sides
-        Sides of the circles that ``step`` tests, see `Setting`.
-    rotates
-        Whether the frame rotates.
-    """
-    return generate(find_structure(definition, Setting(channels, sides, rotates), reach))
+def generate_code(definition: Definition, setting: Setting) -> GeneratedCode:
+    """Return the generated functions for a potential, the same object for all potentials of the same structure."""
+    return generate(find_structure(definition, setting))
 
 
 def code_digest(definition: Definition, setting: Setting) -> str:
     """Return `GeneratedCode.digest` of a potential without keeping the code, which takes megabytes."""
-    return _write_code(find_structure(definition, setting, REACH)).digest
+    return _write_code(find_structure(definition, setting)).digest
 
 
 @functools.singledispatch
-def find_structure(definition: Any, setting: Setting, reach: float) -> Structure:
+def find_structure(definition: Any, setting: Setting) -> Structure:
     """Return the structure of a potential, on which its generated functions depend."""
     raise TypeError(f"definition={definition!r}: must be terms or an expression")
 
 
-@find_structure.register(tuple)
-def _of_polynomial(terms: Terms, setting: Setting, reach: float) -> Structure:
-    return structure_of_polynomial(terms, setting, reach)
-
-
-@find_structure.register(Expression)
-def _of_expression(expression: Expression, setting: Setting, _reach: float) -> Structure:
-    return structure_of_expression(expression, setting)
+find_structure.register(tuple, structure_of_polynomial)
+find_structure.register(Expression, structure_of_expression)
 
 
 @functools.lru_cache(maxsize=_STRUCTURES)

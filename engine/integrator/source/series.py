@@ -16,9 +16,6 @@ ORDER = 19
 LONGEST_STEP = 1.0
 """Upper limit of a step in units of the well, for motion near rest or nearly linear in time; well within the convergence."""
 
-REACH = 3.0
-"""Radius of a disc that contains all steps of orbits inside the exits of a well of size 1."""
-
 ROTATION = "rotation"
 """The entry of the table with 2Ω."""
 

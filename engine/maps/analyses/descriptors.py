@@ -16,10 +16,9 @@ from engine.foundations.execution import DEFAULT_EXECUTION, Execution, shows_pro
 from engine.foundations.validation import checked_number, checks_types
 from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import MirrorPixels, PixelAnalysis
-from engine.maps.result import EscapeMap, MapLike, as_map
+from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.spec import MapSpec
 from engine.maps.stages import OnChange, Stage
-from engine.propagation.fates import Fate
 from engine.propagation.speed_integrals import integrate_speed
 from engine.systems.potential import Potential
 
@@ -140,8 +139,7 @@ def compute_lagrangian_descriptor(
     >>> round(float(found.descriptor[10, 5]), 6)
     7.549268
     """
-    escape_map = as_map("escape_map", escape_map)
-    escape_map.check_complete("escape_map")
+    escape_map = as_complete_map("escape_map", escape_map)
     choices = checked_choices(escape_map.spec.potential, duration, power, direction)
 
     def begin(pixels: EscapeMap, _place: Place) -> _DescriptorRun:
@@ -187,8 +185,7 @@ class _DescriptorRun:
         self._given, self._duration, self._power, self._direction = escape_map.spec, duration, power, direction
         self._map, self._specs = escape_map.in_well_units(), _specs(escape_map.spec, direction)
         self._mirror = MirrorPixels(self._map.spec, self._map.x, self._map.ordinate)
-        interior = np.flatnonzero((self._map.fate != Fate.FORBIDDEN) & (self._map.fate != Fate.OUTSIDE))
-        self._pixels = self._mirror.firsts_of(interior)
+        self._pixels = self._mirror.firsts_of(np.flatnonzero(self._map.interior))
         self._values = np.full(self._map.fate.shape, np.nan)
         self._done = 0
 

@@ -15,7 +15,7 @@ from engine.foundations.validation import checks_types
 from engine.foundations.wording import format_share
 from engine.maps.parameter_map import analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
-from engine.maps.result import EscapeMap, MapLike, as_map
+from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.stages import OnChange, Stage
 from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
 from engine.propagation.evidence import Evidence
@@ -109,8 +109,7 @@ def compute_regularity(
     >>> round(compute_regularity(escapes).chaotic_share, 2)
     0.23
     """
-    escape_map = as_map("escape_map", escape_map)
-    escape_map.check_complete("escape_map")
+    escape_map = as_complete_map("escape_map", escape_map)
     escape_map.spec.potential.check_without_gaps("regular and chaotic orbits of a map")
     return analyse_map(escape_map, lambda pixels, _place: _RegularityClassification(pixels), RegularityMap, on_frame, execution)
 

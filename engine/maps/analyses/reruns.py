@@ -49,7 +49,7 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     For each direction, x and ordinate of the shifted points, (n,) each.
     """
     window, (columns, rows) = spec.find_window(), spec.resolution
-    sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
+    sides = window.width / columns, window.height / rows
     is_free = spec.plane.free_axes
     points = x, ordinate
     axes = zip(points, sides, is_free, strict=True)

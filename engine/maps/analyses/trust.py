@@ -20,7 +20,7 @@ from engine.integrator.kernels.dense_output import advance_states
 from engine.maps.analyses.reruns import SHIFT, SHIFTED_STARTS, Perturbation, Rerun
 from engine.maps.parameter_map import Place, analyse_map
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
-from engine.maps.result import EscapeMap, MapLike, as_map
+from engine.maps.result import EscapeMap, MapLike, as_complete_map
 from engine.maps.run import FIRST_TEST_TIME, looks_for_tori, rising_horizons
 from engine.maps.stages import OnChange, Stage
 from engine.propagation.batch import OrbitBatch, propagate_batch
@@ -143,8 +143,7 @@ def compute_trust(
     >>> round(trust.tested_share, 2), round(trust.doubtful_share, 2)
     (0.54, 0.03)
     """
-    escape_map = as_map("escape_map", escape_map)
-    escape_map.check_complete("escape_map")
+    escape_map = as_complete_map("escape_map", escape_map)
     unlike = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
 
     def begin_test(pixels: EscapeMap, place: Place) -> TrustTest:

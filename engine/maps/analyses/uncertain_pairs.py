@@ -135,7 +135,7 @@ def _separations(spec: MapSpec, count: int) -> np.ndarray:
     """Return `count` separations ε in units of the well, decreasing from the side of a pixel."""
     given_window, spec = spec.find_window(), spec.in_well_units()
     window, (columns, rows) = spec.find_window(), spec.resolution
-    sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
+    sides = window.width / columns, window.height / rows
     pixel = min(side for side, free in zip(sides, spec.plane.free_axes, strict=True) if free)
     smallest = max(min(MIN_SEPARATION, pixel * 10.0**-_DECADES_BELOW_PIXEL), _MIN_ZOOM_SEPARATION)
     if pixel < 100.0 * smallest:
@@ -254,7 +254,7 @@ class _PairSampler:
     def _draw_points(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
         """Return x and ordinate of all first, then all second starts, (2, 2 size), and the energy rows of the pairs, (size,)."""
         window, random, axis = self.spec.find_window(), self.random[index], self.spec.plane.energy_axis
-        edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
+        edges = window.ranges
         rows = np.zeros(size, np.int64)
         if axis is None:
             points = np.array([random.uniform(*interval, size) for interval in edges])

@@ -14,13 +14,10 @@ from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from typing import Any
 
-from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly
+from flint import arb, ctx, fmpq, fmpq_mpoly, fmpq_poly
 
-from engine.expressions.polynomials import ExactTerms
+from engine.expressions.exact_polynomials import RING
 from engine.systems.forms.form import UndecidedError
-
-RING = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
-"""The context of polynomials in x and y with rational coefficients."""
 
 # Arbitrary factors k, tried in turn. Two common roots have the same s only if the line through them has the slope −1/k.
 _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
@@ -37,11 +34,6 @@ class CommonRoot:
     x: arb
     y: arb
     multiplicity: int
-
-
-def exact_polynomial(terms: ExactTerms) -> fmpq_mpoly:
-    """Return Σ c x^i y^j as a polynomial of FLINT."""
-    return RING.from_dict({powers: fmpq(c.numerator, c.denominator) for powers, c in terms.items()})
 
 
 def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:

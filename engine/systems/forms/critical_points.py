@@ -15,8 +15,9 @@ from fractions import Fraction
 import numpy as np
 from flint import arb, ctx, fmpq, fmpq_mpoly
 
+from engine.expressions.exact_polynomials import RING, exact_polynomial
 from engine.expressions.polynomials import Terms
-from engine.systems.forms.common_roots import RING, CommonRoot, exact_polynomial, find_common_roots
+from engine.systems.forms.common_roots import CommonRoot, find_common_roots
 from engine.systems.forms.form import NotIsolatedError
 
 # Largest denominator of the fractions that are recognised, such as 1/3.

@@ -2,25 +2,18 @@
 
 Two lines of steepest descent start at a saddle, one on each side along the unstable direction. If one line ends at the origin and
 the other line ends elsewhere, at another minimum or at infinity, the saddle is an exit of the well. Two lines of steepest ascent
-run along the walls of the channel. If a line ends at a maximum, the channel has no wall there above the energy of the maximum.
+run along the walls of the channel. If a line ends at a maximum, the channel has no wall there above the energy of the maximum. A
+line that reaches a curve where V is infinite, such as x = 3 for V = 1/(x − 3), ends there.
 """
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from engine.systems.forms.form import NO_POINTS, DescentError, Velocity
-
-Downhill = Callable[[float, float], Velocity]
-"""The flow along −sign ∇V as a function of a length and of the sign, see `Form.downhill`."""
-
-Hessian = Callable[..., tuple[np.ndarray, ...]]
-"""(V_xx, V_xy, V_yy) as a function of x and y."""
-
+from engine.systems.forms.form import NO_POINTS, DescentError, Form, Velocity
 
 # Distance from the saddle at which a descent starts, in units of the distance to the nearest other critical point.
 _START_DISTANCE = 1e-3
@@ -28,6 +21,10 @@ _START_DISTANCE = 1e-3
 _END_DISTANCE = 1e-4
 # Distance from the origin at which a descent counts as infinite, in units of the distance of the outermost critical point.
 _FAR = 10.0
+
+# Rise of V in a step of a descent above which the step has passed a curve where V is infinite, in units of the largest magnitude
+# of V at a critical point.
+_RISE = 1e-6
 
 # Length of a step below which a descent counts as at rest, in units of the distance of the nearest critical point.
 _AT_REST = 1e-13
@@ -43,17 +40,13 @@ _MOST_STEPS = 20_000
 _MOST_STEPS_ALONG_LINE = 5_000
 
 
-def leads_out_of_well(
-    downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, poles: np.ndarray = NO_POINTS
-) -> np.ndarray:
+def leads_out_of_well(form: Form, points: np.ndarray, indices: np.ndarray, poles: np.ndarray = NO_POINTS) -> np.ndarray:
     """Return whether each critical point is a saddle that leads out of the well or pole at the origin, of shape (n,).
 
     Parameters
     ----------
-    downhill
-        The flow along −sign ∇V as a function of a length and of the sign, see `Form.downhill`.
-    hessian
-        (V_xx, V_xy, V_yy) as a function of x and y.
+    form
+        The function V.
     points
         All critical points, of shape (n, 2). A point at the origin is exactly (0, 0). If the origin is neither a minimum nor a
         pole, no point leads out.
@@ -63,30 +56,26 @@ def leads_out_of_well(
         Points where V is not defined and lines of steepest descent can end, of shape (m, 2).
     """
     flags = np.zeros(len(points), bool)
-    sinks = np.concatenate([points[(indices > 0) & (hessian(*points.T)[0] > 0.0)], poles])
+    sinks = np.concatenate([points[(indices > 0) & (form.hessian(*points.T)[0] > 0.0)], poles])
     all_points = np.concatenate([points, poles])
     is_saddle = np.concatenate([indices < 0, np.zeros(len(poles), bool)])
     if not np.any(np.hypot(*sinks.T) == 0.0) or len(all_points) < 2:
         return flags
     origin = int(np.flatnonzero(np.hypot(*all_points.T) == 0.0)[0])
-    descent = _Descent(downhill, 1.0, hessian, all_points, is_saddle)
+    descent = _Descent(form, 1.0, all_points, is_saddle)
     for k in np.flatnonzero(is_saddle):
         ends, ends_on_other_side = (descent.find_ends(int(k), side) for side in (1.0, -1.0))
         flags[k] = (origin in ends) != (origin in ends_on_other_side)
     return flags
 
 
-def find_maxima_beside(
-    downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, saddles: np.ndarray
-) -> np.ndarray:
+def find_maxima_beside(form: Form, points: np.ndarray, indices: np.ndarray, saddles: np.ndarray) -> np.ndarray:
     """Return whether a line of steepest ascent from each saddle ends at each critical point, of shape (m, n).
 
     Parameters
     ----------
-    downhill
-        The flow along −sign ∇V as a function of a length and of the sign, see `Form.downhill`.
-    hessian
-        (V_xx, V_xy, V_yy) as a function of x and y.
+    form
+        The function V.
     points
         All critical points, of shape (n, 2).
     indices
@@ -95,9 +84,9 @@ def find_maxima_beside(
         Indices of saddles among the points, of shape (m,).
     """
     flags = np.zeros((len(saddles), len(points)), bool)
-    if not len(saddles) or not np.any((indices > 0) & (hessian(*points.T)[0] < 0.0)):
+    if not len(saddles) or not np.any((indices > 0) & (form.hessian(*points.T)[0] < 0.0)):
         return flags
-    ascent = _Descent(downhill, -1.0, lambda x, y: tuple(-entry for entry in hessian(x, y)), points, indices < 0)
+    ascent = _Descent(form, -1.0, points, indices < 0)
     for row, saddle in zip(flags, saddles, strict=True):
         ends = ascent.find_ends(int(saddle), 1.0) | ascent.find_ends(int(saddle), -1.0)
         row[[end for end in ends if end >= 0]] = True
@@ -105,17 +94,19 @@ def find_maxima_beside(
 
 
 class _Descent:
-    """Lines of steepest descent of one potential from its saddles."""
+    """Lines of steepest descent of sign V from its saddles."""
 
-    def __init__(self, downhill: Downhill, sign: float, hessian: Hessian, points: np.ndarray, is_saddle: np.ndarray) -> None:
-        self.points, self.is_saddle = points, is_saddle
+    def __init__(self, form: Form, sign: float, points: np.ndarray, is_saddle: np.ndarray) -> None:
+        self.form, self.sign, self.points, self.is_saddle = form, sign, points, is_saddle
         distance = np.hypot(*points.T)
         self.length = float(distance[distance > 0.0].min())
-        self.flow = downhill(self.length, sign)
+        self.flow = form.downhill(self.length, sign)
         self.far = _FAR * float(distance.max())
-        entries = np.array([np.broadcast_to(e, len(points)) for e in hessian(*points.T)])
+        entries = np.array([np.broadcast_to(sign * entry, len(points)) for entry in form.hessian(*points.T)])
         hessians = np.moveaxis(np.nan_to_num(entries), 0, -1)
         self.unstable_directions = [np.linalg.eigh([[a, b], [b, c]])[1][:, 0] for a, b, c in hessians]
+        values = np.abs(form.value(*points.T))
+        self.largest_rise = _RISE * float(values.max(where=np.isfinite(values), initial=0.0))
         self.steps_left = _MOST_STEPS
 
     def find_ends(self, saddle: int, side: float) -> set[int]:
@@ -179,9 +170,15 @@ class _Descent:
                 return int(others[np.argmin(distances)])
             step_length = float(np.hypot(*(line.y - previous_place)))
             # A line at rest elsewhere is at a critical point outside the searched region. The list does not contain this point.
-            if np.hypot(*line.y) > self.far or step_length < _AT_REST * self.length:
+            is_at_rest = step_length < _AT_REST * self.length
+            if np.hypot(*line.y) > self.far or is_at_rest or self._rises(previous_place, line.y):
                 return -1
         return None
+
+    def _rises(self, before: np.ndarray, after: np.ndarray) -> bool:
+        """Return whether a step of a descent leads to a higher value, on the other side of a curve where V is infinite."""
+        low, high = (self.sign * float(self.form.value(*place)) for place in (before, after))
+        return high - low > self.largest_rise + _RISE * abs(low)
 
     def _distances(self, place: np.ndarray) -> np.ndarray:
         distances: np.ndarray = np.hypot(*(self.points - place).T)

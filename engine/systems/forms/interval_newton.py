@@ -17,7 +17,7 @@ Program = tuple[Graph, tuple[float, ...]]
 """A graph and its numbers."""
 
 # Factor by which the box of a proof is larger than the searched box, because a point may be on the edge of the searched box.
-_ENLARGED = 1.3
+_ENLARGEMENT = 1.3
 # Margin for the rounding errors of Krawczyk's operator, as a share of the box.
 _MARGIN = 1e-9
 # Number of steps of Newton's method that refine a point after the proof.
@@ -115,7 +115,7 @@ def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[n
     Jacobian matrix on the box, and Y is the inverse of the Jacobian matrix at c. All critical points of the box are in K. If K is
     inside the box, the box has exactly one critical point.
     """
-    jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGED * half))
+    jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGEMENT * half))
     slopes = enclose(*derivatives.slopes, *box(centres, 0.0))
     with np.errstate(all="ignore"):
         middle, spread = (each.reshape(-1, 2, 2) for each in _middle_and_spread(jacobian.values))
@@ -124,10 +124,10 @@ def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[n
         step = -np.einsum("nij,nj->ni", inverse, slope)
         # Bounds of |I − Y J|, and half the sides of K.
         deviation = np.abs(np.eye(2) - inverse @ middle) + np.abs(inverse) @ spread
-        reach = _ENLARGED * half * deviation.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
+        reach = _ENLARGEMENT * half * deviation.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
         reach = reach * (1.0 + _MARGIN) + _MARGIN * half
         is_known = jacobian.defined & slopes.defined & np.isfinite(step + reach).all(axis=1)
-        has_one = is_known & (np.abs(step) + reach < _ENLARGED * half).all(axis=1)
+        has_one = is_known & (np.abs(step) + reach < _ENLARGEMENT * half).all(axis=1)
         is_empty = is_known & (np.abs(step) - reach > half).any(axis=1)
     return refined(derivatives, (centres + step)[has_one]), has_one | is_empty
 

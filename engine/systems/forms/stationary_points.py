@@ -35,7 +35,7 @@ _NEWTON_STEPS = 60
 # Second derivatives up to this magnitude are near the subnormal numbers.
 _SUBNORMAL = 1e-290
 # Length of a step of Newton's method below which it has converged, relative to the distance from the origin.
-_CONVERGED = 1e-12
+_TOLERANCE = 1e-12
 # Distance below which points are the same, relative to their distance from the origin plus the distance of the nearest point.
 _SAME = 1e-8
 # The same distance for degenerate points, whose places are less accurate.
@@ -175,7 +175,7 @@ def _newton(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
     for _ in range(_NEWTON_STEPS):
         step = newton_step(derivatives, points)
         length = np.hypot(*step.T)
-        has_converged = length <= _CONVERGED * np.maximum(np.hypot(*points.T), _ZERO)
+        has_converged = length <= _TOLERANCE * np.maximum(np.hypot(*points.T), _ZERO)
         points = points - step
         roots.append(points[has_converged])
         points = points[~has_converged & np.isfinite(length)]

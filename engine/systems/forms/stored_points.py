@@ -5,16 +5,13 @@ from __future__ import annotations
 import functools
 import hashlib
 import io
-import logging
 from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 
-from engine.foundations.cache_files import SUFFIX, cache_folder, read_cached, write_cached
-
-log = logging.getLogger(__name__)
+from engine.foundations.cache_files import SUFFIX, cache_folder, read_or_make
 
 
 def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np.ndarray:
@@ -31,18 +28,14 @@ def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np
     """
     key = repr((form, _versions()))
     path = cache_folder() / f"{kind}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
-    try:
-        content = read_cached(path)
-        if content is not None:
-            stored: np.ndarray = np.load(io.BytesIO(content), allow_pickle=False)
-            return stored
-    except (OSError, ValueError) as error:
-        log.warning("invalid points %s: %s; finding them again", path, error)
-    points = find()
+    stored: np.ndarray = np.load(io.BytesIO(read_or_make(path, "points", lambda: _to_bytes(find()))), allow_pickle=False)
+    return stored
+
+
+def _to_bytes(points: np.ndarray) -> bytes:
     buffer = io.BytesIO()
     np.save(buffer, points, allow_pickle=False)
-    write_cached(path, buffer.getvalue())
-    return points
+    return buffer.getvalue()
 
 
 @functools.cache

@@ -24,8 +24,9 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
+from engine.expressions.exact_polynomials import RING, TooLargeError, exact_constant, exact_terms
 from engine.expressions.nodes import Expression
-from engine.expressions.polynomials import ExactTerms, TooLargeError
+from engine.expressions.polynomials import Powers
 from engine.expressions.text import monomial
 from engine.foundations.validation import checked_number, checks_types
 from engine.systems.forms.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
@@ -130,13 +131,14 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     if len(text) > LONGEST_TEXT:
         raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")
     values, clauses = _exact_values(text, parameters or {}), split_clauses(text)
-    expanded = _Parser(clauses.formula, values).parse()
-    if isinstance(expanded, Expression):
-        potential = Potential(name or "", expanded)
+    value = _Parser(clauses.formula, values).parse()
+    if isinstance(value, Expression):
+        potential = Potential(name or "", value)
         # Check the size of the derivatives, which all further steps need.
         if (problem := potential.form.limits_refusal()) is not None:
             raise FormulaError(0, problem)
     else:
+        expanded = exact_terms(value)
         _check_expanded(expanded)
         terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree))
         potential = Potential(name or "", terms)
@@ -191,7 +193,7 @@ def _exact_values(text: str, parameters: Mapping[str, float]) -> dict[str, Fract
     return {name: Fraction(repr(checked_letter_value(name, value))) for name, value in parameters.items()}
 
 
-def _check_expanded(expanded: ExactTerms) -> None:
+def _check_expanded(expanded: Mapping[Powers, Fraction]) -> None:
     if not any(i + j for i, j in expanded):
         raise FormulaError(0, "the expanded formula has neither x nor y; a potential must depend on at least one of them")
     if len(expanded) > MOST_TERMS:
@@ -297,7 +299,7 @@ class _Parser:
         if token.kind not in (*_NUMBER_KINDS, "letter", "open", "superscript"):
             raise FormulaError(token.position, f"an exponent must be a number from {-LARGEST_EXPONENT} to {LARGEST_EXPONENT}")
         if token.kind == "superscript":
-            value: FormulaValue = {(0, 0): Fraction(self._next_token().text.translate(FROM_SUPERSCRIPT))}
+            value: FormulaValue = exact_constant(Fraction(self._next_token().text.translate(FROM_SUPERSCRIPT)))
         else:
             value = self._parse_base()
         exponent = constant_of(value)
@@ -314,12 +316,11 @@ class _Parser:
             return self._parse_brackets(token)
         if token.kind in ("function", "root"):
             return self._parse_function(token)
-        one = Fraction(1)
         if token.kind != "name":
-            value = self.values.get(token.text, one) if token.kind == "letter" else read_number(token)
-            return {(0, 0): value} if value else {}
+            return exact_constant(self.values.get(token.text, Fraction(1)) if token.kind == "letter" else read_number(token))
+        x, y = RING.gens()
         # The value of r is r², see `_parse_power`.
-        return {"x": {(1, 0): one}, "y": {(0, 1): one}, "r": {(2, 0): one, (0, 2): one}}[token.text]
+        return {"x": x, "y": y, "r": x * x + y * y}[token.text]
 
     def _parse_function(self, token: Token) -> FormulaValue:
         """Parse the argument of a function, in brackets, or of √, which can be any base."""

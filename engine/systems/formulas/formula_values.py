@@ -9,8 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 
-from flint import fmpq
+from flint import fmpq_mpoly
 
+from engine.expressions.exact_polynomials import (
+    exact_constant,
+    exact_polynomial,
+    exact_terms,
+    limited,
+    limited_power,
+    limited_product,
+)
 from engine.expressions.nodes import (
     FUNCTIONS,
     Expression,
@@ -23,10 +31,8 @@ from engine.expressions.nodes import (
     number,
     power,
 )
-from engine.expressions.polynomials import ExactTerms, exact_negative, exact_power, exact_product, exact_sum
-from engine.systems.forms.common_roots import exact_polynomial
 
-FormulaValue = ExactTerms | Expression
+FormulaValue = fmpq_mpoly | Expression
 
 LARGEST_EXPONENT = 12
 """Largest magnitude of an exponent."""
@@ -36,54 +42,49 @@ def add(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     """Return the sum of two values."""
     if isinstance(one, Expression) or isinstance(other, Expression):
         return _simplify(linear_combination([(1.0, _as_expression(one)), (1.0, _as_expression(other))]))
-    return exact_sum(one, other)
+    return limited(one + other)
 
 
 def negate(value: FormulaValue) -> FormulaValue:
     """Return −value."""
-    return linear_combination([(-1.0, value)]) if isinstance(value, Expression) else exact_negative(value)
+    return linear_combination([(-1.0, value)]) if isinstance(value, Expression) else -value
 
 
 def times(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     """Return the product of two values."""
     if isinstance(one, Expression) or isinstance(other, Expression):
         return _simplify(multiply(_as_expression(one), _as_expression(other)))
-    return exact_product(one, other)
+    return limited_product(one, other)
 
 
 def divide(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     """Return one / other; ZeroDivisionError if the divisor is 0."""
     divisor = constant_of(other)
-    if divisor is not None and not isinstance(other, Expression):
-        return times(one, {(0, 0): 1 / divisor})
+    if divisor is not None:
+        return times(one, exact_constant(1 / divisor))
     return times(one, raise_to(other, Fraction(-1)))
 
 
 def raise_to(base: FormulaValue, exponent: Fraction) -> FormulaValue:
     """Return a power; ArithmeticError or ValueError for a number that is not finite and real."""
     if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
-        return exact_power(base, int(exponent))
+        return limited_power(base, int(exponent))
     if exponent.denominator == 1 and base and not isinstance(base, Expression):
         return _simplify(_power_of_factors(base, int(exponent)))
     return _simplify(power(_as_expression(base), float(exponent)))
 
 
-def _power_of_factors(base: ExactTerms, exponent: int) -> Expression:
+def _power_of_factors(base: fmpq_mpoly, exponent: int) -> Expression:
     """Return a power of a polynomial. Repeated factors get powers of their own: 1/(x² + 2x + 1) is (x + 1)^−2."""
-    constant, factors = exact_polynomial(base).factor_squarefree()
+    constant, factors = base.factor_squarefree()
     if all(multiplicity == 1 for _, multiplicity in factors):
         return power(_as_expression(base), float(exponent))
     factor_powers = []
     for factor, multiplicity in factors:
         leading = factor.leading_coefficient()
         constant *= leading**multiplicity
-        terms = {(i, j): _fraction(c / leading) for (i, j), c in factor.to_dict().items()}
-        factor_powers.append(power(_as_expression(terms), float(multiplicity * exponent)))
-    return multiply(number(float(_fraction(constant) ** exponent)), *factor_powers)
-
-
-def _fraction(value: fmpq) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
+        factor_powers.append(power(_as_expression(factor * (1 / leading)), float(multiplicity * exponent)))
+    return multiply(number(float(Fraction(int(constant.p), int(constant.q)) ** exponent)), *factor_powers)
 
 
 def apply_named(name: str, argument: FormulaValue) -> FormulaValue:
@@ -93,24 +94,24 @@ def apply_named(name: str, argument: FormulaValue) -> FormulaValue:
 
 def constant_of(value: FormulaValue) -> Fraction | None:
     """Return the number that a value is; None for a value with x or y."""
-    if isinstance(value, Expression):
+    if isinstance(value, Expression) or not value.is_constant():
         return None
-    return value.get((0, 0), Fraction(0)) if set(value) <= {(0, 0)} else None
+    return exact_terms(value).get((0, 0), Fraction(0))
 
 
 def _as_expression(value: FormulaValue) -> Expression:
     if isinstance(value, Expression):
         return value
-    return from_terms({powers: float(c) for powers, c in value.items()})
+    return from_terms({powers: float(c) for powers, c in exact_terms(value).items()})
 
 
 def _simplify(value: Expression) -> FormulaValue:
     """Convert a number or a polynomial to exact coefficients; keep other expressions."""
     constant = as_number(value)
     if constant is not None:
-        return {(0, 0): Fraction(constant)} if constant else {}
+        return exact_constant(Fraction(constant))
     terms = as_terms(value)
-    return value if terms is None else {powers: Fraction(c) for powers, c in terms.items()}
+    return value if terms is None else exact_polynomial({powers: Fraction(c) for powers, c in terms.items()})
 
 
 NAMES: dict[str, Callable[[FormulaValue], FormulaValue]] = {

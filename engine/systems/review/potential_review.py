@@ -25,7 +25,7 @@ from engine.systems.well import EQUAL_ENERGY_TOLERANCE
 # Number of cached reviews.
 _CACHE_SIZE = 256
 # Remark on moved axes.
-_MOVED = "x and y count from the well at ({:.6g}, {:.6g}) of the formula."
+_SHIFT_REMARK = "x and y count from the well at ({:.6g}, {:.6g}) of the formula."
 
 
 @dataclass(frozen=True, repr=False)
@@ -157,7 +157,7 @@ def review_potential(potential: Potential) -> PotentialReview:
 
 
 def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
-    remarks = [_MOVED.format(*potential.origin)] if any(potential.origin) else []
+    remarks = [_SHIFT_REMARK.format(*potential.origin)] if any(potential.origin) else []
     if potential.escape_radius is not None:
         return tuple(remarks)
     energies = potential.well.saddle_energies

@@ -81,14 +81,11 @@ def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]
     return None
 
 
-def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
+def _exits_refusal(potential: Potential, _points: tuple[CriticalPoint, ...]) -> str | None:
     if not potential.channels:
         return _no_exit_refusal(potential)
     if potential.channels > MOST_CHANNELS:
         return f"V has {potential.channels} channels; at most {MOST_CHANNELS} are allowed."
-    at_origin = point_at_origin(points)
-    if at_origin is not None and potential.escape_energy <= at_origin.energy:
-        return "The line from a saddle down to the well crosses a curve where V is infinite, so the exits are not known."
     if is_open_below(potential, potential.escape_energy, potential.critical_points):
         return "The well is open below its lowest saddle, so orbits can escape without crossing an exit."
     return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
@@ -17,10 +17,12 @@ from app.browser.inputs.energy_slider import EnergySlider
 from app.browser.inputs.formula_box import LONGEST_TYPED, FormulaBox
 from app.browser.inputs.number_box import NumberBox
 from app.browser.inputs.parameter_slider import ParameterSlider
+from app.job_clients.shown_results import ShownResults
 from app.state.presets import PRESETS
 from app.state.view_state import ViewState
-from app.views.panels.browser_events import BrowserActions, BrowserEvents
+from app.views.panels.browser_events import KEYS, BrowserEvents
 from app.views.panels.gallery import Gallery
+from engine.jobs.manager import Jobs
 from tests.app.browser_messages import send
 
 Report = Callable[..., None]
@@ -38,17 +40,22 @@ class Example:
     ignored: list[Any] = field(default_factory=list)
 
 
-def make_engine(report: Report) -> JSComponent:
-    engine = BrowserEngine(report)
-    engine.play(0.2, 0.1, 0.5)
-    return engine.layout()
+def make_engine(report: Report) -> BrowserEngine:
+    state = ViewState(energy=0.2)
+    state.param.watch(lambda event: report(event.new), "energy")
+    engine = BrowserEngine(state, ShownResults(), Jobs(), lambda function: function)
+    engine.play()
+    return engine
 
 
 def make_events(report: Report) -> JSComponent:
     def named(name: str) -> Report:
         return lambda *values: report(name, *values)
 
-    return BrowserEvents(BrowserActions(*[named(each.name) for each in fields(BrowserActions)])).layout()
+    state = ViewState()
+    for name in ("dark", "touch", "narrow", "focus"):
+        state.param.watch(lambda event: report(event.name, event.new), name)
+    return BrowserEvents(state, KEYS, lambda call: call, *map(named, ("key", "navigate", "copied")))
 
 
 def make_player(report: Report) -> JSComponent:
@@ -101,7 +108,7 @@ EXAMPLES = {
     "player of orbits": Example(
         make_player,
         # JavaScript has one type of numbers: 5.0 arrives as 5.
-        [({"step": step, "begin": 5, "end": 12.5}, (step,)) for step in (0, 1, 600)],
+        [({"step": step, "begin": 5, "end": 12.5}, (time,)) for step, time in ((0, None), (240, 8.0), (600, 12.5))],
         [
             {"step": 3},
             *({"step": step, "begin": 5, "end": 12.5} for step in (3.5, -1, 601)),
@@ -123,9 +130,10 @@ EXAMPLES = {
             ({"key": "h"}, ("key", "h")),
             ({"link": "?case=II", "entry": 3, "steps": 1}, ("navigate", "?case=II", 3, 1)),
             ({"dark": True}, ("dark", True)),
-            ({"touch": True}, ("touch",)),
-            ({"narrow": True}, ("narrow",)),
+            ({"touch": True}, ("touch", True)),
+            ({"narrow": True}, ("narrow", True)),
             ({"copied": False}, ("copied", False)),
+            ({"enlarge": "times"}, ("focus", "times")),
         ],
         [{"key": "x"}, {"key": 7}, {"dark": "yes"}, {"touch": False}, {"link": 7, "entry": 1, "steps": 1}],
     ),
@@ -154,8 +162,8 @@ def test_a_refused_value_is_counted_so_that_the_browser_shows_the_previous_value
 
 
 def test_repeated_commands_differ() -> None:
-    engine, commands = BrowserEngine(lambda energy: None), []
+    engine, commands = make_engine(lambda *_: None), []
     for _ in range(2):
-        engine.play(0.2, 0.1, 0.5)
-        commands.append(engine.layout().command)
+        engine.stop()
+        commands.append(engine.command)
     assert commands[0] != commands[1]

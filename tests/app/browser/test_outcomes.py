@@ -78,6 +78,8 @@ EXAMPLES = {
     "well, backward in time": Example(ROTATING_WELL, 0.25, 1.2, is_backward=True, horizon=2.0),
     "two bodies, backward in time": Example(COPENHAGEN, -1.3, 3.0, is_backward=True),
 }
+# Systems whose kernels only these tests need.
+SLOW = ("rotating bar", "exits and a disc in a rotating frame")
 GRAZED = {
     "two bodies in a rotating frame": (COPENHAGEN.with_outcomes([Centre(-0.5, 0.0, 0.02), Centre(0.5, 0.0, 1e-3)], 10.0), -1.3),
     "case I with a small disc": (CASES["I"].with_outcomes([Centre(0.1, 0.05, 1e-3)]), 0.19),
@@ -124,7 +126,7 @@ def ends_in_library(potential: Potential, energy: float, states: np.ndarray, t_m
 
 
 @needs_node
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in EXAMPLES])
 def test_orbits_end_as_those_of_the_library(name: str, tmp_path: Path) -> None:
     example = EXAMPLES[name]
     potential, energy, states = example.potential, example.energy, random_states(example)
@@ -180,7 +182,7 @@ def test_an_orbit_that_grazes_a_disc_within_a_step_collides(name: str, tmp_path:
         ("two bodies in a rotating frame", Plane.X_Y),
         ("case I with a disc", Plane.X_PX),
         ("well in a rotating frame", Plane.X_PX),
-        ("exits and a disc in a rotating frame", Plane.X_Y),
+        pytest.param("exits and a disc in a rotating frame", Plane.X_Y, marks=pytest.mark.slow),
     ],
 )
 def test_pixels_are_those_of_the_map(name: str, plane: Plane, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
 from engine import System, integrate_orbit
+from engine.jobs.client import JobClient
 from engine.jobs.manager import Jobs
 from engine.results import Separation
 from tests.engine.jobs.inbox import wait_until_idle
@@ -60,9 +61,10 @@ def unlocked(function: Callable[..., None]) -> Callable[..., None]:
 @pytest.fixture
 def session() -> Iterator[Session]:
     state, recorder, jobs = ViewState(system=System("I"), energy=0.25, t_max=1e3), Recorder(), Jobs()
-    requests = OrbitRequests(state, jobs, recorder.show, recorder.notify, unlocked)
+    client = JobClient(jobs)
+    requests = OrbitRequests(state, client, recorder.show, recorder.notify, unlocked)
     yield state, requests, recorder, jobs
-    requests.close()
+    client.close()
 
 
 def test_a_start_gets_its_orbit(session: Session) -> None:
@@ -84,15 +86,12 @@ def test_a_forbidden_start_gets_a_message(session: Session) -> None:
     assert "Forbidden" in recorder.orbits[0].problem
 
 
-def test_the_requests_of_removed_starts_and_closed_pages_are_cancelled(session: Session) -> None:
-    state, requests, recorder, jobs = session
+def test_the_request_of_a_removed_start_is_cancelled(session: Session) -> None:
+    state, _, recorder, jobs = session
     state.param.update(system=System("III"), energy=0.25, t_max=1e6)
     state.add_start((0.0, 0.1))
     state.remove_start(0)
     assert recorder.orbits == ()
-    assert jobs.in_flight == 0
-    state.add_start((0.0, 0.1))
-    requests.close()
     assert jobs.in_flight == 0
 
 
@@ -127,16 +126,12 @@ def test_without_a_start_there_is_no_search(session: Session) -> None:
     assert recorder.messages == ["Click a start first. The nearest start that escapes elsewhere is then searched for."]
 
 
-@pytest.mark.parametrize("change", ["energy", "close"])
-def test_a_divergent_start_that_arrives_too_late_is_not_added(session: Session, change: str) -> None:
+def test_a_divergent_start_that_arrives_too_late_is_not_added(session: Session) -> None:
     state, _, recorder, jobs = session
     search = DivergentStartRequests(state, jobs, recorder.notify, unlocked)
     state.add_start((0.1, 0.05))
     search.search()
-    if change == "close":
-        search.close()
-    else:
-        state.energy = 0.3
+    state.energy = 0.3
     recorder.wait_for(lambda: recorder.all_computed(1))
     wait_until_idle(jobs)
     assert len(state.starts) == 1
@@ -200,10 +195,10 @@ def test_an_escaping_orbit_gets_no_digits(session: Session) -> None:
     assert jobs.in_flight == 0
 
 
-def test_closing_cancels_the_requests_for_digits(session: Session) -> None:
-    state, requests, recorder, jobs = session
+def test_the_request_for_the_digits_of_a_removed_start_is_cancelled(session: Session) -> None:
+    state, _, recorder, jobs = session
     state.param.update(energy=0.1, t_max=1e4)
     state.add_start((0.1, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(1))
-    requests.close()
+    state.remove_start(0)
     assert jobs.in_flight == 0

@@ -53,7 +53,7 @@ def recurse() -> None:
 @pytest.mark.parametrize("function", [compute_forever, fill_memory, recurse, signal.pause])
 def test_a_call_beyond_a_limit_is_refused_and_the_next_one_is_answered(limited: LimitedProcess, function: object) -> None:
     before = limited.stopped
-    with pytest.raises(LimitError, match="needs more than 1 s or 512 MB"):
+    with pytest.raises(LimitError, match=r"^reviewing this formula needs more than 1 s or 512 MB; "):
         limited(function)  # type: ignore[arg-type]
     assert limited.stopped == before + 1
     assert limited(partial(divmod, 7, 2)) == (3, 1)
@@ -75,6 +75,21 @@ def test_calls_share_a_process_which_is_replaced_when_it_ends(limited: LimitedPr
     with pytest.raises(LimitError):
         limited(partial(os._exit, 1))
     assert limited(os.getpid) != first
+
+
+def test_a_call_that_ends_its_process_is_followed_by_another_process_before_the_next_call(limited: LimitedProcess) -> None:
+    before = {child.pid for child in psutil.Process().children()} | {limited(os.getpid)}
+    with pytest.raises(LimitError):
+        limited(partial(os._exit, 1))
+    [begun] = {child.pid for child in psutil.Process().children()} - before
+    assert limited(os.getpid) == begun
+
+
+def test_a_process_that_cannot_begin_is_reported_as_such() -> None:
+    process = LimitedProcess(task="compiling this", start_seconds=0.0)
+    with pytest.raises(LimitError, match=r"^compiling this could not begin: "):
+        process(os.getpid)
+    process.close()
 
 
 def test_a_call_does_not_wait_for_a_call_in_another_process(tmp_path: Path) -> None:

@@ -11,14 +11,6 @@ def tick(monitor: LoadMonitor, clock: Clock, seconds: float) -> None:
     monitor.tick()
 
 
-def test_load_is_normal_without_delay() -> None:
-    clock = Clock()
-    monitor = LoadMonitor(clock.monotonic)
-    for _ in range(5):
-        tick(monitor, clock, TICK_SECONDS)
-    assert not monitor.is_high()
-
-
 def test_load_is_high_after_a_late_tick_and_decays() -> None:
     clock = Clock()
     monitor = LoadMonitor(clock.monotonic)

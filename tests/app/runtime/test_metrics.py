@@ -1,11 +1,13 @@
-"""Log records are counted, and the status page lists the metrics."""
+"""Log records are counted, gauges show the present state of the process, and the status page lists the metrics."""
 
 from __future__ import annotations
 
 import logging
 
+from app.runtime.health import StateCollector
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState
+from app.runtime.settings import Settings
 from app.server.endpoints import status_page
 
 
@@ -29,3 +31,17 @@ def test_status_page_has_one_row_per_metric_without_histogram_buckets() -> None:
     assert "<p>A &lt; B</p>" in page
     assert page.count("first frame") == 2
     assert page.count("Sessions created") == 1
+
+
+def test_gauges_show_the_current_state() -> None:
+    state = ProcessState(Settings(cache_bytes=1234))
+    state.metrics.registry.register(StateCollector(state))
+    read = state.metrics.registry.get_sample_value
+    assert read("escape_explorer_cache_limit_bytes") == 1234
+    assert read("escape_explorer_kernels_ready") == 0
+    state.capacity.cores, state.capacity.loop = 0.5, 0.3
+    assert read("escape_explorer_cores") == 0.5
+    assert read("escape_explorer_capacity_taken") == 0.3
+    assert read("escape_explorer_crowded") == 0
+    state.kernels_ready.set()
+    assert read("escape_explorer_kernels_ready") == read("escape_explorer_ready") == 1

@@ -40,13 +40,6 @@ def send_many(guard: MessageGuard, count: int, kind: str, content: Any) -> None:
             send(guard, kind, content)
 
 
-def test_messages_of_a_page_pass() -> None:
-    guard = MessageGuard()
-    send(guard, "PULL-DOC-REQ", {})
-    send(guard)
-    send(guard, "SERVER-INFO-REQ", {})
-
-
 @pytest.mark.parametrize("kind", ["PUSH-DOC", "ACK", "OK", "ERROR", "PULL-DOC-REPLY", "x"])
 def test_other_kinds_are_refused(kind: str) -> None:
     with pytest.raises(RefusedMessageError):

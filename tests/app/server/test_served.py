@@ -120,16 +120,24 @@ def test_kernels_can_be_cached_and_are_compressed_on_request(served: Served) -> 
 
 def test_scripts_are_compressed_on_request(served: Served) -> None:
     for path in ("/static/js/bokeh.min.js", "/static/extensions/panel/panel.min.js", f"/{ADDRESS}"):
-        contents = []
-        for headers in ({}, {"Accept-Encoding": "gzip"}, {"Accept-Encoding": "gzip", "Range": "bytes=0-"}):
-            request = urllib.request.Request(f"{served.running.root}{path}", headers=headers)
+        contents, tags = [], {}
+        part = {"Range": "bytes=0-"}
+        for accepted, more in (("", {}), ("br, gzip;q=0", {}), ("br, GZIP; q=0.5", {}), ("*", {}), ("gzip", part)):
+            request = urllib.request.Request(f"{served.running.root}{path}", headers={"Accept-Encoding": accepted, **more})
             with urllib.request.urlopen(request, timeout=SECONDS) as answer:
                 content = answer.read()
                 is_compressed = answer.headers["Content-Encoding"] == "gzip"
                 assert len(content) == int(answer.headers["Content-Length"])
-            assert is_compressed == (headers == {"Accept-Encoding": "gzip"})
+                assert answer.headers["Vary"] == "Accept-Encoding"
+            assert is_compressed == (accepted in {"br, GZIP; q=0.5", "*"}), accepted
             contents.append(gzip.decompress(content) if is_compressed else content)
-        assert contents[0] == contents[1] == contents[2]
+            tags.setdefault(is_compressed, set()).add(answer.headers["ETag"])
+        assert contents == [contents[0]] * len(contents)
+        # A cache that has one representation must not take it for the other.
+        assert [len(tags[is_compressed]) for is_compressed in (False, True)] == [1, 1]
+        assert tags[False] != tags[True]
+        [tag] = tags[True]
+        assert served.get(path, **{"Accept-Encoding": "gzip", "If-None-Match": tag})[0] == 304
 
 
 def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None:

@@ -49,10 +49,6 @@ def _encode(raw: bytes) -> str:
     return base64.urlsafe_b64encode(raw).decode().rstrip("=")
 
 
-def test_own_token_is_recognised(application: BokehTornado) -> None:
-    assert brings_own_token(application, socket_request(issue_token(application, request(), {})))
-
-
 def test_token_is_signed_with_the_key_of_bokeh_if_there_is_one(application: BokehTornado) -> None:
     signed = BokehTornado({"/app": Application()}, secret_key=OTHER_KEY, sign_sessions=True)
     token = issue_token(signed, request(), {})

@@ -12,7 +12,8 @@ from app.session.context import SessionContext
 from app.state.view_state import ViewState
 from app.views.components.notice import Notice
 from engine import System
-from engine.jobs.client import JobSubmitter
+from engine.jobs.client import JobClient
+from engine.jobs.manager import Jobs
 
 
 def locked_by(changed: threading.Condition) -> Locked:
@@ -31,10 +32,10 @@ def locked_by(changed: threading.Condition) -> Locked:
 
 def context_of(
     state: ViewState,
-    jobs: JobSubmitter,
+    jobs: Jobs,
     changed: threading.Condition,
     open_view: Callable[[System, dict[str, Any]], None] = lambda system, values: None,
 ) -> SessionContext:
     """Return the context that presenters share in a session with this lock, without copying on the page."""
     locked = locked_by(changed)
-    return SessionContext(state, ShownResults(), jobs, Notice(), locked, locked, lambda text: None, open_view)
+    return SessionContext(state, ShownResults(), JobClient(jobs), Notice(), locked, locked, lambda text: None, open_view)

@@ -30,7 +30,7 @@ class Session:
     def __init__(self, jobs: Jobs, **chosen: Any) -> None:
         self.changed = threading.Condition()
         self.state, self.jobs = ViewState(system=System("II"), energy=0.25, resolution=112, t_max=1e3, **chosen), jobs
-        self.maps = make_maps()
+        self.maps = make_maps(self.state)
         self.context = context_of(self.state, self.jobs, self.changed, self.open_view)
         self.presenter = AnalysisPresenter(self.context, self.maps)
 
@@ -75,7 +75,7 @@ def open_sessions() -> Iterator[list[Session]]:
     sessions: list[Session] = []
     yield sessions
     for session in sessions:
-        session.presenter.close()
+        session.context.jobs.close()
 
 
 @pytest.fixture(scope="module")

@@ -33,7 +33,8 @@ class Session:
     def __init__(self, jobs: Jobs) -> None:
         self.changed = threading.Condition()
         self.said, self.refused = [""], [""]
-        self.state, self.maps = ViewState(system=System("I"), energy=0.2, t_max=100.0), make_maps()
+        self.state = ViewState(system=System("I"), energy=0.2, t_max=100.0)
+        self.maps = make_maps(self.state)
         self.context = context_of(self.state, jobs, self.changed)
         self.presenter = ComparisonPresenter(self.context, self.maps, self.said.append, self.refused.append)
 
@@ -64,7 +65,7 @@ def jobs() -> Jobs:
 def session(jobs: Jobs) -> Iterator[Session]:
     made = Session(jobs)
     yield made
-    made.presenter.close()
+    made.context.jobs.close()
 
 
 def test_the_share_of_other_outcomes_is_that_of_two_maps(session: Session, frame: EscapeMap) -> None:
@@ -108,7 +109,7 @@ def test_potentials_along_a_parameter_of_a_typed_formula_are_found_within_limits
     session.state.compared = View(system, read_slice("x,a=0.5:1.5", "", system), 0.1)
     session.show(frame)
     session.wait_for("There is no other view to compare with: it takes too long.")
-    session.presenter.close()
+    session.context.jobs.close()
 
 
 def test_a_view_that_has_no_map_is_refused_in_a_sentence(session: Session, frame: EscapeMap) -> None:

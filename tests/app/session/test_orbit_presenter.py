@@ -22,8 +22,8 @@ from tests.waiting import SECONDS
 class RecordingMarkers(Markers):
     """Counts the section points that are shown."""
 
-    def __init__(self) -> None:
-        super().__init__()
+    def __init__(self, state: ViewState) -> None:
+        super().__init__(state)
         self.points: list[int] = []
 
     def show_sections(self, sections: Any) -> None:
@@ -36,15 +36,11 @@ class Session:
 
     def __init__(self, plane: Slice) -> None:
         self.changed = threading.Condition()
-        self.state, self.marks = ViewState(system=System("I"), energy=0.19, t_max=1e3, plane=plane), RecordingMarkers()
-        self.well = WellView()
+        self.state = ViewState(system=System("I"), energy=0.19, t_max=1e3, plane=plane)
+        self.marks, self.well = RecordingMarkers(self.state), WellView(self.state)
         self.opened: list[tuple[System, dict[str, Any]]] = []
-        self.presenter = OrbitPresenter(
-            context_of(self.state, Jobs(), self.changed, lambda system, values: self.opened.append((system, values))),
-            self.marks,
-            self.well,
-            lambda x, ordinate: None,
-        )
+        self.context = context_of(self.state, Jobs(), self.changed, lambda system, values: self.opened.append((system, values)))
+        self.presenter = OrbitPresenter(self.context, self.marks, self.well, lambda x, ordinate: None)
 
     def has_paths(self) -> bool:
         sources = [each.data_source for each in self.well.plot.renderers]
@@ -65,7 +61,7 @@ def begin() -> Iterator[Callable[[Slice], Session]]:
 
     yield begin_session
     for session in sessions:
-        session.presenter.close()
+        session.context.jobs.close()
 
 
 @pytest.mark.parametrize(("plane", "on_section"), [(Plane.X_PX, True), (Plane.X_Y, False)])

@@ -38,7 +38,8 @@ class Session:
     def __init__(self) -> None:
         self.changed = threading.Condition()
         self.state, self.history = ViewState(system=System("I"), energy=0.25, starts=((0.1, 0.1),)), History()
-        self.presenter = PotentialPresenter(context_of(self.state, Jobs(), self.changed), self.history)
+        self.context = context_of(self.state, Jobs(), self.changed)
+        self.presenter = PotentialPresenter(self.context, self.history)
         self.panel = self.presenter.panel
 
     def type(self, text: str, *, enter: bool = True) -> None:
@@ -60,7 +61,7 @@ def session() -> Iterator[Session]:
     prepare_for_maps(CASES["I"])
     made = Session()
     yield made
-    made.presenter.close()
+    made.context.jobs.close()
 
 
 def test_a_text_is_used_while_it_is_typed_unless_it_needs_another_integrator(session: Session) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import panel as pn
 import pytest
 
 from app.session.explorer import Explorer
@@ -20,26 +21,35 @@ from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
 from tests.app.session.opened_page import opened_page, run_callbacks
 
+
+def update(**values: Any) -> Callable[[Explorer], None]:
+    """Return a change of the view state as lists and tabs make it."""
+
+    def change(explorer: Explorer) -> None:
+        with pn.io.hold():
+            explorer.state.param.update(**values)
+
+    return change
+
+
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
-    lambda explorer: send(explorer.orbits.playback.player, {"step": 10, "begin": 0, "end": 10}),
+    lambda explorer: send(explorer.orbits.player, {"step": 10, "begin": 0, "end": 10}),
     lambda explorer: send(explorer.controls.exact_energy, {"value": 0.3, "count": 1, "done": True}),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
-    # As the lists do.
-    lambda explorer: explorer.state.param.update(t_max=1e3),
-    lambda explorer: explorer.state.param.update(resolution=112),
-    lambda explorer: explorer.state.param.update(palette="safe"),
+    update(t_max=1e3),
+    update(resolution=112),
+    update(palette="safe"),
     *(
         lambda explorer, name=name, on=on: explorer.controls.layers.switches[name].param.update(value=on)
         for name, layer in LAYERS.items()
         for on in ([layer.title], [])
     ),
-    # As the tabs do.
-    *(lambda explorer, analysis=analysis: explorer.state.param.update(analysis=analysis) for analysis in Analysis),
+    *(update(analysis=analysis) for analysis in Analysis),
     *(lambda explorer, drag=drag: explorer.maps.toolbar.drag.param.update(value=drag) for drag in (Drag.ZOOM, Drag.COUNT)),
     *(lambda explorer, name=name: explorer.drawers.buttons.param.update(value=[name]) for name in ("gallery", "share", "help")),
-    lambda explorer: explorer.set_dark(True),
+    update(dark=True),
 ]
 
 
@@ -48,7 +58,7 @@ def with_page(change: Callable[[Explorer], Any]) -> None:
 
     def show_orbits(explorer: Explorer) -> None:
         explorer.orbits.inspector.follow(2, 2)
-        explorer.orbits.playback.follow((0.0, 10.0))
+        explorer.orbits.player.follow((0.0, 10.0))
 
     async def run() -> None:
         async with opened_page(prepare=show_orbits) as (explorer, session):

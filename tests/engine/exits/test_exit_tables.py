@@ -13,7 +13,7 @@ from engine.exits.exit_tables import LARGEST_ERROR, tabulate_exits
 from engine.slices.portable_system import make_portable_system
 from tests.node import needs_node, run_node
 
-HIGHEST = {"I": 0.5, "II": 0.5, "III": 1.0, "C5": 1.2, "HH": 0.6}
+HIGHEST = {"I": 0.5, "II": 0.5, "III": 1.0, "C5": 1.2}
 SHARES = np.random.default_rng(2).uniform(0.0, 1.0, 12) ** 2
 POSITIONS = np.cos(np.linspace(0.0, np.pi, 2001))
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, Potential, find_lyapunov_orbits, parse_formula
-from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.integrator.kernels.events import REACH, exit_distance
+from engine.exits.exit_rows import exit_curves
+from engine.integrator.kernels.exit_geometry import REACH, exit_distance
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
 
@@ -48,24 +48,6 @@ def test_period_converges_to_that_of_the_linearized_saddle(name: str) -> None:
 @pytest.mark.parametrize("below", [0.0, 0.1])
 def test_no_orbits_at_or_below_the_escape_energy(name: str, below: float) -> None:
     assert find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] - below) == ()
-
-
-@each_energy
-def test_gates_lie_inside_every_exit(name: str, energy: float) -> None:
-    potential = CASES[name]
-    gates = exit_gates(exit_curves(potential, energy)[None])
-    for orbit, (a, b, c) in zip(find_lyapunov_orbits(potential, energy), gates, strict=True):
-        assert np.min(a * orbit.x + b * orbit.y) > c
-
-
-def test_orbits_scale_with_the_well() -> None:
-    epsilon = 1 / 64
-    # For a cubic V1, V with strength ε at (x, y) is ε⁻² times V with strength 1 at (εx, εy); scaling by powers of 2 is exact.
-    large = find_lyapunov_orbits(CASES["II"].with_parameters(epsilon=epsilon), 0.2 / epsilon**2)
-    for orbit, usual in zip(large, find_lyapunov_orbits(CASES["II"], 0.2), strict=True):
-        np.testing.assert_allclose(epsilon * orbit.x, usual.x, atol=1e-13)
-        np.testing.assert_allclose(epsilon * orbit.y, usual.y, atol=1e-13)
-        assert orbit.period == pytest.approx(usual.period, rel=1e-12)
 
 
 def test_a_maximum_that_is_not_between_exits_limits_no_energy() -> None:

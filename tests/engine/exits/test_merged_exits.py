@@ -19,28 +19,16 @@ from engine.exits.brake_orbits import BrakeOrbit
 from engine.exits.exit_rows import exit_curves
 from engine.exits.interior import find_outside_channels
 from engine.exits.merged_orbits import has_returns
-from engine.integrator.kernels.events import (
-    CURVE_COLUMNS,
-    HALF_WIDTH,
-    ORIGIN_X,
-    OUTWARD_X,
-    REACH,
-    crossed_exit,
-    exit_distance,
-)
+from engine.integrator.kernels.events import crossed_exit
+from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS, HALF_WIDTH, ORIGIN_X, OUTWARD_X, REACH, exit_distance
 from engine.systems.known_potentials import POTENTIALS
 from tests.peers.dop853 import equations
+from tests.peers.random_systems import HIGHEST_DEGREE, random_well
 
 # Even in x and y. The maxima lie on the y axis, between channels 1 and 2, and between 3 and 4.
 SYMMETRIC = Potential("symmetric", ((2, 0, 0.8902), (0, 2, 0.3619), (2, 4, -0.94), (0, 6, -0.0346)))
-# A potential without symmetry, and with a channel that does not merge.
-GENERAL = Potential(
-    "general",
-    (
-        *((2, 0, 0.826), (0, 2, 0.7149), (7, 0, 0.0454), (5, 5, -0.1097), (3, 7, 0.3412), (0, 7, 0.106)),
-        *((5, 0, 0.2864), (3, 0, -0.1956), (3, 2, -0.8996), (6, 4, 0.234), (6, 0, 0.4392)),
-    ),
-)
+# A potential whose channels are no mirror images of each other under x → −x.
+GENERAL = random_well(896, HIGHEST_DEGREE)
 MAXIMUM = SYMMETRIC.well.channel_mergers[0].energy
 # Energies in units of that of the maximum.
 ABOVE = 1.2

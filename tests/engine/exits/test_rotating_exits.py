@@ -9,7 +9,7 @@ from engine import POTENTIALS, classify_orbits, find_lyapunov_orbits, parse_form
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.exits.exit_shapes import line_points
 from engine.exits.exit_tables import LARGEST_ERROR, tabulate_exits
-from engine.integrator.kernels.events import exit_distance
+from engine.integrator.kernels.exit_geometry import exit_distance
 from engine.systems.outcomes import Centre
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 

@@ -21,13 +21,6 @@ def test_potentials_of_one_structure_share_code_with_their_own_coefficients() ->
     assert kernels[0].potential_value.function is kernels[1].potential_value.function
 
 
-def test_functions_of_a_known_structure_are_not_generated_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    bound_kernels.load_kernels(TERMS, 0)
-    # This holds even after other structures were needed.
-    monkeypatch.setattr(bound_kernels, "generate", None)
-    assert bound_kernels.load_kernels(((2, 0, 0.9), (0, 2, 0.5)), 0).potential_value(2.0, 1.0) == 0.9 * 4 + 0.5
-
-
 def test_a_potential_of_the_same_powers_may_need_other_functions() -> None:
     setting = Setting(0, (), False)
     weak, strong = (((2, 0, 0.5), (0, 2, 0.5), (2, 2, c)) for c in (-0.1, 1e6))

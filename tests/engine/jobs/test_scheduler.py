@@ -83,6 +83,16 @@ def test_a_client_with_one_call_at_a_time_leaves_the_other_threads_to_others() -
     assert not wait(hostile, SECONDS).not_done
 
 
+def test_a_client_that_has_not_asked_for_a_while_is_served_before_those_in_turn() -> None:
+    recorder = Recorder()
+    quiet, crowd = recorder.executor("quiet"), [recorder.executor(name) for name in "ab"]
+    calls = recorder.submit(quiet, "q1")
+    calls += [crowd[0].submit(recorder.submit, quiet, "q2"), *recorder.submit(crowd[1], "b1", "b2", "b3")]
+    calls += recorder.submit(crowd[0], "a2", "a3")
+    recorder.run(*calls)
+    assert recorder.order == ["q1", "b1", "q2", "a2", "b2", "a3", "b3"]
+
+
 def test_exception_is_stored_in_the_future_and_the_pool_continues() -> None:
     recorder = Recorder()
 

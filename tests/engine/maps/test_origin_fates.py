@@ -65,13 +65,6 @@ def test_passages_count_each_interior_start_once() -> None:
     assert counts[1, 2] == np.sum((whole.origin == 1) & (whole.fate == 2))
 
 
-def test_dataset_has_dimensions_codes_and_provenance() -> None:
-    dataset = origin_fates("I", Plane.X_PX, 0.17).to_xarray()
-    assert dataset["origin"].dims == ("px", "x")
-    assert "forbidden" in dataset["origin"].attrs["codes"]
-    assert dataset.attrs["energy"] == 0.17
-
-
 def test_joining_maps_of_different_requests_raises() -> None:
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.3, (8, 8), t_max=50.0)
     forward, other = compute_map(spec), compute_map(replace(spec, energy=0.31, backward=True))

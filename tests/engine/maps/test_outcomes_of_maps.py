@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,14 +15,11 @@ from engine import (
     MapSpec,
     Plane,
     Slice,
-    classify_orbits,
     compute_map,
     compute_origin_fates,
     compute_statistics,
-    open_result,
-    sample_starts,
 )
-from tests.disc import DISC, LABELS, disc_map
+from tests.disc import LABELS, disc_map
 
 
 @pytest.fixture(scope="module")
@@ -59,14 +55,6 @@ def test_passages_are_counted_between_all_outcomes(escape_map: EscapeMap) -> Non
     assert counts.shape == (4, 4)
     assert counts[3, 1] == np.sum((origins.origin == 3) & (origins.fate == 1)) > 0
     assert "channel" not in origins.describe()
-
-
-def test_outcomes_of_orbits_read_from_a_file_are_equal(tmp_path: Path) -> None:
-    found = classify_orbits(DISC, 0.19, sample_starts(DISC, 0.19, 50, seed=1), 100.0)
-    found.to_xarray().to_netcdf(tmp_path / "orbits.nc", engine="h5netcdf")
-    opened = open_result(tmp_path / "orbits.nc")
-    assert opened.outcomes == found.outcomes == DISC.outcomes
-    assert compute_statistics(opened).channel_counts == compute_statistics(found).channel_counts
 
 
 @pytest.mark.parametrize(("name", "x", "energy"), [("Hill", 0.0, -1.9), ("Copenhagen", 0.5, -1.9)])

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -81,19 +84,19 @@ def test_channels_keep_their_numbers_along_the_parameter() -> None:
     assert set(np.unique(found.fate[~left & (found.ordinate > -0.33)])) - {Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE} == {1, 2}
 
 
-def test_a_longer_time_continues_a_map(along_epsilon: EscapeMap) -> None:
-    shorter = compute_map(replace(SPEC, t_max=50.0))
-    assert np.any(shorter.fate != along_epsilon.fate)
-    continued = compute_map(SPEC, resume=shorter)
-    np.testing.assert_array_equal(continued.fate, along_epsilon.fate)
-    np.testing.assert_array_equal(continued.escape_time, along_epsilon.escape_time)
+def test_lines_that_wait_in_an_executor_are_dropped_when_a_map_is_cancelled() -> None:
+    cancel, begun = threading.Event(), list[int]()
 
+    class CountingExecutor(ThreadPoolExecutor):
+        def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            return super().submit(lambda: (begun.append(1), fn(*args, **kwargs))[1])
 
-def test_a_cancelled_map_is_continued(along_epsilon: EscapeMap) -> None:
-    cancel = threading.Event()
-    stopped = compute_map(SPEC, on_frame=lambda frame: cancel.set(), cancel=cancel)
+    # The first stage computes every eighth line.
+    spec = replace(SPEC, resolution=(24, 400))
+    with CountingExecutor(1) as executor:
+        stopped = compute_map(spec, cancel=cancel, executor=executor, on_progress=lambda share: cancel.set())
     assert not stopped.complete
-    np.testing.assert_array_equal(compute_map(SPEC, resume=stopped).escape_time, along_epsilon.escape_time)
+    assert len(begun) < 10
 
 
 def test_trust_and_character_are_those_of_the_lines(along_epsilon: EscapeMap) -> None:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import itertools
-import threading
 
 import numpy as np
 import pytest
 
 from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, classify_orbits, compute_map, start_states
-from engine.foundations.execution import Execution
 from engine.results import Outcomes
 
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
@@ -135,14 +133,6 @@ def test_thinning_a_complete_map_changes_nothing(whole: EscapeMap) -> None:
 # Bit-identical results.
 
 
-def test_map_cancelled_before_the_start_is_empty() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    result = compute_map(SPEC, cancel=cancel)
-    assert not result.started.any()
-    assert set(np.unique(result.fate)) == {Fate.NOT_COMPUTED, Fate.FORBIDDEN}
-
-
 def test_resuming_does_not_change_the_earlier_map() -> None:
     short = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.35, (20, 20), t_max=30.0))
     before = short.fate.copy(), short.batch.t.copy() if short.batch else None
@@ -168,13 +158,6 @@ def test_classified_orbits_have_the_outcomes_of_the_map(whole: EscapeMap, outcom
     inside = (whole.fate != Fate.FORBIDDEN) & (whole.fate != Fate.OUTSIDE)
     for name in OUTCOMES:
         np.testing.assert_array_equal(getattr(outcomes, name), getattr(whole, name)[inside], err_msg=name)
-
-
-def test_cancelled_orbits_stay_undecided(starts: np.ndarray) -> None:
-    cancel = threading.Event()
-    cancel.set()
-    fate = classify_orbits(SPEC.potential, 0.35, starts[:2000], 1e7, execution=Execution(cancel=cancel)).fate
-    assert Fate.NOT_COMPUTED in fate
 
 
 # Export.

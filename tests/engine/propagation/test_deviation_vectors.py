@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 import pytest
 
 from engine import CASES, Plane, integrate_orbit, start_states
-from engine.foundations.execution import Execution
 from engine.propagation.deviation_vectors import attach_deviations, propagate_deviations
 from engine.systems.compiled import fixed_step_size
 
@@ -22,9 +19,3 @@ def test_smallest_sali_agrees_with_that_of_single_orbits() -> None:
     for smallest, state in zip(orbits[:, -1], STATES, strict=True):
         orbit = integrate_orbit(CASES["II"], state, 96.0)
         assert smallest == pytest.approx(np.interp(times, orbit.t, orbit.sali).min(), rel=1e-3)
-
-
-def test_cancelling_leaves_nan() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    assert np.isnan(propagate_deviations(CASES["II"], attach_deviations(STATES), 10.0, execution=Execution(cancel=cancel))).all()

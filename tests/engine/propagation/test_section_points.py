@@ -1,16 +1,12 @@
-"""Section points agree with SciPy, and do not depend on the executor."""
+"""Section points agree with SciPy."""
 
 from __future__ import annotations
-
-import threading
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, Plane, start_states
-from engine.foundations.execution import Execution
 from engine.propagation.section_points import find_section_points
 
 POTENTIAL, ENERGY = CASES["III"], 0.24
@@ -35,18 +31,3 @@ def test_points_agree_with_scipy(states: np.ndarray) -> None:
     expected = expected[np.hypot(*(expected[:, 1:4:2] - states[0, 1:4:2]).T) > 1e-6][:, [0, 2]]
     found_points = find_section_points(POTENTIAL, states[:1], 5, 60.0)[0]
     np.testing.assert_allclose(found_points, expected[:5], atol=1e-9)
-
-
-def test_the_executor_does_not_affect_the_result(states: np.ndarray) -> None:
-    with ThreadPoolExecutor(3) as pool:
-        found_points = find_section_points(POTENTIAL, states, 3, 60.0, execution=Execution(pool))
-    np.testing.assert_array_equal(found_points, find_section_points(POTENTIAL, states, 3, 60.0))
-    np.testing.assert_array_equal(found_points[-1:], find_section_points(POTENTIAL, states[-1:], 3, 60.0))
-
-
-def test_cancelled_points_are_nan(states: np.ndarray) -> None:
-    cancel = threading.Event()
-    cancel.set()
-    points = find_section_points(POTENTIAL, states, 3, 60.0, execution=Execution(cancel=cancel))
-    assert points.shape == (len(states), 3, 2)
-    assert np.isnan(points).all()

@@ -25,7 +25,7 @@ from tests.forked import Finished, run
 
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.3, 0.5), (12, 10), t_max=300.0, measures=("maps", "shares"))
 # Long enough for all kinds of evidence.
-LONG_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.38, 0.4, 0.42), (15, 15), t_max=2e4)
+LONG_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.38, 0.4, 0.42), (9, 9), t_max=2e4)
 
 
 def run_in_child(folder: Path, name: str, killed_after: float = 1.0) -> Finished:

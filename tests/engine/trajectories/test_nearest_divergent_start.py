@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from engine import CASES, Fate, Plane, classify_orbits, find_divergent_start, integrate_orbit, start_states
-from engine.foundations.execution import Execution, SerialExecutor
 from engine.results import DivergentStart
 
 T_MAX = 2000.0
@@ -67,7 +66,3 @@ def test_mirror_images_have_equal_distances() -> None:
     other = find_existing("III", Plane.X_PX, 0.35, -0.1, -0.3)
     assert one.distance == other.distance
     assert (1, 0, 3, 2)[one.reference_fate - 1] + 1 == other.reference_fate
-
-
-def test_the_executor_does_not_affect_the_result() -> None:
-    assert find_existing(*STARTS[0], execution=Execution(SerialExecutor())) == find_existing(*STARTS[0])

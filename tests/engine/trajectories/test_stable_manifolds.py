@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
 import numpy as np
@@ -12,7 +11,6 @@ import shapely
 
 from engine import CASES, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, start_states
 from engine.exits.lyapunov_orbits import find_orbits_in_well_units
-from engine.foundations.execution import Execution
 from engine.propagation.section_points import find_section_points
 from engine.trajectories.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.trajectories.unstable_manifold import UnstableManifold
@@ -23,7 +21,6 @@ NEVER = 1e9
 # Distance to either side of an arc. Successive turns of an arc that winds around another are less than 1e-8 apart.
 STEP = 1e-10
 SYSTEMS = [("I", 0.15), ("II", 0.2), ("III", 0.45)]
-each_case = pytest.mark.parametrize("name", CASES)
 each = pytest.mark.parametrize(("name", "energy"), SYSTEMS)
 
 
@@ -156,13 +153,6 @@ def test_an_orbit_of_the_unstable_manifold_has_no_passages_after_its_escape() ->
 def test_there_are_no_arcs_at_the_escape_energy() -> None:
     found = find_stable_manifolds(CASES["II"], CASES["II"].escape_energy)
     assert (found.arcs, found.truncated, found.nbytes) == ((), False, 0)
-
-
-def test_result_does_not_depend_on_the_executor() -> None:
-    with ThreadPoolExecutor(3) as pool:
-        found = find_stable_manifolds(CASES["I"], 0.15, images=2, execution=Execution(pool))
-    for arc, other in zip(found.arcs, manifolds(CASES["I"], 0.15).arcs, strict=True):
-        np.testing.assert_array_equal([arc.x, arc.px], [other.x, other.px])
 
 
 # Zooms.

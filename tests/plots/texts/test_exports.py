@@ -20,14 +20,11 @@ from engine import (
     SweepSpec,
     System,
     compute_map,
-    compute_origin_fates,
     compute_sweep,
-    compute_trust,
     integrate_orbit,
     judge_orbit,
 )
 from engine.systems.system import TYPED
-from plots.layers.map_analyses import MapAnalyses
 from plots.texts.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 
 START = (0.1, 0.0, 0.05, 0.6)
@@ -67,16 +64,6 @@ def test_without_h5netcdf_the_file_is_of_netcdf_3(monkeypatch: pytest.MonkeyPatc
     frame = compute_map(SPECS["energies"])
     with xr.open_dataset(BytesIO(netcdf_bytes(frame)), engine="scipy") as back:
         xr.testing.assert_equal(back.load(), frame.to_xarray())
-
-
-def test_netcdf_contains_follow_up_analyses() -> None:
-    frame = compute_map(SPECS["a window"])
-    analyses = MapAnalyses({"trust": compute_trust(frame), "origins": compute_origin_fates(frame.spec)})
-    with xr.open_dataset(BytesIO(netcdf_bytes(frame, analyses)), engine="h5netcdf") as back:
-        np.testing.assert_array_equal(back["trust"], analyses["trust"].trust)
-        np.testing.assert_array_equal(back["origin"], analyses["origins"].origin)
-        assert "character" not in back
-        assert "3: doubtful" in back["trust"].attrs["codes"]
 
 
 def table(text: str) -> tuple[list[str], list[dict[str, str]]]:

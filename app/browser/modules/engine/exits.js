@@ -1,5 +1,5 @@
 // @ts-check
-/** Exits at given energies in the form of the kernels (see `engine/integrator/kernels/events.py`), and points of exits. */
+/** Exits at given energies in the form of the kernels (see `engine/integrator/kernels/exit_geometry.py`), and points of exits. */
 
 /**
  * An exit at one energy.

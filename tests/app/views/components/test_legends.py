@@ -60,10 +60,6 @@ def test_the_scale_has_both_ends_and_says_whether_it_is_locked() -> None:
     assert "locked" in legend("times", is_locked=True)
 
 
-def test_layers_have_legends_of_their_own() -> None:
-    assert "bounded and chaotic" in legend("characters")
-
-
 def test_each_exit_has_a_tone_for_each_origin() -> None:
     ends = ("1", "2", "3", "bounded")
     tones = re.findall("title='from (.*?) to (.*?)' style='--colour:(.*?)'", legend("origins"))

@@ -10,7 +10,7 @@ from bokeh.document.models import DocumentModelManager
 from bokeh.events import Tap
 from bokeh.models import Scatter
 
-from app.views.components.plots import HOVER_FORMATS, FigurePane, annotate_picture, batched_additions, chart_hover, square_figure
+from app.views.components.plots import HOVER_FORMATS, FigurePane, LaterGlyphs, annotate_picture, chart_hover, square_figure
 
 
 def test_a_figure_shown_again_handles_each_event_once() -> None:
@@ -27,13 +27,14 @@ def test_a_figure_shown_again_handles_each_event_once() -> None:
 
 def test_glyphs_are_added_with_one_search_of_the_models() -> None:
     plots, document = [square_figure(name, name) for name in ("basins", "times")], Document()
+    glyphs = LaterGlyphs(lambda plot: plot.add_glyph(Scatter()))
     for plot in plots:
         document.add_root(plot)
+        glyphs.expect(plot)
     with patch.object(DocumentModelManager, "recompute", autospec=True) as recompute:
-        with batched_additions(plots):
-            for plot in plots:
-                plot.add_glyph(Scatter())
+        glyphs.draw()
         assert recompute.call_count == 1
+    glyphs.draw()
     assert all(len(plot.renderers) == 1 for plot in plots)
 
 

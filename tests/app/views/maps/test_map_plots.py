@@ -9,29 +9,34 @@ from bokeh.document import Document
 from bokeh.events import DoubleTap, Tap
 from bokeh.models import BasicTickFormatter, BoxSelectTool, BoxZoomTool, CustomJSTickFormatter, PanTool, WheelZoomTool
 
-from app.views.maps.map_plots import MAPS, PICTURES_ALONE, PICTURES_COMPARED, MapsView
+from app.state.view import View
+from app.state.view_state import ViewState
+from app.views.maps.map_plots import MAPS, MapsView
 from app.views.maps.map_toolbar import Drag
 from engine import CASES, MapSpec, Plane, compute_map
-from plots.layers.table import LAYER_OF
+from plots.layers.table import LAYERS
 from plots.pictures.image_columns import map_columns
 from plots.pictures.time_scale import TimeScale, fitted_scale
 from tests.app.map_actions import make_maps
 
 
 @pytest.fixture
-def maps() -> MapsView:
-    view = make_maps()
-    view.show_pictures(PICTURES_ALONE)
-    return view
+def state() -> ViewState:
+    return ViewState()
+
+
+@pytest.fixture
+def maps(state: ViewState) -> MapsView:
+    return make_maps(state)
 
 
 def tools(maps: MapsView, kind: type) -> list[object]:
     return [tool for tool in maps.figures["basins"].toolbar.tools if isinstance(tool, kind)]
 
 
-def test_all_figures_share_one_toolbar(maps: MapsView) -> None:
-    maps.show_pictures([*PICTURES_ALONE, *LAYER_OF])
-    maps.show_pictures(PICTURES_COMPARED)
+def test_all_figures_share_one_toolbar(state: ViewState, maps: MapsView) -> None:
+    state.layers = frozenset(LAYERS)
+    state.compared = View()
     assert set(maps.figures) == set(MAPS)
     assert len({id(plot.toolbar) for plot in maps.figures.values()}) == 1
 
@@ -48,9 +53,9 @@ def test_the_mode_chooses_the_active_tool(maps: MapsView, drag: Drag, kind: type
     assert len(tools(maps, BoxSelectTool)) == (drag is Drag.COUNT)
 
 
-def test_on_touch_screens_the_wheel_tool_ignores_two_fingers(maps: MapsView) -> None:
+def test_on_touch_screens_the_wheel_tool_ignores_two_fingers(state: ViewState, maps: MapsView) -> None:
     assert tools(maps, WheelZoomTool)
-    maps.begin_touch()
+    state.touch = True
     assert not tools(maps, WheelZoomTool)
 
 
@@ -58,7 +63,6 @@ def clicks(*points: tuple[float, float]) -> list[tuple[str, float, float]]:
     """Return the calls after quick clicks on points of a map, one after the other."""
     called: list[tuple[str, float, float]] = []
     view = make_maps(tap=lambda x, y: called.append(("tap", x, y)), dive=lambda x, y: called.append(("dive", x, y)))
-    view.show_pictures(PICTURES_ALONE)
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (10, 10), (0.0, 1.0, 0.0, 1.0), t_max=10.0))
     view.show(frame, map_columns(frame))
     document = Document()
@@ -79,7 +83,6 @@ def test_two_quick_clicks_on_two_pixels_are_two_taps() -> None:
 
 def deep(width: float) -> MapsView:
     view = make_maps()
-    view.show_pictures(PICTURES_ALONE)
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, (4, 4), (0.1, 0.1 + width, 0.2, 0.2 + width), t_max=10.0)
     frame = compute_map(spec)
     view.ranges.set_home(replace(spec, window=None))
@@ -101,12 +104,12 @@ def test_labels_of_a_deep_window_are_distances_from_a_stated_number() -> None:
     assert "Labels:" not in view.figures["basins"].elements[0].html
 
 
-def test_a_locked_scale_of_times_keeps_its_ends_until_it_is_unlocked(maps: MapsView) -> None:
+def test_a_locked_scale_of_times_keeps_its_ends_until_it_is_unlocked(state: ViewState, maps: MapsView) -> None:
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (20, 20), t_max=50.0))
-    maps.lock_times(TimeScale(2.5, 5000.0))
+    state.lock_times = TimeScale(2.5, 5000.0)
     maps.show(frame, map_columns(frame))
     assert maps.times == TimeScale(2.5, 5000.0)
     assert "≥ 5 000" in maps.figures["times"].elements[0].html
-    maps.lock_times(None)
+    state.lock_times = None
     assert maps.times == fitted_scale(frame)
     assert "locked" not in maps.figures["times"].elements[0].html

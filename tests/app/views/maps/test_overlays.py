@@ -5,13 +5,14 @@ from __future__ import annotations
 import pytest
 from bokeh.models import ColumnDataSource, Image
 
+from app.state.view_state import ViewState
 from app.views.components.plots import map_figure
 from app.views.maps.map_ranges import MapRanges
 from app.views.maps.overlays import Overlays
 from engine import CASES, find_stable_manifolds
 from engine.results import StableManifolds
 from plots.layers.table import LAYERS, PICTURES
-from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER
+from plots.pictures.palette import PALETTES
 
 
 @pytest.fixture(scope="module")
@@ -20,10 +21,11 @@ def manifolds() -> StableManifolds:
 
 
 def test_curves_have_the_colours_of_their_channels_while_they_are_drawn(manifolds: StableManifolds) -> None:
-    overlays = Overlays(ColumnDataSource())
+    state = ViewState()
+    overlays = Overlays(ColumnDataSource(), state)
     overlays.show("manifolds", manifolds)
-    for palette in (PAPER, COLOUR_BLIND_SAFE):
-        overlays.set_palette(palette)
+    for name, palette in PALETTES.items():
+        state.palette = name
         assert set(overlays.curves["manifolds"].data["colour"]) == set(palette.channels[:3])
     overlays.remove("manifolds")
     assert overlays.curves["manifolds"].data["xs"] == []
@@ -32,7 +34,7 @@ def test_curves_have_the_colours_of_their_channels_while_they_are_drawn(manifold
 def test_marks_are_added_once_to_the_pictures_over_which_they_lie() -> None:
     ranges = MapRanges(lambda window: None, lambda: None)
     plots = {name: map_figure(name, name, ranges.x, ranges.ordinate) for name in PICTURES if name != "curves"}
-    overlays = Overlays(ColumnDataSource())
+    overlays = Overlays(ColumnDataSource(), ViewState())
     for name, plot in plots.items():
         overlays.draw(plot, name)
     for _ in range(2):

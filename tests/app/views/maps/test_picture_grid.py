@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
-from app.state.view import PICTURES
+from app.state.view import PICTURES, View
+from app.state.view_state import ViewState
 from app.views.components.plots import FigurePane
-from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED
+from app.views.maps.map_plots import PICTURES_ALONE
 from app.views.maps.picture_grid import SHORT_TITLES, PictureGrid
 from plots.layers.table import LAYER_OF
 from tests.app.map_actions import make_maps
@@ -14,10 +17,9 @@ from tests.app.map_actions import make_maps
 ALWAYS = [*PICTURES_ALONE]
 
 
-def grid(*on_demand: str, chosen: list[str] | None = None) -> PictureGrid:
-    maps = make_maps(choose=(chosen if chosen is not None else []).append)
-    maps.show_pictures([*PICTURES_ALONE, *on_demand])
-    return maps.grid
+def grid(*on_demand: str, **values: Any) -> PictureGrid:
+    """Return the grid of a view with the layers of these pictures."""
+    return make_maps(ViewState(layers=frozenset(LAYER_OF[name].name for name in on_demand), **values)).grid
 
 
 def panes(of: PictureGrid) -> list[FigurePane]:
@@ -33,8 +35,7 @@ def test_every_picture_has_a_short_title() -> None:
 
 
 def test_two_views_stand_side_by_side_before_the_well_and_their_difference() -> None:
-    maps = make_maps()
-    maps.show_pictures(PICTURES_COMPARED)
+    maps = make_maps(ViewState(compared=View()))
     assert [pane.object.name for pane in panes(maps.grid)] == ["basins", "compared", "well", "differences"]
     assert not {"enlarged", "many"} & set(maps.grid.layout().css_classes)
 
@@ -47,8 +48,7 @@ def test_pictures_without_a_map_are_greyed_out() -> None:
 
 
 def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
-    pictures = grid()
-    pictures.enlarge("times")
+    pictures = grid(focus="times")
     assert named(pictures, "picked") == ["times"]
     assert named(pictures, "small") == [name for name in ALWAYS if name != "times"]
     assert "enlarged" in pictures.layout().css_classes
@@ -71,32 +71,30 @@ def test_the_picture_of_an_active_layer_is_the_largest(on_demand: tuple[str, ...
 
 
 def test_an_enlarged_picture_stands_above_a_row_of_many_others() -> None:
-    pictures = grid(*LAYER_OF)
-    pictures.enlarge("origins")
+    pictures = grid(*LAYER_OF, focus="origins")
     assert "many" not in pictures.layout().css_classes
     assert len(named(pictures, "small")) == len(ALWAYS) + len(LAYER_OF) - 1
 
 
 def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_appears() -> None:
-    maps = make_maps()
-    maps.show_pictures(PICTURES_ALONE)
-    maps.grid.enlarge("origins")
-    assert "enlarged" not in maps.grid.layout().css_classes
-    maps.show_pictures([*PICTURES_ALONE, "origins"])
-    assert named(maps.grid, "picked") == ["origins"]
+    state = ViewState(focus="origins")
+    pictures = make_maps(state).grid
+    assert "enlarged" not in pictures.layout().css_classes
+    state.switch_layer("origins", on=True)
+    assert named(pictures, "picked") == ["origins"]
 
 
 def test_the_picker_of_a_narrow_page_offers_the_pictures_and_reports_the_choice() -> None:
-    chosen: list[str] = []
-    pictures = grid("origins", chosen=chosen)
-    pictures.offer_choice()
+    state = ViewState(layers=frozenset({"origins"}))
+    pictures = make_maps(state).grid
+    state.narrow = True
     assert pictures.layout().objects[0] is pictures.picker
     assert list(pictures.picker.options.values()) == [*ALWAYS, "origins"]
     assert pictures.picker.value == "origins"
     pictures.picker.value = "basins"
-    pictures.enlarge("well")
+    assert state.focus == "basins"
+    state.focus = "well"
     assert pictures.picker.value == "well"
-    assert chosen == ["basins"]
 
 
 def test_the_picture_of_a_layer_that_shows_nothing_is_not_the_largest() -> None:

@@ -9,10 +9,11 @@ from functools import partial
 import numpy as np
 import pytest
 
+from app.state.view_state import ViewState
 from app.views.maps.progress import CONTINUE, STOP, STOPPED, ProgressView
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map
 from plots.layers.table import LAYERS
-from plots.pictures.palette import COLOUR_BLIND_SAFE, PAPER
+from plots.pictures.palette import PALETTES
 
 
 @pytest.fixture(scope="module")
@@ -20,9 +21,9 @@ def escape_map() -> EscapeMap:
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (15, 15), t_max=1e3))
 
 
-def make_view() -> tuple[ProgressView, list[str]]:
+def make_view(state: ViewState | None = None) -> tuple[ProgressView, list[str]]:
     calls: list[str] = []
-    return ProgressView(*(partial(calls.append, name) for name in ("cancel", "resume")), calls.append), calls
+    return ProgressView(state or ViewState(), *(partial(calls.append, name) for name in ("cancel", "resume"))), calls
 
 
 def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
@@ -34,15 +35,6 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     assert "unresolved" not in text
     view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))
     assert "unresolved" in view.text.object
-
-
-def test_exits_of_several_channels_are_named() -> None:
-    # Above V = 0.45 channels 1 and 2 are one, and so are 3 and 4.
-    potential = Potential("", ((2, 0, 0.8902), (0, 2, 0.3619), (2, 4, -0.94), (0, 6, -0.0346)))
-    view, _ = make_view()
-    view.show(compute_map(MapSpec(potential, Plane.X_PX, 0.54, (5, 5), t_max=20.0)))
-    text = re.sub(r"<[^>]*>", "", view.text.object)
-    assert re.match(r"exit 1\+2&nbsp;[\d.]+ %exit 3\+4&nbsp;", text)
 
 
 def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:
@@ -73,14 +65,15 @@ def test_the_button_stops_and_continues() -> None:
 
 
 def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_test(escape_map: EscapeMap) -> None:
-    view, calls = make_view()
+    state = ViewState()
+    view, _ = make_view(state)
     view.show(replace(escape_map, rounded_share=0.273))
     assert "about 27 % of the pixels depend on rounding errors" in re.sub(r"<[^>]*>", "", view.text.object)
     assert (view.button.label, view.button.styles["visibility"]) == (LAYERS["trust"].title, "visible")
     # The text is long, so the button stands outside the text.
     assert "stop" not in view.button.css_classes
     view.button.clicks += 1
-    assert calls == ["trust"]
+    assert state.layers == {"trust"}
     for share in (None, 0.004, float("nan")):
         view.show(replace(escape_map, rounded_share=share))
         assert "rounding" not in view.text.object
@@ -88,11 +81,12 @@ def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_te
 
 
 def test_the_bar_has_a_part_for_each_outcome_in_its_colour(escape_map: EscapeMap) -> None:
-    view, _ = make_view()
+    state = ViewState()
+    view, _ = make_view(state)
     view.show(escape_map)
     shares = escape_map.fractions()
-    for palette in (PAPER, COLOUR_BLIND_SAFE):
-        view.set_palette(palette)
+    for name, palette in PALETTES.items():
+        state.palette = name
         parts = re.findall(r"flex-grow:([\d.]+);background:(#\w+)", view.text.object)
         colours = [*palette.channels[:2], palette.bounded]
         assert parts == [(f"{shares[fate]:.4f}", colour) for fate, colour in zip((1, 2, Fate.BOUNDED), colours, strict=True)]

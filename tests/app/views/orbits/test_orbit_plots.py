@@ -9,6 +9,7 @@ import pytest
 from bokeh.models import ColumnDataSource
 from bokeh.plotting import figure
 
+from app.state.view_state import ViewState
 from app.views.orbits.orbit_plots import OrbitPlots
 from engine import CASES, integrate_orbit
 from plots.pictures.orbit_curves import OrbitCurves, compute_orbit_curves, restrict_curves
@@ -22,17 +23,17 @@ def curves_of(state: tuple[float, ...], t_max: float) -> OrbitCurves:
 
 @pytest.fixture(scope="module")
 def drawings() -> list[OrbitCurves]:
-    """A bounded orbit of t = 1e5 and one that escapes at t = 15."""
-    return [curves_of((-0.46, 0.0, 0.0, 0.2), 1e5), curves_of((0.1, 0.0, 0.05, 0.6), 1e5)]
+    """A bounded orbit of t = 2e4 and one that escapes at t = 15."""
+    return [curves_of((-0.46, 0.0, 0.0, 0.2), 2e4), curves_of((0.1, 0.0, 0.05, 0.6), 2e4)]
 
 
 @pytest.fixture
 def plots() -> OrbitPlots:
-    return OrbitPlots(lambda interval: None)
+    return OrbitPlots(ViewState(), lambda interval: None)
 
 
 def figures(plots: OrbitPlots) -> dict[str, figure]:
-    return {pane.object.name: pane.object for pane in plots.build()}
+    return {pane.object.name: pane.object for part in plots.parts() for pane in part()}
 
 
 def data(plot: figure, name: str) -> dict[str, Any]:

@@ -5,24 +5,12 @@ from __future__ import annotations
 from app.state.view import Analysis
 from app.state.view_state import ViewState
 from app.views.components.widgets import SegmentedControl
-from app.views.panels.analysis_choice import ANALYSIS_LABELS, AnalysisTabs, LayerSwitches
-from plots.layers.table import LAYERS
-
-
-def test_there_is_a_labelled_switch_for_each_layer_that_changes_the_state_and_follows_it() -> None:
-    state = ViewState(layers=frozenset({"judge"}))
-    switches = LayerSwitches(state).switches
-    assert {name: switch.options for name, switch in switches.items()} == {name: [one.title] for name, one in LAYERS.items()}
-    assert [name for name, switch in switches.items() if switch.value] == ["judge"]
-    state.layers = frozenset({"manifolds"})
-    assert [name for name, switch in switches.items() if switch.value] == ["manifolds"]
-    switches["trust"].value = [LAYERS["trust"].title]
-    assert state.layers == {"trust", "manifolds"}
+from app.views.panels.analysis_choice import ANALYSIS_LABELS, LayerSwitches, analysis_tabs
 
 
 def test_there_is_a_labelled_tab_for_each_analysis_that_changes_the_state_and_follows_it() -> None:
     state = ViewState(analysis=Analysis.ENERGIES)
-    tabs = AnalysisTabs(state).tabs
+    tabs = analysis_tabs(state)
     assert list(tabs.options.values()) == list(Analysis) == list(ANALYSIS_LABELS)
     assert tabs.value is Analysis.ENERGIES
     tabs.value = Analysis.MEASURES

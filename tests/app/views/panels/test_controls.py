@@ -27,7 +27,6 @@ class Page:
                 play=lambda: None,
                 choose_potential=lambda: None,
                 choose_slice=lambda: None,
-                compare=lambda on: self.state.param.update(compared=self.state.view if on else None),
                 swap=lambda: None,
                 lock_times=self.locks.append,
             ),
@@ -86,7 +85,7 @@ def test_the_lock_asks_for_the_limits_of_the_map_and_follows_the_state(page: Pag
 
 
 def test_on_a_touch_device_all_folds_are_closed(page: Page) -> None:
-    page.controls.begin_touch()
+    page.state.touch = True
     parts = page.controls.layout()
     labels = [part.label for part in parts if isinstance(part, pn.widgets.Button)]
     assert {label for label in labels if label[0] in "▸▾"} == {"▸ Quality and colours", "▸ Layers"}

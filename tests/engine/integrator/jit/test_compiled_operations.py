@@ -17,6 +17,7 @@ from engine.integrator.jit.compiled_operations import (
     compiled_operations,
 )
 from engine.integrator.source.recurrence import generate_code
+from engine.integrator.source.series import Setting
 from engine.jobs.client import JobClient
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
@@ -43,7 +44,7 @@ def test_compilation_beyond_the_limit_is_refused_with_a_sentence() -> None:
         load_kernels(terms, 0)
     compiled_operations.most = None
     assert load_kernels(terms, 0).potential_value(1.0, 1.0) == 2.0
-    assert compiled_operations.used == generate_code(terms, 0).operations
+    assert compiled_operations.used == generate_code(terms, Setting()).operations
 
 
 def test_reserved_code_is_compiled_at_the_limit_and_does_not_count(limited: CompiledOperations) -> None:
@@ -80,7 +81,7 @@ def test_an_account_has_a_share_of_the_limit(limited: CompiledOperations) -> Non
 @pytest.mark.parametrize(("account", "is_refused"), [("one", True), (None, False)])
 def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool) -> None:
     terms = ((2, 0, 0.5), (0, 2, 0.5), (3, 6, 1.0 if account else 2.0), (6, 3, 1.0))
-    compiled_operations.most = SHARES * generate_code(terms, 0).operations - 1
+    compiled_operations.most = SHARES * generate_code(terms, Setting()).operations - 1
     client, inbox = JobClient(Jobs(), account=account), Inbox()
     client.request(Job(load_kernels, (terms, 0), queue=Queue.COMPILATION), inbox.result, inbox.error)
     assert inbox.done.wait(SECONDS)
@@ -90,7 +91,7 @@ def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool
 def test_the_catalogue_can_be_compiled_even_at_the_limit(limited: CompiledOperations) -> None:
     potential = POTENTIALS["Copenhagen"].in_well_units
     limited.add("of others", MOST)
-    code = generate_code(potential.form.definition, **potential.well.setting._asdict())
+    code = generate_code(potential.form.definition, potential.well.setting)
     with pytest.raises(CompiledCodeLimitError):
         limited.add(code.digest, code.operations)
     reserve_catalogue(limited)

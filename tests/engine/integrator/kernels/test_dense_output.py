@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from engine import CASES
 from engine.integrator.bound_kernels import load_kernels
@@ -13,19 +12,12 @@ POTENTIAL = CASES["III"]
 START = np.array([0.1, 0.0, 0.2, 0.6])
 
 
-@pytest.fixture
-def kernels():
-    return load_kernels(POTENTIAL.terms, POTENTIAL.channels)
-
-
-def test_each_step_starts_at_the_end_of_the_one_before(kernels) -> None:
+def test_steps_cover_the_whole_time_and_each_starts_at_the_end_of_the_one_before() -> None:
+    kernels = load_kernels(POTENTIAL.terms, POTENTIAL.channels)
     steps = dense_output.trace_steps(kernels, START, 50.0, 4)
     ends = dense_output.sample_path(kernels, steps, np.append(np.nextafter(steps[1:, 4], 0), 50.0))
     np.testing.assert_allclose(ends[:, :-1].T, steps[1:, :4], atol=1e-14)
-
-
-def test_steps_cover_the_whole_time(kernels) -> None:
-    t = dense_output.trace_steps(kernels, START, 50.0, 4)[:, 4]
+    t = steps[:, 4]
     assert t[0] == 0.0
     assert np.all(np.diff(t) > 0)
     assert t[-1] < 50.0 <= t[-1] + 1.0

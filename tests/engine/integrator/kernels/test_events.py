@@ -7,18 +7,8 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from engine import CASES, find_lyapunov_orbits
-from engine.integrator.kernels.events import (
-    CURVE_COLUMNS,
-    HALF_WIDTH,
-    ORIGIN_X,
-    OUTWARD_X,
-    REACH,
-    append_crossings,
-    count_upward_crossings,
-    crossed_exit,
-    exit_distance,
-    find_exit_time,
-)
+from engine.integrator.kernels.events import append_crossings, count_upward_crossings, crossed_exit, find_exit_time
+from engine.integrator.kernels.exit_geometry import CURVE_COLUMNS, HALF_WIDTH, ORIGIN_X, OUTWARD_X, REACH, exit_distance
 from engine.integrator.source.series import ORDER
 
 X = Polynomial([0.3, -0.7, 0.2])

@@ -12,7 +12,7 @@ import pytest
 
 from engine.integrator.source.polynomial_recurrence import Terms
 from engine.integrator.source.recurrence import generate_code
-from engine.integrator.source.series import ORDER
+from engine.integrator.source.series import ORDER, Setting
 from engine.integrator.source.straight_line import StraightLine
 from engine.systems.known_potentials import channel_family
 
@@ -79,7 +79,7 @@ def relative_error(computed: np.ndarray, expected: np.ndarray) -> float:
 
 def check(terms: Terms, rng: np.random.Generator) -> None:
     """Check gradient, Hessian and one step of an orbit and a deviation vector against plain evaluation."""
-    code = generate_code(terms, 0)
+    code = generate_code(terms, Setting())
     table, programs = code.tabulate(terms), {function.name: function.program for function in code.functions}
     start, deviation = rng.uniform(-0.6, 0.6, 4), rng.uniform(-1.0, 1.0, 4)
     inputs = dict(zip(("x0", "y0", "x1", "y1", "u0", "v0", "u1", "v1"), (*start, *deviation), strict=True), h=DURATION)

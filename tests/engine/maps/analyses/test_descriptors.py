@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from dataclasses import replace
 from threading import Event
 from typing import Any
@@ -36,10 +36,10 @@ from engine.slices.axes import Coordinate
 # Chaotic orbits, and those close to a body, amplify rounding errors up to this within the default time.
 ACCURACY = 1e-9
 SPECS = {
-    "II": MapSpec(CASES["II"], Plane.X_PX, 0.24, (7, 7), t_max=100.0),
-    "energies": MapSpec(CASES["I"], Plane.X_H, (0.1, 0.3), (5, 6), t_max=100.0),
-    "in a rotating frame": MapSpec(POTENTIALS["Star cluster"], Plane.X_PX, -1.75, (6, 6), t_max=20.0),
-    "with a body": MapSpec(POTENTIALS["Hill"], Plane.X_PX, -2.0, (6, 6), t_max=20.0),
+    "II": MapSpec(CASES["II"], Plane.X_PX, 0.24, (5, 5), t_max=100.0),
+    "energies": MapSpec(CASES["I"], Plane.X_H, (0.1, 0.3), (4, 5), t_max=100.0),
+    "in a rotating frame": MapSpec(POTENTIALS["Star cluster"], Plane.X_PX, -1.75, (5, 5), t_max=20.0),
+    "with a body": MapSpec(POTENTIALS["Hill"], Plane.X_PX, -2.0, (5, 5), t_max=20.0),
 }
 
 
@@ -102,15 +102,6 @@ def test_the_descriptor_of_both_directions_is_the_sum_of_each() -> None:
     np.testing.assert_array_equal(both, ways[0] + ways[1])
 
 
-def test_the_result_does_not_depend_on_the_threads() -> None:
-    frame = compute_map(replace(SPECS["II"], resolution=(31, 20)))
-    found = []
-    for threads in (1, 3):
-        with ThreadPoolExecutor(threads) as executor:
-            found.append(compute_lagrangian_descriptor(frame, execution=Execution(executor)).descriptor)
-    np.testing.assert_array_equal(*found)
-
-
 def test_a_map_along_a_parameter_has_the_descriptors_of_its_potentials() -> None:
     plane = Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))
     found = compute_lagrangian_descriptor(compute_map(MapSpec(CASES["I"], plane, 0.2, (4, 3), t_max=50.0)), power=1.0)
@@ -119,15 +110,6 @@ def test_a_map_along_a_parameter_has_the_descriptors_of_its_potentials() -> None
     of_row = MapSpec(CASES["I"].with_parameters(epsilon=epsilon), Plane.X_PX, 0.2, (1, 1), (x - 0.1, x + 0.1, -0.1, 0.1), 50.0)
     alone = compute_lagrangian_descriptor(compute_map(of_row), power=1.0)
     np.testing.assert_allclose(found.descriptor[row, column], alone.descriptor[0, 0], rtol=ACCURACY)
-
-
-def test_a_cancelled_computation_returns_what_was_computed() -> None:
-    cancel = Event()
-    frame = compute_map(replace(SPECS["II"], resolution=(40, 40)))
-    found = compute_lagrangian_descriptor(frame, on_frame=lambda _: cancel.set(), execution=Execution(cancel=cancel))
-    assert not found.complete
-    known = np.isfinite(found.descriptor)
-    assert 0 < known.sum() < np.sum(frame.interior)
 
 
 def test_long_integrals_are_cancelled_before_they_are_complete() -> None:

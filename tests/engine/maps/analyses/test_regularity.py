@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 import pytest
 
@@ -23,7 +21,6 @@ from engine import (
     integrate_orbit,
     start_states,
 )
-from engine.foundations.execution import Execution
 from engine.propagation.fates import CHAOS_THRESHOLD, is_chaotic
 from engine.results import RegularityMap
 
@@ -99,12 +96,3 @@ def test_orbits_called_regular_show_no_chaos_ten_times_as_long() -> None:
     regular = shorter.character == Regularity.REGULAR
     assert np.count_nonzero(regular) > 100
     assert np.mean(longer.character[regular] == Regularity.CHAOTIC) <= 0.01
-
-
-def test_cancelling_leaves_the_rest_not_judged() -> None:
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.16, (13, 13), t_max=2e4))
-    cancel = threading.Event()
-    cancel.set()
-    result = compute_regularity(whole, execution=Execution(cancel=cancel))
-    assert not result.complete
-    assert Regularity.NOT_JUDGED in result.character

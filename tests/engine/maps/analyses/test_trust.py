@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from functools import cache
 from itertools import pairwise
 
@@ -11,7 +10,6 @@ import pytest
 
 from engine import CASES, EscapeMap, Evidence, Fate, MapSpec, Plane, Window, compute_map
 from engine.exits.exit_rows import exit_curves
-from engine.foundations.execution import Execution, SerialExecutor
 from engine.integrator.kernels.dense_output import advance_states
 from engine.integrator.source.recurrence import TOLERANCE
 from engine.maps.analyses.reruns import LARGEST_DELAY, SECOND_TOLERANCE, SHIFT, shifted_starts
@@ -191,11 +189,6 @@ def test_pixels_doubtful_with_evidence_are_doubtful_without() -> None:
     assert np.any((trust.trust == Trust.CONFIRMED) & (on_evidence.fate == Fate.BOUNDED))
 
 
-def test_result_does_not_depend_on_the_executor() -> None:
-    whole, trust = map_and_trust("II", 0.2)
-    np.testing.assert_array_equal(compute_trust(whole, execution=Execution(SerialExecutor())).trust, trust.trust)
-
-
 def test_later_frames_keep_the_decided_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.maps.stages.LONGEST_PAUSE", 0.0)
     whole, trust = map_and_trust()
@@ -207,16 +200,6 @@ def test_later_frames_keep_the_decided_pixels(monkeypatch: pytest.MonkeyPatch) -
         decided = before.trust != Trust.NOT_TESTED
         np.testing.assert_array_equal(before.trust[decided], after.trust[decided])
     np.testing.assert_array_equal(frames[-1].trust, trust.trust)
-
-
-def test_cancelling_leaves_the_rest_not_tested() -> None:
-    whole, trust = map_and_trust()
-    cancel = threading.Event()
-    partial = compute_trust(whole, on_frame=lambda _frame: cancel.set(), execution=Execution(cancel=cancel))
-    assert not partial.complete
-    assert Trust.NOT_TESTED in partial.trust
-    decided = partial.trust != Trust.NOT_TESTED
-    np.testing.assert_array_equal(partial.trust[decided], trust.trust[decided])
 
 
 def test_shares_refer_to_the_interior_pixels() -> None:

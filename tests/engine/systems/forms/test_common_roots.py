@@ -11,7 +11,8 @@ from flint import fmpq, fmpq_mpoly
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from engine.systems.forms.common_roots import RING, find_common_roots
+from engine.expressions.exact_polynomials import RING
+from engine.systems.forms.common_roots import find_common_roots
 
 X, Y = sympy.symbols("x y")
 lines = st.tuples(*[st.integers(-5, 5)] * 3).filter(lambda line: line[0] or line[1])

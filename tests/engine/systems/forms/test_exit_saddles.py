@@ -22,7 +22,7 @@ NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4
 def exits(potential: Potential) -> np.ndarray:
     """Return the saddles that lead out, of shape (n, 2)."""
     points = potential.critical_points
-    return points[leads_out_of_well(potential.form.downhill, potential.hessian, points, potential.well.critical_indices)]
+    return points[leads_out_of_well(potential.form, points, potential.well.critical_indices)]
 
 
 def test_a_saddle_with_the_origin_below_on_both_sides_is_no_exit() -> None:
@@ -36,8 +36,18 @@ def test_a_saddle_between_two_other_wells_is_no_exit() -> None:
 def test_the_hill_lies_beside_the_saddle_behind_it() -> None:
     points = RING.critical_points
     hill, saddle = np.argsort(points[:, 0])[1:]
-    beside = find_maxima_beside(RING.form.downhill, RING.hessian, points, RING.well.critical_indices, np.array([saddle]))
+    beside = find_maxima_beside(RING.form, points, RING.well.critical_indices, np.array([saddle]))
     assert np.flatnonzero(beside).tolist() == [hill]
+
+
+def test_a_saddle_behind_a_curve_where_the_potential_is_infinite_is_no_exit() -> None:
+    # V falls from the saddle at x = 4.65 towards x = 3, and from the other side of x = 3 towards the well.
+    behind = parse_formula("½(x² + y²) − 0.08x³ − 1/(x − 3); well (-0.1, 0)")
+    assert (behind.critical_points[:, 0] > 4.0).any()
+    assert exits(behind).size == 0
+    # V falls from the saddle at x = 2.28 towards the well, and towards x = 3.
+    before = parse_formula("½(x² + y²) − x³/9 − 0.01x(x − 6)² + 0.3/(x − 3); well (0.36, 0)")
+    assert len(exits(before)) == 1
 
 
 def test_a_saddle_at_the_end_of_a_long_narrow_valley_is_an_exit() -> None:

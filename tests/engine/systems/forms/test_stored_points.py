@@ -26,7 +26,7 @@ def never() -> np.ndarray:
 
 
 def test_points_found_before_are_read_bit_by_bit() -> None:
-    assert stored_points("points", TERMS, lambda: POINTS) is POINTS
+    np.testing.assert_array_equal(stored_points("points", TERMS, lambda: POINTS), POINTS)
     np.testing.assert_array_equal(stored_points("points", TERMS, never), POINTS)
 
 

@@ -21,8 +21,8 @@ from engine.systems.review.potential_review import review_potential
         ("xy", "a saddle there"),
         ("x² + y⁴", "a degenerate point there"),
         ("x + r²", "linear terms"),
-        # V is infinite at x = 3, between the well and the only saddle that seems to lead out of it.
-        ("1/(x − 3) + 1/(x + 3) + y² + 6x; well (0.696, 0)", "a curve where V is infinite"),
+        # V is infinite at x = 3, between the well and the only saddle.
+        ("1/(x − 3) + 1/(x + 3) + y² + 6x; well (0.696, 0)", "The well is open without a saddle"),
     ],
 )
 def test_invalid_potentials_are_refused_with_the_reason(formula: str, reason: str) -> None:

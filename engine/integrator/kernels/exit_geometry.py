@@ -1,26 +1,89 @@
-"""Exits at any energy, interpolated in a table, and points on exits."""
+"""Exits as rows of numbers: their distance from a point, their points, and their interpolation in a table of energies.
+
+An exit is a place where orbits end: a curve or line across a channel, the edge of a disc around a centre, or the escape circle.
+It is a row of numbers, of which the first have the same meaning for all shapes. A disc has its centre as origin and its radius as
+half width; the escape circle has its radius as half width.
+
+In a well that does not rotate, an exit is the path of a Lyapunov orbit. The coordinates are u outward and q across, 90°
+counterclockwise from u; u is measured from the saddle along its unstable direction, or from the chord of the orbit along its
+normal. The exit is the graph u = f(s) of a polynomial f, with s = (q − middle)/half_width ∈ [−1, 1]. Beyond its ends, which lie
+on the zero-velocity curve, straight lines continue the exit through the forbidden region, up to |s| = reach. A closed channel is
+a short straight line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame, an exit is a
+line u = c + a q², parallel to the ridge of V at the saddle.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from engine.integrator.jit.decorator import kernel, subroutine
-from engine.integrator.kernels.events import (
-    CLOSED,
-    HALF_WIDTH,
-    MIDDLE,
-    ORIGIN_X,
-    ORIGIN_Y,
-    OUTWARD_X,
-    OUTWARD_Y,
-    REACH,
-    SHAPE,
-    exit_height,
-    is_circle,
-)
+
+# Columns of an exit.
+ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, SHAPE = range(8)
+MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
+
+# Values of the column SHAPE; orbits cannot return from a CURVE.
+CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
+
+# Degree of the polynomial f, a sum of Chebyshev polynomials.
+CURVE_DEGREE = 40
+CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
 # Columns of a table: the gate, the reach, the first column for the axes of an exit, and the first of its columns from `MIDDLE`.
 GATE_COLUMN, REACH_COLUMN, AXES_COLUMN, MIDDLE_COLUMN = 0, 1, 2, 6
+
+
+@subroutine
+def is_circle(curve):
+    """Return whether an exit is a circle: the edge of a disc or the escape circle."""
+    return curve[SHAPE] >= DISC
+
+
+@subroutine
+def is_open_channel(curve):
+    """Return whether an exit is the curve or line of an open channel."""
+    return CURVE <= curve[SHAPE] < DISC
+
+
+@subroutine
+def ends_inside(curve):
+    """Return whether orbits end on the inner side of an exit: that of a disc."""
+    return curve[SHAPE] == DISC
+
+
+@subroutine
+def position_across(x, y, curve):
+    """Return the coordinate s of a point; −1 and 1 are the ends of the exit."""
+    q = curve[OUTWARD_X] * (y - curve[ORIGIN_Y]) - curve[OUTWARD_Y] * (x - curve[ORIGIN_X])
+    return (q - curve[MIDDLE]) / curve[HALF_WIDTH]
+
+
+@subroutine
+def exit_height(s, curve):
+    """Return f(s) of an exit over a saddle, with the straight lines beyond its ends."""
+    beyond = 0.0
+    if s < -1.0:
+        beyond = curve[SLOPE_LOW] * (s + 1.0)
+        s = -1.0
+    elif s > 1.0:
+        beyond = curve[SLOPE_HIGH] * (s - 1.0)
+        s = 1.0
+    # Clenshaw's recurrence.
+    f = 0.0
+    last = 0.0
+    for k in range(CURVE_DEGREE, 0, -1):
+        f, last = 2.0 * s * f - last + curve[COEFFICIENTS + k], f
+    return s * f - last + curve[COEFFICIENTS] + beyond
+
+
+@subroutine
+def exit_distance(x, y, curve):
+    """Return the distance of (x, y) from an exit, along the channel or the radius: positive outside, negative inside."""
+    if is_circle(curve):
+        radius = np.sqrt((x - curve[ORIGIN_X]) ** 2 + (y - curve[ORIGIN_Y]) ** 2)
+        return curve[HALF_WIDTH] - radius if ends_inside(curve) else radius - curve[HALF_WIDTH]
+    u = curve[OUTWARD_X] * (x - curve[ORIGIN_X]) + curve[OUTWARD_Y] * (y - curve[ORIGIN_Y])
+    return u - exit_height(position_across(x, y, curve), curve)
 
 
 @subroutine

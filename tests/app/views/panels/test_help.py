@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.job_clients.shown_results import ShownResults
 from app.state.view_state import ViewState
-from app.views.panels.accessible_table import AccessibleTable
+from app.views.panels.help import AccessibleTable
 from engine import CASES, MapSpec, Plane, System, compute_map
 from tests.disc import disc_map
 

@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from app.browser.components.ensemble_player import EnsemblePlayer
-from app.session.watch_presenter import WatchPresenter
 from app.state.system_review import review_catalogue_entry
 from app.state.view import Analysis
 from app.state.view_state import ViewState
@@ -30,10 +29,7 @@ class Session:
         self.changed = threading.Condition()
         self.state = ViewState(system=System("III"), energy=0.45, analysis=Analysis.WATCH, **chosen)
         self.context = context_of(self.state, jobs, self.changed)
-        self.presenter = WatchPresenter(self.context)
-        _, player = self.presenter.build()
-        assert isinstance(player, EnsemblePlayer)
-        self.player = player
+        self.player = EnsemblePlayer(self.state, self.context.results, self.context.jobs, self.context.locked)
 
     def send(self, **choice: Any) -> None:
         send(self.player, {"where": "view", "count": 1000, "seed": 4, "radius": -3, **choice})
@@ -48,7 +44,7 @@ def jobs() -> Jobs:
 def session(jobs: Jobs) -> Iterator[Session]:
     made = Session(jobs, starts=((0.1, 0.2), (0.3, 0.1)), chosen=1)
     yield made
-    made.presenter.close()
+    made.context.jobs.close()
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,43 @@
+"""The inspector of the orbits is made in parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import panel as pn
+
+from app.browser.components.orbit_player import OrbitPlayer
+from app.state.view_state import ViewState
+from app.views.orbits.inspector import Inspector
+from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
+from app.views.orbits.orbit_plots import OrbitPlots
+from app.views.orbits.separation_plot import SeparationPlot
+from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
+
+
+def do_nothing(*_: object) -> None:
+    pass
+
+
+def test_each_figure_has_a_turn_of_the_event_loop_of_its_own() -> None:
+    turns: list[Callable[[], None]] = []
+    state, actions = ViewState(), OrbitActions(*[do_nothing] * 5)
+    inspector = Inspector(
+        OrbitControls(state, actions),
+        OrbitPlayer(do_nothing),
+        OrbitPlots(state, do_nothing),
+        SeparationPlot(state),
+        lambda call: lambda: turns.append(call),
+    )
+
+    def count_figures() -> int:
+        return len(list(inspector.layout().select(pn.pane.Bokeh)))
+
+    inspector.follow(1, 1)
+    counts = [count_figures()]
+    while turns:
+        turns.pop(0)()
+        counts.append(count_figures())
+    figures = len(ORBIT_QUANTITIES) + 1
+    assert counts[: figures + 1] == list(range(counts[0], counts[0] + figures + 1))
+    assert counts[-1] == counts[figures]
