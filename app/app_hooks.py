@@ -1,7 +1,7 @@
 """Hooks that Bokeh calls when the server starts and stops, and for every session and request.
 
 Bokeh runs this file, more than once, before it builds its web application. The file itself checks the command line, extends the
-URL patterns and chooses the class of the HTTP server.
+URL patterns, and chooses the class of the HTTP server and the clock of the event loop.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import gc
 import logging
 import sys
 import threading
+from functools import partial
 from importlib import import_module
 from typing import Any
 
@@ -23,7 +24,7 @@ from app.browser.bokeh_patches.inline_callbacks import run_callbacks_inline
 from app.runtime import disconnects, loop_watch
 from app.runtime.health import StateCollector
 from app.runtime.loop_watch import LoopWatch
-from app.runtime.memory_allocation import reduce_fragmentation
+from app.runtime.memory_allocation import RETURN_SECONDS, reduce_fragmentation, return_free_memory
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
 from app.server.admission import admit
@@ -60,6 +61,7 @@ def on_server_loaded(server_context: Any) -> None:
         run_callbacks_inline()
     stop_on_signals(state, context.io_loop.stop)
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
+    PeriodicCallback(partial(context.io_loop.run_in_executor, None, return_free_memory), 1000.0 * RETURN_SECONDS).start()
     watch = LoopWatch(state.load, state.metrics.loop_delays)
     gc.callbacks.append(watch.on_collection)
     PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * loop_watch.TICK_SECONDS).start()

@@ -1,4 +1,4 @@
-"""Settings of glibc's memory allocation for a server with many threads: it returns the memory of large arrays to the system."""
+"""Memory allocation of glibc: settings and calls by which a server with many threads returns free memory to the system."""
 
 from __future__ import annotations
 
@@ -27,11 +27,27 @@ _OPTIONS = (
 )
 
 
+RETURN_SECONDS = 30.0
+"""Interval between two calls of `return_free_memory`."""
+
+
 def reduce_fragmentation() -> None:
     """Set the options whose environment variables are not set, if this is glibc; call before threads start."""
-    if platform.libc_ver()[0] != "glibc":
-        return
-    library = ctypes.CDLL(None)
+    library = _glibc()
     for option in _OPTIONS:
-        if option.variable not in os.environ:
+        if library is not None and option.variable not in os.environ:
             library.mallopt(option.parameter, option.value)
+
+
+def return_free_memory() -> None:
+    """Return the free memory between small arrays to the system, if this is glibc, which keeps it by default.
+
+    This takes some milliseconds, in which threads that allocate memory wait.
+    """
+    library = _glibc()
+    if library is not None:
+        library.malloc_trim(0)
+
+
+def _glibc() -> ctypes.CDLL | None:
+    return ctypes.CDLL(None) if platform.libc_ver()[0] == "glibc" else None

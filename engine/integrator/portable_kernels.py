@@ -90,8 +90,7 @@ def _build() -> bytes:
 
 def _main() -> None:
     """Write the module to the standard output."""
-    for module in (propagate, ensemble):
-        vars(module)["VECTOR"] = PAIR
+    propagate.VECTOR = PAIR
     sys.stdout.buffer.write(lower_kernels(KERNELS))
 
 

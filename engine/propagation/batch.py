@@ -12,11 +12,10 @@ import numpy as np
 from engine.exits.exit_rows import exit_gates
 from engine.exits.interior import find_outside_starts
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution, run_parts
-from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits
+from engine.integrator.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits, fill_vectors
 from engine.integrator.source.recurrence import LANES, TOLERANCE
 from engine.propagation.evidence import Evidence
 from engine.propagation.fates import Fate
-from engine.propagation.fixed_step_batches import fill_vectors
 from engine.systems.compiled import kernels_of
 from engine.systems.potential import Potential
 

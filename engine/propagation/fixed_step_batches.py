@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from engine.foundations.execution import DEFAULT_EXECUTION, Execution
-from engine.integrator.kernels.propagate import VECTOR
+from engine.integrator.kernels.propagate import fill_vectors
 from engine.integrator.source.recurrence import LANES
 from engine.systems.potential import Potential
 
@@ -100,12 +100,8 @@ def _lanes_per_tile(count: int, workers: int) -> int:
     """Return how many lanes, whole SIMD vectors and at most `LANES`, give each worker equally many tiles of equal duration."""
     tiles_per_worker = max(1, math.ceil(count / (workers * LANES)))
     share = max(1, math.ceil(count / (tiles_per_worker * workers)))
-    return fill_vectors(share)
-
-
-def fill_vectors(count: int) -> int:
-    """Return the number of lanes of the whole SIMD vectors that hold `count` orbits."""
-    return math.ceil(count / VECTOR) * VECTOR
+    lanes: int = fill_vectors(share)
+    return lanes
 
 
 def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:

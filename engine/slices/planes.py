@@ -35,6 +35,9 @@ class Plane(Slice, Enum):
 SPACE = Plane.X_Y
 """The plane of the positions, in which V, paths and exits are drawn."""
 
+ENERGY_SURFACE = Slice(*SPACE.axes, Coordinate.SPEED)
+"""The positions with the speed that the energy determines; with all directions of the velocity, they are the energy surface."""
+
 SECTION = Plane.X_PX
 """The slice of the states on the surface of section whose crossings are counted: y = 0, upward (Zotos 2014)."""
 

@@ -16,9 +16,7 @@ from engine.integrator.kernels import events, exit_geometry, slice_starts
 from engine.integrator.kernels.random_starts import BEFORE_EXIT
 from engine.integrator.source.recurrence import ROWS, TOLERANCE, generate_code
 from engine.integrator.source.series import ORDER
-from engine.slices.axes import Coordinate
-from engine.slices.planes import SPACE
-from engine.slices.slice import Slice
+from engine.slices.planes import ENERGY_SURFACE, SPACE
 from engine.systems.forms.polynomial_form import PolynomialForm
 from engine.systems.potential import Potential
 from engine.systems.well_units import WellUnits
@@ -101,7 +99,7 @@ class PortableSystem:
 
 def _energy_surface(units: WellUnits) -> dict[str, object]:
     """Return the energy surface as a slice of positions with the angle of the velocity as third axis."""
-    launched = Slice(*SPACE.axes, Coordinate.SPEED).to_dict(units)
+    launched = ENERGY_SURFACE.to_dict(units)
     turned = [float(column == slice_starts.ANGLE) for column in range(slice_starts.COORDINATES)]
     return {**launched, "motion": [*launched["motion"], turned]}
 

@@ -8,9 +8,8 @@ import numpy as np
 
 from engine.exits.interior import find_outside_channels
 from engine.foundations.validation import checked_count, checked_number, checks_types
-from engine.slices.axes import Coordinate
 from engine.slices.default_window import default_window
-from engine.slices.planes import SPACE, checked_slice
+from engine.slices.planes import ENERGY_SURFACE, SPACE, checked_slice
 from engine.slices.slice import Slice
 from engine.slices.window import GivenWindow, Window, checked_window
 from engine.systems.potential import Potential
@@ -24,8 +23,6 @@ _MOST = 1_000_000
 _LEAST = 1_000
 # A window with a smaller share of points inside counts as without interior.
 _SMALLEST_SHARE = 1e-4
-# On the energy surface, each point (x, y) with its speed stands for all directions of the velocity.
-_LAUNCHED = Slice(*SPACE.axes, Coordinate.SPEED)
 
 
 @checks_types(potential=Potential)
@@ -98,9 +95,8 @@ def _draw(
     potential: Potential, h: float, plane: Slice | None, window: Window, size: int, random: np.random.Generator
 ) -> np.ndarray:
     """Draw `size` random points of a window, or of the energy surface without a plane, and return the starts inside, (n, 4)."""
-    x = random.uniform(window.x_low, window.x_high, size)
-    ordinate = random.uniform(window.ordinate_low, window.ordinate_high, size)
-    states = (plane or _LAUNCHED).states(potential, h, x, ordinate)
+    x, ordinate = (random.uniform(low, high, size) for low, high in window.ranges)
+    states = (plane or ENERGY_SURFACE).states(potential, h, x, ordinate)
     states = states[np.isfinite(states).all(axis=1)]
     states = states[find_outside_channels(potential, h, *np.ascontiguousarray(states[:, :2].T)) == 0]
     return states if plane is not None else _turn_randomly(states, random)

@@ -67,7 +67,7 @@ def _length(arc: ManifoldArc) -> float:
 
 def _entries(manifolds: StableManifolds, palette: Palette) -> list[Entry]:
     channels = sorted({arc.channel for arc in manifolds.arcs})
-    return [Entry(f"stable manifold {k}", palette.channels[k - 1], Mark.LINE) for k in channels]
+    return [Entry(f"stable manifold {k}", palette.channels[k - 1], Mark.LINE, group="manifolds") for k in channels]
 
 
 def _job(spec: MapSpec, settings: Settings) -> Job[StableManifolds]:

@@ -75,9 +75,9 @@ def _sali_limits(histories: Sequence[History]) -> tuple[float, float]:
 
 
 def _exponent_limits(histories: Sequence[History]) -> tuple[float, float]:
-    """Return limits that begin at the power of ten below the last values."""
+    """Return limits that begin at the power of ten below the last values, and have at least two labels."""
     lowest = min(float(history.line[1][-1]) for history in histories)
-    return find_decades(lowest, _LARGEST_EXPONENT)
+    return min(1e-2, find_decades(lowest, _LARGEST_EXPONENT)[0]), _LARGEST_EXPONENT
 
 
 def _r2_limits(histories: Sequence[History]) -> tuple[float, float]:
@@ -102,6 +102,7 @@ ORBIT_QUANTITIES = (
         lambda orbit: orbit.lyapunov_exponent,
         _exponent_limits,
         least=_LEAST_EXPONENT,
+        ticks=(1e-6, 1e-4, 1e-2, 1.0),
     ),
     OrbitQuantity("r2", "R² = x² + y²", "R²", lambda orbit: orbit.r2, _r2_limits),
 )

@@ -6,6 +6,7 @@ layers, whose colours are in their entries in `plots.layers`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
@@ -29,12 +30,28 @@ class Mark(Enum):
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a legend. A chessboard has two colours."""
+    """An entry of a legend.
+
+    Attributes
+    ----------
+    label, colour, mark
+        Words, colour and shape.
+    second_colour
+        The other colour of a chessboard.
+    group
+        Word that neighbouring entries share where there is little room; empty for an entry by itself.
+    """
 
     label: str
     colour: str
     mark: Mark = Mark.PATCH
     second_colour: str = ""
+    group: str = ""
+
+    @property
+    def short_label(self) -> str:
+        """The word where there is little room."""
+        return self.group or short_label(self.label)
 
 
 OUTCOMES: dict[Fate, str] = {
@@ -50,9 +67,9 @@ CROSSING_CLASSES: tuple[tuple[int, str], ...] = ((0, "0 (direct)"), (1, "1"), (2
 """(fewest crossings, label) of each class."""
 
 DIFFERENCES: tuple[tuple[str, str], ...] = (
-    ("same outcome", "#7f7f7f30"),
-    ("other outcome", "#6a00f4"),
-    ("start in one view only", "#b0904aa0"),
+    ("same: equal outcomes", "#7f7f7f30"),
+    ("different: other outcomes", "#6a00f4"),
+    ("in one view only: no orbit in the other view", "#b0904aa0"),
 )
 """(label, colour) of each class of pixels in the comparison of two views."""
 
@@ -67,6 +84,9 @@ def end_places(outcomes: Sequence[Outcome]) -> list[int]:
 
 MOST_ORBITS = 5
 """Largest number of orbits, each with its own colour."""
+
+# Parts of labels that short labels omit.
+_OMITTED = re.compile(r"^exit |^bounded(?: and|,) | pixels$|(?::| \().*$")
 
 CLEAR = "#00000000"
 """Transparent."""
@@ -191,8 +211,8 @@ class Palette:
 
 
 def short_label(label: str) -> str:
-    """Return the short form of a label: the number of an exit, or the part before a colon."""
-    return label.removeprefix("exit ").partition(":")[0]
+    """Return the short form of a label: the number of an exit, the kind of a bounded orbit, or what stands before a remark."""
+    return _OMITTED.sub("", label)
 
 
 def rgba(colours: Sequence[str]) -> np.ndarray:

@@ -278,7 +278,7 @@ def test_the_legends_have_the_colours_of_the_palette(explorer: ExplorerPage) -> 
     shown = legend(explorer, "basins")
     assert [shown[str(k)] for k in (1, 2)] == list(colours.channels[: CASES["I"].channels])
     assert shown["bounded"] == colours.bounded
-    assert legend(explorer, "crossings") == {entry.label: entry.colour for entry in colours.crossing_entries}
+    assert legend(explorer, "crossings") == {entry.short_label: entry.colour for entry in colours.crossing_entries}
 
 
 def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:

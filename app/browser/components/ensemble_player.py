@@ -38,8 +38,8 @@ button.play { min-width: 11.5rem; font-weight: 600 }
 select.bk-input { appearance: none; padding-right: 28px; border: 1px solid var(--ui-edge); border-radius: var(--ui-radius);
   background-color: var(--ui-surface); background-repeat: no-repeat; color: inherit; font: inherit }
 label { display: inline-flex; align-items: center; gap: 6px; color: inherit; font-size: inherit }
-input[type=range] { flex: 1 1 8rem; min-width: 6rem }
-output { min-width: 4.5rem; font-variant-numeric: tabular-nums }
+input[type=range] { flex: 1; min-width: 6rem }
+output { flex: none; width: 4.5rem; font-variant-numeric: tabular-nums }
 .quiet { color: var(--ui-quiet); margin: 6px 0; min-height: 2lh }
 table { border-spacing: 8px 2px; margin: 0 0 0 -8px; font-variant-numeric: tabular-nums }
 tr { display: flex; flex-wrap: wrap; gap: 4px 14px }

@@ -31,7 +31,7 @@ class OrbitList(JSComponent):
     _esm = Path(__file__).with_suffix(".js")
 
     def __init__(self, on_choose: Callable[[int], None], **options: Any) -> None:
-        super().__init__(sizing_mode="stretch_width", margin=(5, 10), css_classes=["orbit-list"], **options)
+        super().__init__(margin=0, css_classes=["orbit-list"], **options)
         self._on_choose = on_choose
         self.on_msg(lambda event: self._receive(event.data))
 

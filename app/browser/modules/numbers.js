@@ -30,6 +30,11 @@ export function percent(value, digits = 3) {
   return `${number(100 * value, digits)}\u202f%`
 }
 
+/** A share of 1, as a percentage with one decimal. @param {number} value */
+export function share(value) {
+  return `${(100 * value).toFixed(1)}\u202f%`
+}
+
 /**
  * Write a number as a multiple of a power of ten.
  *

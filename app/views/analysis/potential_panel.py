@@ -260,11 +260,11 @@ def _alert(sentence: str) -> str:
 def _channels(review: PotentialReview) -> str:
     if review.potential.ends:
         labels = ", ".join(outcome.label for outcome in review.potential.outcomes)
-        opened = f"; exits open above h = {format_number(review.escape_energy, 6)}" if review.channels else ""
+        opened = f"; exits open above h = {format_number(review.escape_energy)}" if review.channels else ""
         return f"Orbits end at: {labels}{opened}"
     if not review.channels:
         return "no exits"
-    return f"{review.channels} exits above the escape energy h = {format_number(review.escape_energy, 6)}"
+    return f"{review.channels} exits above the escape energy h = {format_number(review.escape_energy)}"
 
 
 def _points(review: PotentialReview) -> str:

@@ -131,8 +131,9 @@ class StatisticsView:
         )
         body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in _facts(statistics).items())
         place = "the whole view" if self._state.box is None else "the box drawn on the maps"
-        caption = f"Interior starts in {place}, with 95 % intervals"
-        return f"<table aria-label='statistics'><caption>{caption}</caption>{body}</table>"
+        caption = f"Interior starts in {place}"
+        head = "<tr><td></td><th scope=col>share</th><th scope=col>95 % interval</th></tr>"
+        return f"<table aria-label='statistics'><caption>{caption}</caption>{head}{body}</table>"
 
     def _rows(self) -> list[tuple[str, ...]]:
         """Return the rows of the table, with shares at full precision."""

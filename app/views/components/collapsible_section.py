@@ -133,7 +133,7 @@ class Drawers(Stack):
 
     def _with_head(self, title: str, build: Build) -> Build:
         def build_all() -> list[pn.viewable.Viewable]:
-            head = TextPane(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=(5, 0))
+            head = TextPane(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=0, align="center")
             close = button("Close", lambda: self.show(None), kind="light", margin=0)
             return [pn.Row(head, close, sizing_mode="stretch_width", margin=0), *build()]
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
+from itertools import groupby
 
+from app.views.components.texts import typeset
 from engine.foundations.wording import format_number, format_whole
 from plots.layers.picture import ColourScale, ColourTable, Legend
-from plots.pictures.palette import Entry, Mark, short_label
+from plots.pictures.palette import Entry, Mark
 
 # Number of intervals of a colour scale, in which the browser interpolates.
 _STEPS = 12
@@ -25,9 +27,19 @@ def legend_items(entries: Iterable[Entry]) -> str:
 
 
 def chips(entries: Iterable[Entry]) -> str:
-    """Return HTML of the entries of a narrow legend. Each entry is a number or a word, with the whole label as tooltip."""
-    parts = ((entry.colour, escape(entry.label), escape(short_label(entry.label))) for entry in entries)
-    return "".join(patch(colour, short, label) for colour, label, short in parts)
+    """Return HTML of the entries of a narrow legend. Each entry is a number or a word, with the whole label as tooltip.
+
+    Entries of a group stand side by side before their word.
+    """
+    groups = groupby(entries, lambda entry: entry.short_label)
+    return "".join(_chip(escape(word), list(group)) for word, group in groups)
+
+
+def _chip(word: str, entries: Sequence[Entry]) -> str:
+    if len(entries) == 1:
+        return patch(_background(entries[0]), word, escape(entries[0].label))
+    patches = "".join(patch(_background(entry), title=escape(entry.label)) for entry in entries)
+    return f"<span class='tones'>{patches}&nbsp;{word}</span>"
 
 
 def legend(entries: Iterable[Entry]) -> str:
@@ -36,16 +48,12 @@ def legend(entries: Iterable[Entry]) -> str:
 
 
 def picture_legend(of: Legend) -> str:
-    """Return HTML of the legend below a picture."""
+    """Return HTML of the legend below a picture. The last entries are not seen if there is too little room."""
+    table = _table(of.table) if of.table is not None else ""
+    entries = chips([] if table else of.entries)
     scale = _scale(of.scale) if of.scale is not None else ""
-    sentence = f" <span>{escape(of.sentence)}</span>" if of.sentence else ""
-    return f"{_classes(of)}{scale}{sentence}{legend_items(of.over)}"
-
-
-def _classes(of: Legend) -> str:
-    if of.table is not None:
-        return _table(of.table)
-    return chips([*of.entries, *of.others]) if of.is_short else legend_items(of.entries)
+    sentence = f" <span>{typeset(escape(of.sentence))}</span>" if of.sentence else ""
+    return f"{table}{entries}{scale}{sentence}{chips(of.over)}{chips(of.others if of.is_short else [])}"
 
 
 def _background(entry: Entry) -> str:

@@ -14,6 +14,8 @@ _AROUND_SIGN = re.compile(r"(?<=\w) (?=(?:=|≈) [−-]?\d)|(?<=[=≤×]) (?=[�
 _SUBSCRIPT = re.compile(r"\b(?:([A-Za-z])_|(p)(?=[xy]\b)|(ω)(?=[12]\b))([a-z]{1,3}|\d)\b")
 # Powers of e and of t.
 _POWER = re.compile(r"\b([et])\^(\d+(?:\.\d+)?)")
+# Spaces at an equals sign, after an operator and inside brackets, where lines of a formula do not break.
+_IN_TERM = re.compile(r"(?<=[=+−]) | (?==)| (?=[^()]*\))")
 _SUBSCRIPT_DIGITS = str.maketrans("12", "₁₂")
 # Narrow spaces before a per cent sign and between groups of digits.
 _IN_NUMBER = re.compile(r"(?<=\d) (?=%|\d{3}\b)")
@@ -28,6 +30,11 @@ def typeset(html: str) -> str:
     for replacement, pattern in ((r"\1\2\3<sub>\4</sub>", _SUBSCRIPT), (r"\1<sup>\2</sup>", _POWER)):
         parts[::2] = [pattern.sub(replacement, part) for part in parts[::2]]
     return "".join(parts)
+
+
+def breakable(formula: str) -> str:
+    """Return a formula whose lines break only before the operators outside brackets."""
+    return _IN_TERM.sub("\N{NO-BREAK SPACE}", formula)
 
 
 def plain_symbol(symbol: str) -> str:

@@ -20,6 +20,10 @@ FIRST = "basins"
 
 # Largest number of pictures of the same size. Among more pictures, one is twice as large as the others.
 _MOST_EQUAL = 4
+# Largest number of pictures of which one is twice as large; of more pictures, one is three times as large as the others.
+_MOST_HALF = 6
+# Numbers of pictures that leave the last cell empty.
+_WITH_GAP = (5, 7)
 
 
 class PictureGrid:
@@ -91,11 +95,14 @@ class PictureGrid:
         # A Bokeh pane on the page cannot change its CSS classes, but its figure can.
         largest = self._largest_picture
         is_enlarged = self._is_enlarged
-        are_many = len(self._panes) > _MOST_EQUAL
+        count = len(self._panes)
+        are_many = count > _MOST_EQUAL
         other_kind = "small" if is_enlarged else "compact" if are_many else "equal"
         with pn.io.hold():
             self._set_class("enlarged", is_enlarged)
             self._set_class("many", are_many and not is_enlarged)
+            self._set_class("crowded", count > _MOST_HALF and not is_enlarged)
+            self._set_class("gap", count in _WITH_GAP and not is_enlarged)
             for name, pane in self._panes.items():
                 plot: figure = pane.object
                 classes = ["well" if name == "well" else "map", "picked" if name == largest else other_kind]

@@ -80,10 +80,11 @@ class OrbitControls:
 
     def head(self, player: pn.viewable.Viewable) -> pn.viewable.Viewable:
         """Return the list of the orbits, the verdict on the chosen orbit, buttons, and the player."""
-        buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
-        buttons.margin = (5, 10)
+        orbits = flex_row(self.list, self.clear, justify="space-between", align="center")
+        buttons = flex_row(self.divergent_start, self.remove, self.open_plane, gap="6px")
+        orbits.margin = buttons.margin = (5, 10)
         return pn.Column(
-            self.list, self.text, buttons, player,
+            orbits, self.text, buttons, player,
             sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT,
         )  # fmt: skip
 

@@ -15,7 +15,7 @@ from app.state.system_review import review_catalogue_entry
 from app.state.view import allowed_resolutions, allowed_t_max
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.texts import TextPane
+from app.views.components.texts import TextPane, breakable
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
 from app.views.panels.analysis_choice import ComparisonSwitch, LayerSwitches
 from engine import CASES, Plane, Potential, Slice
@@ -110,7 +110,7 @@ class Controls:
             label="Exact h",
             shown_event=SHOWN,
             sizing_mode="stretch_width",
-            css_classes=["half"],
+            css_classes=["half", "exact-energy"],
             margin=(0, 0, 0, 10),
         )
         self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width", css_classes=["facts"])
@@ -222,10 +222,11 @@ class Controls:
         formula, _, _ = reviewed.formula.partition(";")
         mass = reviewed.potential.mass
         masses = [] if mass == 1.0 else [f"Masses {format_number(mass)}: H = (px² + py²)/{format_number(2.0 * mass)} + V"]
-        facts = "<br>".join([_outcomes(reviewed.potential), *masses, *([f"Slice {plane}"] if plane else [])])
+        facts = "<br>".join(["", *masses, *([f"Slice {plane}"] if plane else [])])
         self.facts.object = (
             f"<div title='H = (px² + py²)/2m + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
-            f"V = {escape_text(formula)}<br><span class='quiet'>{facts}</span></div>"
+            f"<span class='quiet'>{_outcomes(reviewed.potential)}</span><br>"
+            f"{escape_text(breakable(f'V = {formula}'))}<span class='quiet'>{facts}</span></div>"
         )
 
     def _follow_energy(self) -> None:
@@ -248,9 +249,9 @@ def _outcomes(potential: Potential) -> str:
     """Describe the ends of orbits, and the energy above which exits are open."""
     frame = f"rotates at Ω = {format_number(potential.rotation, 6)}; " if potential.rotation else ""
     if not potential.ends:
-        return f"{frame}{potential.channels} exits above h = {format_number(potential.escape_energy, 6)}"
+        return f"{frame}{potential.channels} exits above h = {format_number(potential.escape_energy)}"
     labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
-    opened = f"; exits open above h = {format_number(potential.escape_energy, 6)}" if potential.channels else ""
+    opened = f"; exits open above h = {format_number(potential.escape_energy)}" if potential.channels else ""
     return f"{frame}{labels}{opened}"
 
 

@@ -30,7 +30,7 @@ _STYLE = """
 h3 { margin: 8px 0 4px; font-size: inherit; font-weight: 600 }
 [role=toolbar] { display: grid; grid-template-columns: repeat(auto-fill, minmax(112px, 1fr)); gap: 6px }
 .few h3 { margin: 8px 0; font-weight: inherit }
-.few [role=toolbar] { grid-template-columns: repeat(3, minmax(0, 1fr)) }
+.few [role=toolbar] { grid-template-columns: repeat(auto-fill, minmax(min(16rem, 100%), 1fr)) }
 button {
   display: flex; flex-direction: column; align-items: center; gap: 4px; box-sizing: border-box;
   padding: 7px; font: inherit; line-height: 1.25; color: inherit; background: var(--ui-surface);
@@ -41,6 +41,10 @@ button:focus-visible { outline: none; box-shadow: var(--ui-focus) }
 button[aria-current] { border-color: var(--ui-accent); background: var(--ui-accent-soft) }
 small { font-size: 0.75rem; color: var(--ui-quiet) }
 img { order: -1; display: block; width: 100%; height: auto; border-radius: var(--ui-radius) }
+/* The picture beside the title and the line below it. */
+.few button { display: grid; grid-template-columns: 3.5rem 1fr; gap: 2px 12px; align-items: end; text-align: left }
+.few img { grid-row: 1 / 3 }
+.few small { align-self: start }
 p {
   position: sticky; bottom: -32px; z-index: 1; margin: 12px 0 -32px; padding: 10px 0 16px; min-height: 5em;
   border-top: 1px solid var(--ui-edge); background: var(--ui-surface);

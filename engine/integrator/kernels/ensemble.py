@@ -14,7 +14,7 @@ from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import crossed_exit, find_exit_time, find_zero, passed_exit, series_slope, series_value
 from engine.integrator.kernels.exit_geometry import ends_inside
-from engine.integrator.kernels.propagate import VECTOR
+from engine.integrator.kernels.propagate import fill_vectors
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import NEAR
@@ -81,7 +81,7 @@ def advance_ensemble(step, jets, coefficients, tolerance, time, beyond, gates, c
             next_orbit += 1
         if active == 0:
             break
-        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        width = fill_vectors(active)
         call_step(step, coefficients, width, tolerance, time, gates, now, new, flag, crossed)
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
         for i in range(active):

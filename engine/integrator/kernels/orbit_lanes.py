@@ -12,7 +12,7 @@ import numpy as np
 from engine.integrator.jit.decorator import kernel, subroutine
 from engine.integrator.jit.function_pointers import call_jets, call_step
 from engine.integrator.kernels.events import append_crossings, crossed_exit, find_exit_time, passed_exit, series_slope
-from engine.integrator.kernels.propagate import VECTOR
+from engine.integrator.kernels.propagate import fill_vectors
 from engine.integrator.source.recurrence import LANES, ROWS, SIZE_ROW, TIME_ROW
 from engine.integrator.source.series import ORDER
 from engine.integrator.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
@@ -64,7 +64,7 @@ def fill_lanes(orbits):
 def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, curves, state, passages, found):
     """Find the first m downward passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
 
-    gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of `VECTOR` up to `LANES`;
+    gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`;
     passages (lanes, m, 3): x, px and time; found (lanes,), zeros. A passage goes from y > 0 to y ≤ 0; none is counted after the
     escape time.
     """
@@ -75,7 +75,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     buffered = 0
     active = lanes
     while active > 0:
-        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        width = fill_vectors(active)
         call_step(step, coefficients, width, tolerance, horizon, gates, now, new, flag, crossed)
         for i in range(active - 1, -1, -1):
             j = lane_orbit[i]
@@ -125,7 +125,7 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
     """Continue the integrals of |v|^power to `duration`, or until an orbit crosses an exit, by at most `budget` steps.
 
     gates (exits, 3); curves (energies, exits, columns); curve_row (lanes,): the row of `curves` of each orbit; orbits (ROWS,
-    lanes), lanes a multiple of `VECTOR` up to `LANES`: see `ROWS`; the time is infinite where the integral is complete;
+    lanes), lanes a multiple of `propagate.VECTOR` up to `LANES`: see `ROWS`; the time is infinite where the integral is complete;
     integral (lanes,): the integrals so far, NaN for an orbit whose steps become too short.
     """
     now, new, flag, crossed, lane_orbit = fill_lanes(orbits)
@@ -137,7 +137,7 @@ def integrate_speed(step, jets, coefficients, tolerance, duration, power, budget
     taken = 0
     while active > 0 and taken < budget:
         taken += 1
-        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        width = fill_vectors(active)
         call_step(step, coefficients, width, tolerance, duration, gates, now, new, flag, crossed)
         call_jets(jets, coefficients, width, now[0], now[1], now[2], now[3], x_jet, y_jet)
         for i in range(active - 1, -1, -1):

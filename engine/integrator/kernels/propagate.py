@@ -107,6 +107,12 @@ class _StepBuffer(NamedTuple):
 
 
 @subroutine
+def fill_vectors(count):
+    """Return the number of lanes of the whole vectors that hold `count` orbits."""
+    return (count + VECTOR - 1) // VECTOR * VECTOR
+
+
+@subroutine
 def _make_buffer(lanes):
     """Return an empty buffer."""
     h, orbit, channel = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
@@ -135,7 +141,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
         if traced < trace.shape[0]:
             _trace_step(now, trace, traced)
             traced += 1
-        width = (active + VECTOR - 1) // VECTOR * VECTOR
+        width = fill_vectors(active)
         call_step(step, coefficients, width, tolerance, horizon, exits.gates, now, new, flag, crossed)
         taken += active
         left -= width

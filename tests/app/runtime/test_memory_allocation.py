@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from app.runtime.memory_allocation import reduce_fragmentation
+from app.runtime.memory_allocation import reduce_fragmentation, return_free_memory
 from tests import forked
 from tests.waiting import SECONDS
 
@@ -59,3 +59,30 @@ def test_threads_share_arenas(tmp_path: Path) -> None:
 
 def test_environment_variables_have_precedence(tmp_path: Path) -> None:
     assert arenas(tmp_path, {"MALLOC_ARENA_MAX": "16"}) > 3
+
+
+def count_kilobytes(results: Connection) -> None:
+    """Send the resident memory before and after free memory between allocations is returned."""
+    library = ctypes.CDLL(None)
+    library.malloc.restype = ctypes.c_void_p
+    pieces = [library.malloc(60_000) for _ in range(1000)]
+    for piece in pieces:
+        ctypes.memset(piece, 1, 60_000)
+    for piece in pieces[::2]:
+        library.free(ctypes.c_void_p(piece))
+    before = resident_kilobytes()
+    return_free_memory()
+    results.send((before, resident_kilobytes()))
+
+
+def resident_kilobytes() -> int:
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4
+
+
+def test_free_memory_between_allocations_is_returned() -> None:
+    receiver, sender = forked.fork_context().Pipe(duplex=False)
+    process = forked.start(count_kilobytes, sender)
+    assert receiver.poll(SECONDS)
+    before, after = receiver.recv()
+    process.join(SECONDS)
+    assert before - after > 20_000

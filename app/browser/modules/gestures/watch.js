@@ -5,7 +5,7 @@ import {Ensemble, Outcomes} from "../engine/ensemble.js"
 import {Integrator} from "../engine/integrator.js"
 import {drawStarts} from "../engine/random_starts.js"
 import {energyAxis, windowAt} from "../engine/starts.js"
-import {count as whole, number, percent} from "../numbers.js"
+import {count as whole, number, share} from "../numbers.js"
 import {cover, frames, onMoved, wellFrame} from "../painting/pictures.js"
 import {drawSurvival} from "../painting/survival_chart.js"
 import {onPresent, present} from "./present.js"
@@ -87,7 +87,8 @@ class Watch {
     el.replaceChildren(
       make("div", {className: "row"}, this.#where, this.#count, this.#otherStarts),
       make("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusText),
-      make("div", {className: "row"}, this.#play, this.#step, this.#rail, this.#timeText),
+      make("div", {className: "row"}, this.#play, this.#step),
+      make("div", {className: "row"}, this.#rail, this.#timeText),
       make(
         "div",
         {className: "row"},
@@ -381,7 +382,7 @@ class Watch {
     const counts = new Array(names.length).fill(0)
     for (const code of channel) counts[code]++
     const cells = counts.map((countOfEnd, code) => {
-      const cell = make("td", {}, `${names[code]}: ${whole(countOfEnd)} (${percent(count ? countOfEnd / count : 0)})`)
+      const cell = make("td", {}, `${names[code]}: ${whole(countOfEnd)} (${share(count ? countOfEnd / count : 0)})`)
       if (code) cell.style.setProperty("--colour", colours[code - 1])
       return cell
     })

@@ -6,7 +6,7 @@ import {number} from "../numbers.js"
 /** Smallest share on the axis. */
 const LEAST_SHARE = 1e-3
 /** Margins, in pixels. */
-const [LEFT, RIGHT, BOTTOM, TOP] = [34, 4, 18, 6]
+const [LEFT, RIGHT, BOTTOM, TOP] = [40, 4, 22, 6]
 /** Number of intervals of a line. */
 const INTERVALS = 240
 
@@ -33,9 +33,11 @@ export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, 
   context.font = "12px system-ui, sans-serif"
   context.globalAlpha = 0.7
   for (const share of [1, 0.1, 0.01, LEAST_SHARE]) {
-    context.fillText(share === 1 ? "1" : String(share), 2, placeY(share) + 4)
+    context.textAlign = "right"
+    context.fillText(String(share), LEFT - 6, placeY(share) + 4)
     context.fillRect(LEFT, placeY(share), width - LEFT - RIGHT, 0.5)
   }
+  context.textAlign = "left"
   const law = rate > 0 ? "; dashed: flux over volume" : ""
   context.fillText(`Inside until t = ${number(longest * unit, 3)}${law}`, LEFT, height - 4, width - LEFT)
   const times = escapeTime.filter(each => each <= time).sort()

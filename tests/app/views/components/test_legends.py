@@ -40,14 +40,15 @@ def test_legends_name_only_outcomes_of_the_map_and_short_labels_have_the_whole_l
 
 
 def test_the_legend_of_crossings_has_their_classes_and_the_layers_over_them() -> None:
-    expected = [(entry.label, entry.colour) for entry in PAPER.crossing_entries]
+    expected = [(entry.short_label, entry.colour) for entry in PAPER.crossing_entries]
     assert entries(legend("crossings")) == expected
     html = legend("crossings", results={"trust": None})
-    assert "doubtful pixels" in html
+    assert "title='doubtful pixels'" in html
     assert all(tone in html for tone in TONES)
     both = legend("crossings", CASES["III"], results={"manifolds": result_of("manifolds"), "trust": None})
-    assert "doubtful pixels" in both
-    assert "manifold" in both
+    assert "doubtful" in both
+    assert [both.count(f"stable manifold {k}") for k in (1, 2)] == [1, 1]
+    assert both.count(">manifolds<") + both.count(";manifolds<") == 1
 
 
 def test_the_scale_has_both_ends_and_says_whether_it_is_locked() -> None:

@@ -8,7 +8,7 @@ from bokeh.document import Document
 from bokeh.models import ImportedStyleSheet
 from panel.io.resources import LOCAL_DIST
 
-from app.views.components.texts import StatusPane, TextPane, typeset
+from app.views.components.texts import StatusPane, TextPane, breakable, typeset
 
 
 @pytest.mark.parametrize("kind", [TextPane, StatusPane])
@@ -42,3 +42,8 @@ def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: 
 )
 def test_lines_do_not_break_inside_a_number(text: str, whole: str) -> None:
     assert typeset(text) == whole.replace("~", "\N{NO-BREAK SPACE}").replace("_", "\N{NARROW NO-BREAK SPACE}")
+
+
+def test_lines_of_a_formula_break_before_operators_outside_brackets() -> None:
+    lines = [line.replace("\N{NO-BREAK SPACE}", " ") for line in breakable("V = ½(x² + y²) − x(x²/3 − y²)").split(" ")]
+    assert lines == ["V = ½(x² + y²)", "− x(x²/3 − y²)"]

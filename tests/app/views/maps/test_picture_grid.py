@@ -65,6 +65,16 @@ def test_one_of_many_pictures_is_twice_as_large_and_the_rest_have_no_axes() -> N
     assert not any(pane.object.left[0].visible for pane in panes(pictures) if pane.object.name != last)
 
 
+@pytest.mark.parametrize(
+    ("layers", "classes"), [(0, set()), (1, {"many", "gap"}), (2, {"many"}), (3, {"many", "crowded", "gap"})]
+)
+def test_the_size_of_the_largest_picture_and_the_empty_cell_follow_from_the_number_of_pictures(
+    layers: int, classes: set[str]
+) -> None:
+    pictures = grid(*[*LAYER_OF][:layers])
+    assert {"many", "crowded", "gap"} & set(pictures.layout().css_classes) == classes
+
+
 @pytest.mark.parametrize(("on_demand", "largest"), [((), "basins"), (("characters",), "characters"), (("origins",), "origins")])
 def test_the_picture_of_an_active_layer_is_the_largest(on_demand: tuple[str, ...], largest: str) -> None:
     assert named(grid(*on_demand), "picked") == [largest]
