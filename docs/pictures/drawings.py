@@ -57,8 +57,9 @@ from plots.printed.figure_axes import (
     style_axes,
 )
 from plots.printed.figure_style import FigureFormat
-from plots.printed.map_figure import draw_limits, draw_picture, draw_pixels, show_window
+from plots.printed.map_figure import draw_picture
 from plots.printed.orbit_figure import draw_quantity
+from plots.printed.window_axes import draw_limits, draw_pixels, show_window
 
 DOCS = Path(__file__).parents[1]
 _COLOURS = 64

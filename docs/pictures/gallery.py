@@ -32,7 +32,7 @@ from plots.layers.map_analyses import MapAnalyses
 from plots.layers.map_images import picture_pixels
 from plots.layers.table import LAYERS
 from plots.pictures.palette import LIGHT, PAPER, PATCH_EDGE
-from plots.printed.map_figure import draw_curve, draw_pixels
+from plots.printed.window_axes import draw_curve, draw_pixels
 
 STATIC = Path(__file__).parents[2] / "app" / "static"
 PICTURES = {f"gallery/{preset.key}": preset for preset in PRESETS}

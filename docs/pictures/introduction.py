@@ -30,9 +30,10 @@ from plots.printed.figure_axes import (
     legend_handles,
     set_title,
 )
-from plots.printed.map_figure import draw_curve, draw_limits, draw_map_figure, draw_picture, draw_strokes, show_window
+from plots.printed.map_figure import draw_map_figure, draw_picture
 from plots.printed.orbit_figure import draw_path
 from plots.printed.potential_figure import draw_well
+from plots.printed.window_axes import draw_curve, draw_limits, draw_strokes, show_window
 
 
 def well() -> Figure:

@@ -12,7 +12,7 @@ def _region_legend(shown: ShownMap) -> Legend:
 
 def _basin_legend(shown: ShownMap) -> Legend:
     ends = shown.palette.legend_entries(shown.spec.outcomes)
-    return Legend(ends, [*shown.outcome_entries().values()], is_short=True)
+    return Legend([*ends.values()], [*shown.outcome_entries().values()], is_short=True)
 
 
 def _time_legend(shown: ShownMap) -> Legend:
@@ -27,7 +27,8 @@ def _other_legend(shown: ShownMap) -> Legend:
     """Return the outcomes of the other view, and its title."""
     if shown.other is None:
         return Legend(sentence="…")
-    return Legend(shown.palette.legend_entries(shown.other.outcomes), is_short=True, sentence=shown.other.title)
+    ends = shown.palette.legend_entries(shown.other.outcomes)
+    return Legend([*ends.values()], is_short=True, sentence=shown.other.title)
 
 
 def _difference_legend(shown: ShownMap) -> Legend:

@@ -174,9 +174,9 @@ class Palette:
         ends = self.ends
         return [Entry(outcome.label, ends[place]) for outcome, place in zip(outcomes, end_places(outcomes), strict=True)]
 
-    def legend_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
-        """Return the labels and colours of the outcomes that occur."""
-        return [entry for entry, outcome in zip(self.end_entries(outcomes), outcomes, strict=True) if outcome.occurs]
+    def legend_entries(self, outcomes: Sequence[Outcome]) -> dict[int, Entry]:
+        """Return the labels and colours of the outcomes that occur, by fate."""
+        return {fate: entry for fate, entry in enumerate(self.end_entries(outcomes), 1) if outcomes[fate - 1].occurs}
 
     @cached_property
     def fate_colours(self) -> list[str]:

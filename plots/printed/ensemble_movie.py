@@ -25,8 +25,8 @@ from plots.pictures.orbit_curves import find_well_window
 from plots.pictures.palette import LIGHT, Palette
 from plots.printed.figure_axes import RENDER_LOCK, new_figure, set_font, style_axes
 from plots.printed.figure_style import FigureStyle
-from plots.printed.map_figure import show_window
 from plots.printed.potential_figure import draw_well
+from plots.printed.window_axes import show_window
 
 FRAMES_PER_SECOND = 25
 """Frames per second of all movies."""

@@ -25,8 +25,8 @@ from plots.printed.figure_axes import (
     write_below,
 )
 from plots.printed.figure_style import SCREEN, FigureStyle
-from plots.printed.map_figure import draw_curve, draw_limits, draw_pixels, show_window
 from plots.printed.potential_figure import draw_well
+from plots.printed.window_axes import draw_curve, draw_limits, draw_pixels, show_window
 
 # Height of the figure with two columns, in units of the width.
 _HEIGHT = 0.58

@@ -11,7 +11,7 @@ from engine.slices.planes import SPACE
 from engine.systems.review.energy_ranges import depth_levels
 from engine.systems.review.potential_review import critical_energies
 from plots.pictures.palette import LIGHT, Palette
-from plots.printed.map_figure import draw_curve, draw_limits
+from plots.printed.window_axes import draw_curve, draw_limits
 
 # Levels of equipotentials above the bottom of the well, in units of the depth of the well: dense inside the well, sparse outside.
 _LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)

@@ -29,9 +29,10 @@ from plots.pictures.orbit_quantities import ORBIT_QUANTITIES
 from plots.pictures.palette import LIGHT, PALETTES, Entry, Palette, rgba
 from plots.printed.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_measure, draw_shares
 from plots.printed.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, legend_handles, set_font, set_title, style_axes
-from plots.printed.map_figure import draw_limits, draw_picture, draw_pixels, draw_strokes, show_window
+from plots.printed.map_figure import draw_picture
 from plots.printed.orbit_figure import draw_path, draw_quantity
 from plots.printed.potential_figure import draw_equipotentials, enlarge
+from plots.printed.window_axes import draw_limits, draw_pixels, draw_strokes, show_window
 
 # Width and height of a picture, in inches.
 _INCHES = (4.6, 4.0)

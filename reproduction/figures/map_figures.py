@@ -18,7 +18,8 @@ from plots.pictures.palette import PAPER
 from plots.pictures.time_scale import TimeScale, common_scale
 from plots.printed.figure_axes import add_figure_legend, label_axes, legend_handles, new_figure, set_title
 from plots.printed.figure_style import SCREEN
-from plots.printed.map_figure import add_colour_bar, draw_limits, draw_pixels, show_window
+from plots.printed.map_figure import add_colour_bar
+from plots.printed.window_axes import draw_limits, draw_pixels, show_window
 from reproduction.map_cache import MapCache
 from reproduction.notation import axis_label, plane_label
 from reproduction.paper_ranges import nine_energies, plane_energies

@@ -115,9 +115,8 @@ class StatisticsView:
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Return name, colour and code of each fate in the table."""
-        palette, outcomes = self._state.colours, statistics.outcomes
-        entries = zip(palette.end_entries(outcomes), outcomes, strict=True)
-        ends = [(entry.label, entry.colour, fate) for fate, (entry, outcome) in enumerate(entries, 1) if outcome.occurs]
+        palette = self._state.colours
+        ends = [(entry.label, entry.colour, fate) for fate, entry in palette.legend_entries(statistics.outcomes).items()]
         bounded = [("bounded", palette.bounded, int(Fate.BOUNDED))]
         others = (("undecided", Fate.NOT_COMPUTED, statistics.undecided), (UNRESOLVED, Fate.FAILED, statistics.failed))
         return [*ends, *bounded, *((name, palette.outcomes[fate].colour, int(fate)) for name, fate, count in others if count)]

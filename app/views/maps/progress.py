@@ -17,7 +17,6 @@ from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import EscapeMap, Evidence, Fate
 from engine.foundations.wording import format_number, format_share, format_whole
-from engine.propagation.fates import UNRESOLVED
 from plots.layers.table import LAYERS
 from plots.pictures.palette import Entry, Palette
 
@@ -126,12 +125,11 @@ class ProgressView:
 
 def _shares(frame: EscapeMap, palette: Palette) -> str:
     """Return a bar and a line with the share of each outcome of the interior starts, in the colours of the basins."""
-    shares, outcomes = frame.fractions(), frame.spec.outcomes
-    ends = [(palette.entry(fate, outcomes), fate) for fate, end in enumerate(outcomes, 1) if end.occurs]
-    others = [(Entry("stay", palette.bounded), Fate.BOUNDED)]
+    shares = frame.fractions()
+    entries = palette.legend_entries(frame.spec.outcomes) | {Fate.BOUNDED: Entry("stay", palette.bounded)}
     if shares[Fate.FAILED]:
-        others.append((Entry(UNRESOLVED, palette.entry(Fate.FAILED, outcomes).colour), Fate.FAILED))
-    entry_shares = [(entry, shares[fate]) for entry, fate in (*ends, *others)]
+        entries[Fate.FAILED] = palette.outcomes[Fate.FAILED]
+    entry_shares = [(entry, shares[fate]) for fate, entry in entries.items()]
     parts = "".join(f"<i style='flex-grow:{share:.4f};background:{entry.colour}'></i>" for entry, share in entry_shares)
     rest = "" if frame.complete else f"<i style='flex-grow:{frame.undecided:.4f}'></i>"
     words = "".join(patch(entry.colour, f"{escape(entry.label)}&nbsp;{format_share(share)}") for entry, share in entry_shares)
