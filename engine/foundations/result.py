@@ -41,8 +41,8 @@ class Chart:
     ----------
     x, y
         Names of the columns.
-    across, up
-        Labels of the horizontal and the vertical axis.
+    x_label, y_label
+        Labels of the axes.
     logarithmic
         Letters of the axes with a logarithmic scale, such as "xy".
     title
@@ -53,8 +53,8 @@ class Chart:
 
     x: str
     y: str
-    across: str
-    up: str
+    x_label: str
+    y_label: str
     logarithmic: str = ""
     title: str = ""
     by_channel: bool = False
